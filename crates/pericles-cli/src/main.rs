@@ -1,0 +1,2 @@
+//! The program `pericles`.
+fn main() {}

@@ -1,0 +1,5 @@
+//! Loads, prescribed motion, and the seam for other boundaries.
+
+mod function;
+
+pub use function::TimeFunction;

@@ -1,0 +1,127 @@
+//! The one error type of the library.
+
+/// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PericlesError {
+    /// A length, density, modulus … that must be a positive finite number is not.
+    #[error("{quantity} must be positive and finite, not {value}")]
+    NotPositive {
+        /// What the number stands for.
+        quantity: &'static str,
+        /// The number given.
+        value: f64,
+    },
+    /// A body's side is no whole number of cells.
+    #[error(
+        "a side of {length} m is not a whole number of cells of {spacing} m; the nearest that are: {below} m and {above} m"
+    )]
+    NotWholeCells {
+        /// The side asked for, m.
+        length: f64,
+        /// Spacing of the grid, m.
+        spacing: f64,
+        /// The next shorter side that fits, m.
+        below: f64,
+        /// The next longer side that fits, m.
+        above: f64,
+    },
+    /// The shape, less its holes, contains no cell centre.
+    #[error("the body has no points: no cell centre lies inside the shape and outside its holes")]
+    EmptyBody,
+    /// More points than the numbering can hold or than a grid may have.
+    #[error("the grid would have {cells} cells; at most {limit} are possible")]
+    TooManyPoints {
+        /// Cells of the bounding box.
+        cells: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// The horizon reaches no neighbour.
+    #[error(
+        "the horizon {horizon} m reaches no neighbour: it must be at least the spacing, {spacing} m (usual: 3 spacings)"
+    )]
+    HorizonTooSmall {
+        /// Horizon, m.
+        horizon: f64,
+        /// Spacing, m.
+        spacing: f64,
+    },
+    /// Shape, region or crack of another dimension than the body.
+    #[error("{what} needs a body of dimension {needed}, this one has dimension {dimension}")]
+    WrongDimension {
+        /// What does not fit.
+        what: &'static str,
+        /// Dimensions it can be used in.
+        needed: &'static str,
+        /// The body's dimension.
+        dimension: usize,
+    },
+    /// A crack surface without extent, or a polygon that is not plane.
+    #[error("the crack has no usable surface: {reason}")]
+    BadCrack {
+        /// Why.
+        reason: &'static str,
+    },
+    /// An influence function that cannot be used here.
+    #[error("influence function: {reason}")]
+    BadInfluence {
+        /// Why, and what is allowed.
+        reason: String,
+    },
+    /// A Poisson ratio that bond-based peridynamics cannot have.
+    #[error(
+        "Poisson's ratio {given} cannot be had: bond-based peridynamics in {state} has {fixed} (one constant only); leave it out or give {fixed}"
+    )]
+    PoissonRatio {
+        /// The ratio asked for.
+        given: f64,
+        /// The stress state, in words.
+        state: &'static str,
+        /// The ratio the model has.
+        fixed: f64,
+    },
+    /// The time step is larger than the scheme's limit.
+    #[error(
+        "the time step {dt} s is unstable: the highest frequency of the body is {omega} 1/s, so {scheme} needs dt ≤ {limit} s (give a smaller dt, \"auto\", or allow_unstable = true)"
+    )]
+    UnstableStep {
+        /// The step asked for, s.
+        dt: f64,
+        /// Highest angular frequency, 1/s.
+        omega: f64,
+        /// The largest stable step, s.
+        limit: f64,
+        /// Name of the scheme.
+        scheme: &'static str,
+    },
+    /// Nothing in the body resists motion, so that no stable step can be found.
+    #[error("the body has no bond that resists motion: the stable step cannot be found; give dt")]
+    NoStiffness,
+    /// A stored state does not fit this model.
+    #[error("the stored state does not fit: {reason}")]
+    BadArchive {
+        /// What is missing or has another size.
+        reason: String,
+    },
+    /// Two conditions prescribe the motion of the same point and component.
+    #[error("the motion of point {point} along {axis} is prescribed twice")]
+    PrescribedTwice {
+        /// The point's number.
+        point: usize,
+        /// The axis, x, y or z.
+        axis: char,
+    },
+}
+
+/// Result with [`PericlesError`].
+pub type Result<T> = std::result::Result<T, PericlesError>;
+
+/// Checks that a quantity is positive and finite.
+pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(PericlesError::NotPositive { quantity, value })
+    }
+}

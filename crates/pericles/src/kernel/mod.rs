@@ -1,0 +1,9 @@
+//! Influence functions α(r) and their moments.
+//!
+//! The pair force density of a bond of length r and stretch s is c α(r) s along the bond. α carries no modulus: the constant c
+//! follows from the moments m_q = ∫₀^δ α(r) r^q dr (or their lattice sums), so that every function gives the same modulus.
+//! Lengths are in metres; α is dimensionless, or has any unit, for c absorbs it.
+
+mod influence;
+
+pub use influence::{ActsOn, Influence, InfluenceFunction};

@@ -1,0 +1,22 @@
+//! Materials: from engineering constants to bond constants.
+//!
+//! A bond of reference length r pulls its ends together with the force density (per volume squared) c α(r) s, where s is its stretch. The
+//! constant c follows from one elastic modulus, the critical stretch s₀ from the fracture energy, both through the moments
+//! m_q = ∫₀^δ α r^q dr of the influence function (Alebrahim et al. 2022, eqs. 5 and 52, written for any α):
+//!
+//! | | c | fixed ν | G₀ |
+//! |---|---|---|---|
+//! | bar, section area A | E/(A m₁) | – | ½ A c s₀² m₂ |
+//! | plane stress, thickness h | 3E/(π h m₂) | 1/3 | h c s₀² m₃ |
+//! | plane strain, thickness h | 16E/(5π h m₂) | 1/4 | h c s₀² m₃ |
+//! | 3D | 9K/(2π m₃), K = 2E/3 | 1/4 | (π/2) c s₀² m₄ |
+//!
+//! Units: E, K in Pa; c in N/m⁶ for a dimensionless α; G₀ in J/m².
+
+mod constants;
+mod law;
+
+pub use constants::{
+    BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
+};
+pub use law::PairLaw;

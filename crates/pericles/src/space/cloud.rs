@@ -1,0 +1,227 @@
+//! The points of a body.
+
+use super::{Point, Region};
+use crate::error::{PericlesError, Result, positive};
+
+/// Numbers of points, ascending, in the cloud's own order.
+pub type PointSet = Vec<u32>;
+
+/// The regular lattice on which the points of a cloud lie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lattice {
+    /// Distance between neighbouring nodes, m.
+    pub spacing: f64,
+    /// Nodes of the bounding box along each axis; 1 along missing axes.
+    pub shape: [usize; 3],
+    /// Node of each point: x + shape[0] (y + shape[1] z), ascending.
+    pub node: Vec<u32>,
+}
+
+impl Lattice {
+    /// The integer coordinates of a node.
+    pub fn coordinates(&self, node: u32) -> [i32; 3] {
+        let node = node as usize;
+        let row = node / self.shape[0];
+        [
+            (node % self.shape[0]) as i32,
+            (row % self.shape[1]) as i32,
+            (row / self.shape[1]) as i32,
+        ]
+    }
+}
+
+/// The points of a body with their volumes, as structure of arrays.
+///
+/// Vectors on points (positions, displacements, forces …) are stored component by component: component c of point i is
+/// entry `c * len() + i`. Points are kept in an order that suits memory (grid order); [`PointCloud::user_number`] gives the
+/// number under which a point is written to files.
+#[derive(Debug, Clone)]
+pub struct PointCloud {
+    dimension: usize,
+    positions: Vec<f64>,
+    volumes: Vec<f64>,
+    /// Area of a bar (m²) or thickness of a plate (m); 1 in 3D.
+    section: f64,
+    spacing: f64,
+    lattice: Option<Lattice>,
+}
+
+impl PointCloud {
+    /// A cloud from positions (m, component-major, `dimension * n` entries) and volumes (m³).
+    ///
+    /// `section` is the cross-section's area in 1D (m²), the thickness in 2D (m) and 1 in 3D, so that a cell of size Δx has volume
+    /// section · Δx^dimension. The cell size used by volume corrections is that of the mean volume.
+    pub fn new(
+        dimension: usize,
+        positions: Vec<f64>,
+        volumes: Vec<f64>,
+        section: f64,
+    ) -> Result<Self> {
+        positive("the section (area in 1D, thickness in 2D)", section)?;
+        let n = volumes.len();
+        if n == 0 {
+            return Err(PericlesError::EmptyBody);
+        }
+        if n > u32::MAX as usize - 1 {
+            return Err(PericlesError::TooManyPoints {
+                cells: n as f64,
+                limit: u64::from(u32::MAX - 1),
+            });
+        }
+        if !(1..=3).contains(&dimension) || positions.len() != dimension * n {
+            return Err(PericlesError::WrongDimension {
+                what: "an array of positions of this length",
+                needed: "1, 2 or 3, with one number per point and axis",
+                dimension,
+            });
+        }
+        for &volume in &volumes {
+            positive("the volume of a point", volume)?;
+        }
+        if let Some(&bad) = positions.iter().find(|x| !x.is_finite()) {
+            return Err(PericlesError::NotPositive {
+                quantity: "the distance of a point from the origin",
+                value: bad,
+            });
+        }
+        let mean = volumes.iter().sum::<f64>() / n as f64;
+        let spacing = (mean / section).powf(1.0 / dimension as f64);
+        Ok(Self {
+            dimension,
+            positions,
+            volumes,
+            section,
+            spacing,
+            lattice: None,
+        })
+    }
+
+    /// A cloud on a lattice whose node (0, 0, 0) has its centre at `origin`.
+    pub(super) fn on_lattice(
+        dimension: usize,
+        origin: Point,
+        lattice: Lattice,
+        section: f64,
+    ) -> Result<Self> {
+        let n = lattice.node.len();
+        let mut positions = vec![0.0; dimension * n];
+        for (i, &node) in lattice.node.iter().enumerate() {
+            let cell = lattice.coordinates(node);
+            for c in 0..dimension {
+                positions[c * n + i] = origin[c] + f64::from(cell[c]) * lattice.spacing;
+            }
+        }
+        let volume = section * lattice.spacing.powi(dimension as i32);
+        let mut cloud = Self::new(dimension, positions, vec![volume; n], section)?;
+        cloud.spacing = lattice.spacing;
+        cloud.lattice = Some(lattice);
+        Ok(cloud)
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.volumes.len()
+    }
+
+    /// Never true: a cloud has at least one point.
+    pub fn is_empty(&self) -> bool {
+        self.volumes.is_empty()
+    }
+
+    /// 1, 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Reference positions, m, component-major.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// One coordinate of all points, m.
+    pub fn axis(&self, c: usize) -> &[f64] {
+        let n = self.len();
+        &self.positions[c * n..(c + 1) * n]
+    }
+
+    /// The reference position of a point, missing components zero.
+    pub fn point(&self, i: usize) -> Point {
+        let mut point = [0.0; 3];
+        for (c, x) in point.iter_mut().enumerate().take(self.dimension) {
+            *x = self.positions[c * self.len() + i];
+        }
+        point
+    }
+
+    /// Volumes, m³.
+    pub fn volumes(&self) -> &[f64] {
+        &self.volumes
+    }
+
+    /// Area of a bar's section (m²), thickness of a plate (m), 1 in 3D.
+    pub fn section(&self) -> f64 {
+        self.section
+    }
+
+    /// Distance of neighbouring points, m: the lattice's, else the size of the mean cell.
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// The size of a point's cell, m: (V / section)^(1/dimension).
+    pub fn cell_size(&self, i: usize) -> f64 {
+        if self.lattice.is_some() {
+            self.spacing
+        } else {
+            (self.volumes[i] / self.section).powf(1.0 / self.dimension as f64)
+        }
+    }
+
+    /// The lattice, if the points lie on one.
+    pub fn lattice(&self) -> Option<&Lattice> {
+        self.lattice.as_ref()
+    }
+
+    /// The number of a point in the user's numbering, in which files are written.
+    pub fn user_number(&self, i: usize) -> usize {
+        i
+    }
+
+    /// Bounding box of the cells (half a cell beyond the outermost points), m.
+    pub fn bounds(&self) -> [Point; 2] {
+        let mut bounds = [[0.0; 3]; 2];
+        for c in 0..self.dimension {
+            let half = 0.5 * self.spacing;
+            let axis = self.axis(c);
+            bounds[0][c] = axis.iter().copied().fold(f64::INFINITY, f64::min) - half;
+            bounds[1][c] = axis.iter().copied().fold(f64::NEG_INFINITY, f64::max) + half;
+        }
+        bounds
+    }
+
+    /// The points of a region.
+    pub fn select(&self, region: &Region) -> PointSet {
+        let bounds = self.bounds();
+        let tolerance = 1e-9 * self.spacing;
+        (0..self.len())
+            .filter(|&i| region.contains(self.point(i), &bounds, tolerance))
+            .map(|i| i as u32)
+            .collect()
+    }
+
+    /// The point nearest to a place; the first of several.
+    pub fn nearest(&self, place: Point) -> usize {
+        let square = |i: usize| -> f64 {
+            let x = self.point(i);
+            (0..self.dimension).map(|c| (x[c] - place[c]).powi(2)).sum()
+        };
+        let mut best = (0, square(0));
+        for i in 1..self.len() {
+            let distance = square(i);
+            if distance < best.1 {
+                best = (i, distance);
+            }
+        }
+        best.0
+    }
+}

@@ -1,0 +1,298 @@
+//! Regular cell-centred grids.
+
+use super::{Lattice, Point, PointCloud, Region};
+use crate::error::{PericlesError, Result, positive};
+
+/// The outline of a body made of cells.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A box of dimension `size.len()` (bar, plate, block) from its lower corner `origin`.
+    Box {
+        /// Lower corner, m.
+        origin: Point,
+        /// Sides, m; one to three of them.
+        size: Vec<f64>,
+    },
+    /// A disc in the plane.
+    Disc {
+        /// Centre, m.
+        centre: Point,
+        /// Radius, m.
+        radius: f64,
+    },
+    /// A solid circular cylinder; a hole makes a tube of it.
+    Cylinder {
+        /// Centre of the lower base, m.
+        base: Point,
+        /// Coordinate axis along which it extends: 0, 1 or 2.
+        axis: usize,
+        /// Radius, m.
+        radius: f64,
+        /// Height along the axis, m.
+        height: f64,
+    },
+    /// A ball in space.
+    Ball {
+        /// Centre, m.
+        centre: Point,
+        /// Radius, m.
+        radius: f64,
+    },
+}
+
+/// A body as the centres of the cubic cells of a regular grid that lie inside a shape and outside its holes.
+///
+/// ```
+/// use pericles::space::{Grid, Shape};
+/// let plate = Grid {
+///     shape: Shape::Box { origin: [0.0; 3], size: vec![0.1, 0.04] },
+///     spacing: 0.01,
+///     section: 1.0,
+///     holes: vec![],
+/// };
+/// let points = plate.points().unwrap();
+/// assert_eq!(points.len(), 40);
+/// assert_eq!(points.point(0), [0.005, 0.005, 0.0]);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Outline of the body.
+    pub shape: Shape,
+    /// Cell size Δx, m.
+    pub spacing: f64,
+    /// Area of a bar (m²), thickness of a plate (m), 1 in 3D.
+    pub section: f64,
+    /// Regions without material.
+    pub holes: Vec<Region>,
+}
+
+/// Nodes of a bounding box must be numbered by u32.
+const CELL_LIMIT: u64 = u32::MAX as u64 - 1;
+
+impl Grid {
+    /// Dimension of the body.
+    pub fn dimension(&self) -> usize {
+        match &self.shape {
+            Shape::Box { size, .. } => size.len(),
+            Shape::Disc { .. } => 2,
+            Shape::Cylinder { .. } | Shape::Ball { .. } => 3,
+        }
+    }
+
+    /// Lower corner, sides and whether the sides must be whole numbers of cells.
+    fn frame(&self) -> Result<(Point, [f64; 3], [bool; 3])> {
+        let centred = |centre: &Point, radius: f64, dimension: usize| {
+            let mut corner = [0.0; 3];
+            let mut side = [0.0; 3];
+            for c in 0..dimension {
+                corner[c] = centre[c] - radius;
+                side[c] = 2.0 * radius;
+            }
+            (corner, side)
+        };
+        match &self.shape {
+            Shape::Box { origin, size } => {
+                let mut side = [0.0; 3];
+                for (c, &length) in size.iter().enumerate().take(3) {
+                    side[c] = positive("a side of the body", length)?;
+                }
+                Ok((*origin, side, [true; 3]))
+            }
+            Shape::Disc { centre, radius } => {
+                let (corner, side) =
+                    centred(centre, positive("the radius of the disc", *radius)?, 2);
+                Ok((corner, side, [false; 3]))
+            }
+            Shape::Ball { centre, radius } => {
+                let (corner, side) =
+                    centred(centre, positive("the radius of the ball", *radius)?, 3);
+                Ok((corner, side, [false; 3]))
+            }
+            Shape::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let radius = positive("the radius of the cylinder", *radius)?;
+                let (mut corner, mut side) = centred(base, radius, 3);
+                corner[*axis] = base[*axis];
+                side[*axis] = positive("the height of the cylinder", *height)?;
+                let mut whole = [false; 3];
+                whole[*axis] = true;
+                Ok((corner, side, whole))
+            }
+        }
+    }
+
+    /// Makes the cloud, x fastest.
+    pub fn points(&self) -> Result<PointCloud> {
+        let spacing = positive("the spacing", self.spacing)?;
+        let dimension = self.dimension();
+        if !(1..=3).contains(&dimension) {
+            return Err(PericlesError::WrongDimension {
+                what: "a box with this number of sides",
+                needed: "1, 2 or 3",
+                dimension,
+            });
+        }
+        let (corner, side, whole) = self.frame()?;
+        let mut shape = [1usize; 3];
+        let mut origin = [0.0; 3];
+        let mut cells = 1.0;
+        for c in 0..dimension {
+            let ratio = side[c] / spacing;
+            let count = if whole[c] {
+                let count = ratio.round();
+                if count < 1.0 || (ratio - count).abs() > 1e-6 * ratio.max(1.0) {
+                    return Err(PericlesError::NotWholeCells {
+                        length: side[c],
+                        spacing,
+                        below: ratio.floor().max(1.0) * spacing,
+                        above: ratio.ceil() * spacing,
+                    });
+                }
+                count
+            } else {
+                (ratio - 1e-9).ceil().max(1.0)
+            };
+            cells *= count;
+            if cells > CELL_LIMIT as f64 {
+                return Err(PericlesError::TooManyPoints {
+                    cells,
+                    limit: CELL_LIMIT,
+                });
+            }
+            shape[c] = count as usize;
+            // Round bodies are centred on their bounding box, so that the cells have the body's symmetry.
+            let slack = 0.5 * (side[c] - count * spacing);
+            origin[c] = corner[c] + slack + 0.5 * spacing;
+        }
+        let mut end = corner;
+        for c in 0..dimension {
+            end[c] += side[c];
+        }
+        let bounds = [corner, end];
+        let outline = self.outline();
+        let tolerance = 1e-9 * spacing;
+        let total = shape.iter().product::<usize>();
+        let mut lattice = Lattice {
+            spacing,
+            shape,
+            node: Vec::new(),
+        };
+        let simple = outline == Region::All && self.holes.is_empty();
+        lattice.node = (0..total as u32)
+            .filter(|&node| {
+                if simple {
+                    return true;
+                }
+                let cell = lattice.coordinates(node);
+                let mut centre = [0.0; 3];
+                for c in 0..dimension {
+                    centre[c] = origin[c] + f64::from(cell[c]) * spacing;
+                }
+                outline.contains(centre, &bounds, tolerance)
+                    && !self
+                        .holes
+                        .iter()
+                        .any(|hole| hole.contains(centre, &bounds, tolerance))
+            })
+            .collect();
+        PointCloud::on_lattice(dimension, origin, lattice, self.section)
+    }
+
+    fn outline(&self) -> Region {
+        match &self.shape {
+            Shape::Box { .. } => Region::All,
+            Shape::Disc { centre, radius } | Shape::Ball { centre, radius } => Region::Ball {
+                centre: *centre,
+                radius: *radius,
+            },
+            Shape::Cylinder {
+                base, axis, radius, ..
+            } => Region::Cylinder {
+                centre: *base,
+                axis: *axis,
+                radius: *radius,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn volume_of_round_bodies_converges() {
+        let disc = |spacing| Grid {
+            shape: Shape::Disc {
+                centre: [1.0, 2.0, 0.0],
+                radius: 1.0,
+            },
+            spacing,
+            section: 0.5,
+            holes: vec![Region::Ball {
+                centre: [1.0, 2.0, 0.0],
+                radius: 0.5,
+            }],
+        };
+        let volume: f64 = disc(0.01).points().unwrap().volumes().iter().sum();
+        let exact = 0.5 * std::f64::consts::PI * 0.75;
+        assert!((volume / exact - 1.0).abs() < 2e-3, "{volume} {exact}");
+    }
+
+    #[test]
+    fn cylinder_is_symmetric_about_its_axis() {
+        let cylinder = Grid {
+            shape: Shape::Cylinder {
+                base: [0.0, 0.0, -1.0],
+                axis: 2,
+                radius: 0.37,
+                height: 2.0,
+            },
+            spacing: 0.1,
+            section: 1.0,
+            holes: vec![],
+        };
+        let points = cylinder.points().unwrap();
+        for c in 0..3 {
+            let mean = points.axis(c).iter().sum::<f64>() / points.len() as f64;
+            assert!(mean.abs() < 1e-12, "axis {c}: {mean}");
+        }
+        assert_eq!(points.len() % 20, 0);
+    }
+
+    #[test]
+    fn sides_must_be_whole_cells() {
+        let grid = |side| Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![side],
+            },
+            spacing: 0.3,
+            section: 1.0,
+            holes: vec![],
+        };
+        assert_eq!(grid(0.9).points().unwrap().len(), 3);
+        let error = grid(1.0).points().unwrap_err();
+        assert!(matches!(error, PericlesError::NotWholeCells { .. }));
+        assert!(grid(f64::NAN).points().is_err());
+        assert!(grid(1e30).points().is_err());
+    }
+
+    #[test]
+    fn a_hole_that_takes_all_is_refused() {
+        let grid = Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![1.0, 1.0],
+            },
+            spacing: 0.5,
+            section: 1.0,
+            holes: vec![Region::All],
+        };
+        assert!(matches!(grid.points(), Err(PericlesError::EmptyBody)));
+    }
+}
