@@ -1,0 +1,498 @@
+//! Tables of numbers as comma-separated text: one header row with units, then one row per output.
+//!
+//! ```text
+//! step,time [s],kinetic [J],tip x [m]
+//! 0,0.0,0.0,
+//! 400,1e-6,3.2147,0.05
+//! ```
+//! Real numbers are written with the fewest digits that read back to the same number; NaN is an empty cell. A header cell that
+//! holds a comma or a quote is quoted as in RFC 4180. A table can be cut back to a length known from a checkpoint and continued
+//! there, so that the file of a stopped and resumed run equals that of an uninterrupted one.
+//!
+//! ```
+//! use pericles_io::{Column, CsvTable, read_csv};
+//! let folder = tempfile::tempdir().unwrap();
+//! let path = folder.path().join("history.csv");
+//! let mut table = CsvTable::create(&path, &[Column::integer("step"), Column::real("time", "s")]).unwrap();
+//! table.append(&[400.into(), 1e-6.into()]).unwrap();
+//! table.flush().unwrap();
+//! let read = read_csv(&path).unwrap();
+//! assert_eq!(read.column("time"), Some(&[1e-6][..]));
+//! ```
+
+use std::fmt::Write as _;
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use crate::IoError;
+
+/// One column of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    name: String,
+    unit: String,
+    integer: bool,
+}
+
+impl Column {
+    /// A column of real numbers; the unit is empty for a pure number.
+    pub fn real(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            integer: false,
+        }
+    }
+
+    /// A column of whole numbers.
+    pub fn integer(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: String::new(),
+            integer: true,
+        }
+    }
+
+    /// The name, without the unit.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The unit; empty for a pure number.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    fn header(&self) -> String {
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} [{}]", self.name, self.unit)
+        }
+    }
+
+    fn from_header(cell: &str) -> Self {
+        match cell
+            .strip_suffix(']')
+            .and_then(|rest| rest.rsplit_once(" ["))
+        {
+            Some((name, unit)) => Self::real(name, unit),
+            None => Self::real(cell, ""),
+        }
+    }
+}
+
+/// One value of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cell {
+    /// A real number; NaN leaves the cell empty.
+    Real(f64),
+    /// A whole number.
+    Integer(i64),
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Self::Real(value)
+    }
+}
+
+impl From<i64> for Cell {
+    fn from(value: i64) -> Self {
+        Self::Integer(value)
+    }
+}
+
+/// A table that grows row by row.
+#[derive(Debug)]
+pub struct CsvTable {
+    path: PathBuf,
+    file: BufWriter<File>,
+    integers: Vec<bool>,
+    length: u64,
+    row: String,
+}
+
+impl CsvTable {
+    /// Creates the table, replacing a file of that name, and writes the header.
+    pub fn create(path: impl Into<PathBuf>, columns: &[Column]) -> Result<Self, IoError> {
+        let path = path.into();
+        let header = header_row(&path, columns)?;
+        let file = File::create(&path).map_err(|source| IoError::writing(&path, source))?;
+        let mut table = Self::new(path, file, columns, 0);
+        table.row = header;
+        table.write_row()?;
+        table.flush()?;
+        Ok(table)
+    }
+
+    /// Opens a table to go on after its first `length` bytes, which [`len_bytes`](Self::len_bytes) told earlier; the rest is cut off.
+    ///
+    /// Refused when the header differs, the file is shorter, or the cut is not at the end of a row.
+    pub fn reopen(
+        path: impl Into<PathBuf>,
+        columns: &[Column],
+        length: u64,
+    ) -> Result<Self, IoError> {
+        let path = path.into();
+        let header = header_row(&path, columns)?;
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(&path)
+            .map_err(|source| match source.kind() {
+                std::io::ErrorKind::NotFound => IoError::reading(&path, source),
+                _ => IoError::writing(&path, source),
+            })?;
+        let reading = |source| IoError::reading(&path, source);
+
+        let found = file.metadata().map_err(reading)?.len();
+        if found < length {
+            let reason = format!("it has {found} bytes, {length} were written before the stop");
+            return Err(IoError::damaged(&path, reason));
+        }
+        let mut start = Vec::new();
+        (&mut file)
+            .take(header.len() as u64)
+            .read_to_end(&mut start)
+            .map_err(reading)?;
+        if start != header.as_bytes() || length < header.len() as u64 {
+            let reason = format!("its first row is not {:?}", header.trim_end());
+            return Err(IoError::damaged(&path, reason));
+        }
+        let mut last = [0];
+        file.seek(SeekFrom::Start(length - 1)).map_err(reading)?;
+        file.read_exact(&mut last).map_err(reading)?;
+        if last != *b"\n" {
+            let reason = format!("no row ends at byte {length}");
+            return Err(IoError::damaged(&path, reason));
+        }
+        let writing = |source| IoError::writing(&path, source);
+        file.set_len(length).map_err(writing)?;
+        file.seek(SeekFrom::End(0)).map_err(writing)?;
+        Ok(Self::new(path, file, columns, length))
+    }
+
+    fn new(path: PathBuf, file: File, columns: &[Column], length: u64) -> Self {
+        Self {
+            path,
+            file: BufWriter::new(file),
+            integers: columns.iter().map(|column| column.integer).collect(),
+            length,
+            row: String::new(),
+        }
+    }
+
+    /// Adds a row: one cell per column, whole numbers where the column holds whole numbers.
+    pub fn append(&mut self, cells: &[Cell]) -> Result<(), IoError> {
+        if cells.len() != self.integers.len() {
+            return Err(IoError::Shape {
+                path: self.path.clone(),
+                what: "a row".into(),
+                expected: self.integers.len(),
+                given: cells.len(),
+            });
+        }
+        self.row.clear();
+        for (number, (cell, &integer)) in cells.iter().zip(&self.integers).enumerate() {
+            if number > 0 {
+                self.row.push(',');
+            }
+            // Writing into a String cannot fail.
+            let _ = match *cell {
+                Cell::Integer(value) if integer => write!(self.row, "{value}"),
+                Cell::Real(value) if !integer && value.is_nan() => Ok(()),
+                Cell::Real(value) if !integer => write!(self.row, "{value:?}"),
+                _ => {
+                    let kind = if integer { "whole" } else { "real" };
+                    return Err(IoError::Unsuitable {
+                        path: self.path.clone(),
+                        reason: format!("column {} takes {kind} numbers", number + 1),
+                    });
+                }
+            };
+        }
+        self.row.push('\n');
+        self.write_row()
+    }
+
+    /// Hands everything written so far to the system, so that other programs see it.
+    pub fn flush(&mut self) -> Result<(), IoError> {
+        self.file
+            .flush()
+            .map_err(|source| IoError::writing(&self.path, source))
+    }
+
+    /// Flushes and waits until the rows are on the disk; do so before a checkpoint that remembers the length.
+    pub fn sync(&mut self) -> Result<(), IoError> {
+        self.flush()?;
+        self.file
+            .get_ref()
+            .sync_data()
+            .map_err(|source| IoError::writing(&self.path, source))
+    }
+
+    /// The length of the table so far, rows not yet flushed included.
+    pub fn len_bytes(&self) -> u64 {
+        self.length
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn write_row(&mut self) -> Result<(), IoError> {
+        self.file
+            .write_all(self.row.as_bytes())
+            .map_err(|source| IoError::writing(&self.path, source))?;
+        self.length += self.row.len() as u64;
+        Ok(())
+    }
+}
+
+/// A table read back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CsvData {
+    /// Names and units.
+    pub columns: Vec<Column>,
+    /// One vector per column, all of the same length; empty cells are NaN.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl CsvData {
+    /// The values of the first column of this name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let index = self.columns.iter().position(|column| column.name == name)?;
+        Some(&self.values[index])
+    }
+
+    /// The number of rows below the header.
+    pub fn rows(&self) -> usize {
+        self.values.first().map_or(0, Vec::len)
+    }
+}
+
+/// Reads a table of numbers; columns of whole numbers come as reals too.
+pub fn read_csv(path: impl AsRef<Path>) -> Result<CsvData, IoError> {
+    let path = path.as_ref();
+    let text = fs::read_to_string(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::InvalidData => IoError::damaged(path, "it is not UTF-8 text"),
+        _ => IoError::reading(path, source),
+    })?;
+    let mut lines = text.lines().enumerate();
+    let header = lines
+        .next()
+        .and_then(|(_, line)| split_quoted(line))
+        .ok_or_else(|| IoError::damaged(path, "it has no header row"))?;
+    let columns: Vec<_> = header
+        .iter()
+        .map(|cell| Column::from_header(cell))
+        .collect();
+    let mut values = vec![Vec::new(); columns.len()];
+    for (index, line) in lines {
+        let row = index + 1;
+        let count = line.split(',').count();
+        if count != columns.len() {
+            let expected = columns.len();
+            let reason = format!("row {row} has {count} cells instead of {expected}");
+            return Err(IoError::damaged(path, reason));
+        }
+        for (cell, column) in line.split(',').zip(&mut values) {
+            column.push(match cell.trim() {
+                "" => f64::NAN,
+                text => text.parse().map_err(|_| {
+                    IoError::damaged(
+                        path,
+                        format!("row {row} holds {text:?}, which is no number"),
+                    )
+                })?,
+            });
+        }
+    }
+    Ok(CsvData { columns, values })
+}
+
+fn header_row(path: &Path, columns: &[Column]) -> Result<String, IoError> {
+    let cells: Vec<_> = columns.iter().map(Column::header).collect();
+    if cells.is_empty() || cells.iter().any(|cell| cell.contains(['\n', '\r'])) {
+        return Err(IoError::Unsuitable {
+            path: path.to_path_buf(),
+            reason: "a table needs at least one column, and names of one line".into(),
+        });
+    }
+    let quoted: Vec<_> = cells
+        .iter()
+        .map(|cell| {
+            if cell.contains(['"', ',']) {
+                format!("\"{}\"", cell.replace('"', "\"\""))
+            } else {
+                cell.clone()
+            }
+        })
+        .collect();
+    Ok(quoted.join(",") + "\n")
+}
+
+/// Splits a row with quoted cells; `None` when a quote is left open.
+fn split_quoted(line: &str) -> Option<Vec<String>> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    let mut characters = line.chars().peekable();
+    while let Some(character) = characters.next() {
+        match character {
+            '"' if quoted && characters.peek() == Some(&'"') => {
+                characters.next();
+                cells.last_mut()?.push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            _ => cells.last_mut()?.push(character),
+        }
+    }
+    (!quoted).then_some(cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn columns() -> [Column; 3] {
+        [
+            Column::integer("step"),
+            Column::real("time", "s"),
+            Column::real("reaction \"left\", x", "N"),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn what_is_written_is_read_bit_for_bit(rows in prop::collection::vec(
+            (-(1_i64 << 53)..(1 << 53), any::<f64>(), any::<f64>()), 0..20))
+        {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("t.csv");
+            let mut table = CsvTable::create(&path, &columns()).unwrap();
+            for &(step, time, force) in &rows {
+                table.append(&[step.into(), time.into(), force.into()]).unwrap();
+            }
+            table.flush().unwrap();
+            prop_assert_eq!(table.len_bytes(), fs::metadata(&path).unwrap().len());
+            let read = read_csv(&path).unwrap();
+            prop_assert_eq!(read.rows(), rows.len());
+            prop_assert_eq!(read.columns[2].unit(), "N");
+            for (row, &(step, time, force)) in rows.iter().enumerate() {
+                prop_assert_eq!(read.column("step").unwrap()[row], step as f64);
+                for (name, value) in [("time", time), ("reaction \"left\", x", force)] {
+                    let found = read.column(name).unwrap()[row];
+                    // every NaN is written alike
+                    prop_assert!(found.to_bits() == value.to_bits() || (found.is_nan() && value.is_nan()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_text_is_what_the_module_page_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        let mut table = CsvTable::create(&path, &columns()).unwrap();
+        let row = [400.into(), 1e-6.into(), f64::NAN.into()];
+        table.append(&row).unwrap();
+        table
+            .append(&[(-1).into(), 0.1.into(), (-0.0).into()])
+            .unwrap();
+        table.sync().unwrap();
+        assert_eq!(
+            fs::read_to_string(&path).unwrap(),
+            "step,time [s],\"reaction \"\"left\"\", x [N]\"\n400,1e-6,\n-1,0.1,-0.0\n"
+        );
+    }
+
+    #[test]
+    fn a_resumed_table_equals_an_uninterrupted_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let append = |table: &mut CsvTable, steps: std::ops::Range<i64>| {
+            for step in steps {
+                let time = step as f64 * 0.3;
+                table
+                    .append(&[step.into(), time.into(), time.sin().into()])
+                    .unwrap();
+            }
+        };
+        let whole = folder.path().join("whole.csv");
+        append(&mut CsvTable::create(&whole, &columns()).unwrap(), 0..100);
+
+        let parts = folder.path().join("parts.csv");
+        let mut table = CsvTable::create(&parts, &columns()).unwrap();
+        append(&mut table, 0..37);
+        let length = table.len_bytes();
+        append(&mut table, 37..61);
+        drop(table);
+        append(
+            &mut CsvTable::reopen(&parts, &columns(), length).unwrap(),
+            37..100,
+        );
+        assert_eq!(fs::read(&whole).unwrap(), fs::read(&parts).unwrap());
+    }
+
+    #[test]
+    fn a_table_that_does_not_fit_is_not_reopened() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        let mut table = CsvTable::create(&path, &columns()).unwrap();
+        let header = table.len_bytes();
+        table.append(&[1.into(), 2.5.into(), 3.5.into()]).unwrap();
+        let length = table.len_bytes();
+        drop(table);
+        let refused = |columns: &[Column], length| {
+            let error = CsvTable::reopen(&path, columns, length).unwrap_err();
+            assert!(matches!(error, IoError::Damaged { .. }), "{error}");
+            assert_eq!(fs::metadata(&path).unwrap().len(), header + 10);
+        };
+        refused(&columns(), length + 1);
+        refused(&columns(), length - 1);
+        refused(&columns(), 0);
+        refused(&columns(), header - 1);
+        refused(&columns()[..2], length);
+        CsvTable::reopen(&path, &columns(), length).unwrap();
+        let gone = CsvTable::reopen(folder.path().join("gone.csv"), &columns(), 1);
+        assert!(matches!(gone, Err(IoError::NotFound { .. })));
+    }
+
+    #[test]
+    fn rows_of_the_wrong_shape_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut table = CsvTable::create(folder.path().join("t.csv"), &columns()).unwrap();
+        let before = table.len_bytes();
+        let short = table.append(&[1.into()]);
+        assert!(matches!(
+            short,
+            Err(IoError::Shape {
+                expected: 3,
+                given: 1,
+                ..
+            })
+        ));
+        let kinds = table.append(&[1.0.into(), 1.0.into(), 1.0.into()]);
+        assert!(matches!(kinds, Err(IoError::Unsuitable { .. })));
+        assert_eq!(table.len_bytes(), before);
+    }
+
+    #[test]
+    fn a_table_with_a_broken_row_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        for text in ["", "a,b\n1\n", "a\nx\n", "\"a\n1\n"] {
+            fs::write(&path, text).unwrap();
+            let read = read_csv(&path);
+            assert!(
+                matches!(read, Err(IoError::Damaged { .. })),
+                "{text:?} {read:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Files of Pericles.
+
+mod atomic;
+mod csv;
+mod error;
+mod folder;
+mod vtk;
+
+pub use atomic::write_atomically;
+pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
+pub use error::IoError;
+pub use folder::OutputFolder;
+pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -1,0 +1,419 @@
+//! The `.vtu` file of one output.
+
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use super::blocks::write_array;
+use super::escaped;
+use crate::{IoError, write_atomically};
+
+/// The cell type of a single point in VTK.
+const VTK_VERTEX: u8 = 1;
+
+/// Room for an offset: `offset="` + 20 digits of the largest u64 + `"`.
+const OFFSET_WIDTH: usize = 29;
+
+/// A named field on the points.
+#[derive(Debug, Clone, Copy)]
+pub struct VtkField<'a> {
+    name: &'a str,
+    values: Values<'a>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Values<'a> {
+    Real {
+        data: &'a [f64],
+        vector: bool,
+        single: bool,
+    },
+    Int(&'a [i32]),
+    Byte(&'a [u8]),
+}
+
+impl<'a> VtkField<'a> {
+    /// One real number per point.
+    pub fn scalar(name: &'a str, data: &'a [f64]) -> Self {
+        Self::real(name, data, false)
+    }
+
+    /// A vector per point: one, two or three slices of n values, one after the other; missing components are written as zero.
+    pub fn vector(name: &'a str, data: &'a [f64]) -> Self {
+        Self::real(name, data, true)
+    }
+
+    fn real(name: &'a str, data: &'a [f64], vector: bool) -> Self {
+        let single = false;
+        let values = Values::Real {
+            data,
+            vector,
+            single,
+        };
+        Self { name, values }
+    }
+
+    /// One whole number per point.
+    pub fn integers(name: &'a str, data: &'a [i32]) -> Self {
+        let values = Values::Int(data);
+        Self { name, values }
+    }
+
+    /// One small number per point, for masks and kinds.
+    pub fn bytes(name: &'a str, data: &'a [u8]) -> Self {
+        let values = Values::Byte(data);
+        Self { name, values }
+    }
+
+    /// Rounds real numbers to single precision in the file, which halves their size.
+    pub fn in_single_precision(mut self) -> Self {
+        if let Values::Real { single, .. } = &mut self.values {
+            *single = true;
+        }
+        self
+    }
+
+    fn data_type(&self) -> &'static str {
+        match self.values {
+            Values::Real { single: false, .. } => "Float64",
+            Values::Real { single: true, .. } => "Float32",
+            Values::Int(_) => "Int32",
+            Values::Byte(_) => "UInt8",
+        }
+    }
+
+    fn is_vector(&self) -> bool {
+        matches!(self.values, Values::Real { vector: true, .. })
+    }
+
+    fn check(&self, path: &Path, points: usize) -> Result<(), IoError> {
+        let given = match self.values {
+            Values::Real { data, .. } => data.len(),
+            Values::Int(data) => data.len(),
+            Values::Byte(data) => data.len(),
+        };
+        let fits = if self.is_vector() {
+            (1..=3).any(|components| given == components * points)
+        } else {
+            given == points
+        };
+        if !fits {
+            return Err(IoError::Shape {
+                path: path.to_path_buf(),
+                what: format!("field {:?}", self.name),
+                expected: points,
+                given,
+            });
+        }
+        Ok(())
+    }
+
+    fn write(&self, out: &mut (impl Write + Seek), points: usize) -> io::Result<()> {
+        match self.values {
+            Values::Int(data) => write_array(out, points, |i| data[i].to_le_bytes()),
+            Values::Byte(data) => write_array(out, points, |i| [data[i]]),
+            Values::Real {
+                data,
+                vector,
+                single,
+            } => {
+                let count = if vector { 3 * points } else { points };
+                let value = |k| {
+                    if vector {
+                        interleaved(data, points, k)
+                    } else {
+                        data[k]
+                    }
+                };
+                if single {
+                    write_array(out, count, |k| (value(k) as f32).to_le_bytes())
+                } else {
+                    write_array(out, count, |k| value(k).to_le_bytes())
+                }
+            }
+        }
+    }
+}
+
+/// Entry `k` of (x, y, z) of point 0, of point 1 …, from component-major data; zero where a component is missing.
+fn interleaved(data: &[f64], points: usize, k: usize) -> f64 {
+    data.get(k % 3 * points + k / 3).copied().unwrap_or(0.0)
+}
+
+/// The points of one output and the fields on them.
+#[derive(Debug, Clone)]
+pub struct VtuFile<'a> {
+    dimension: usize,
+    positions: &'a [f64],
+    time: f64,
+    fields: Vec<VtkField<'a>>,
+}
+
+impl<'a> VtuFile<'a> {
+    /// Points at `positions`: x of all points, then y in two and z in three dimensions.
+    pub fn new(dimension: usize, positions: &'a [f64]) -> Self {
+        Self {
+            dimension,
+            positions,
+            time: 0.0,
+            fields: Vec::new(),
+        }
+    }
+
+    /// The time of the output in seconds.
+    pub fn time(mut self, time: f64) -> Self {
+        self.time = time;
+        self
+    }
+
+    /// Adds a field; the names must differ.
+    pub fn field(mut self, field: VtkField<'a>) -> Self {
+        self.fields.push(field);
+        self
+    }
+
+    /// Writes the file, whole or not at all.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
+        let path = path.as_ref();
+        let points = self.check(path)?;
+        write_atomically(path, |out| self.write_into(out, points))
+    }
+
+    /// Checks that everything fits and returns the number of points.
+    fn check(&self, path: &Path) -> Result<usize, IoError> {
+        let unsuitable = |reason: String| IoError::Unsuitable {
+            path: path.to_path_buf(),
+            reason,
+        };
+        if !(1..=3).contains(&self.dimension) {
+            let given = self.dimension;
+            return Err(unsuitable(format!(
+                "points of dimension {given}; 1, 2 and 3 are allowed"
+            )));
+        }
+        if !self.time.is_finite() {
+            return Err(unsuitable(format!("the time {} is not finite", self.time)));
+        }
+        let points = self.positions.len() / self.dimension;
+        if points * self.dimension != self.positions.len() {
+            return Err(IoError::Shape {
+                path: path.to_path_buf(),
+                what: "positions".into(),
+                expected: points * self.dimension,
+                given: self.positions.len(),
+            });
+        }
+        for (number, field) in self.fields.iter().enumerate() {
+            field.check(path, points)?;
+            let name = field.name;
+            if name.is_empty() || name.chars().any(char::is_control) {
+                return Err(unsuitable(format!(
+                    "field name {name:?}; use a name of one line"
+                )));
+            }
+            if self.fields[..number].iter().any(|other| other.name == name) {
+                return Err(unsuitable(format!("two fields are called {name:?}")));
+            }
+        }
+        Ok(points)
+    }
+
+    fn write_into(&self, out: &mut (impl Write + Seek), points: usize) -> io::Result<()> {
+        // Places in the file where the offsets go, in the order of the appended arrays.
+        let mut places = Vec::new();
+        write!(
+            out,
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+             compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n\
+             <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:?}</DataArray>\n</FieldData>\n\
+             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n<PointData>\n",
+            self.time
+        )?;
+        for field in &self.fields {
+            let components = if field.is_vector() { 3 } else { 1 };
+            let name = escaped(field.name);
+            places.push(announce(out, field.data_type(), &name, components)?);
+        }
+        write!(out, "</PointData>\n<Points>\n")?;
+        places.push(announce(out, "Float64", "Points", 3)?);
+        write!(out, "</Points>\n<Cells>\n")?;
+        for (data_type, name) in [
+            ("Int64", "connectivity"),
+            ("Int64", "offsets"),
+            ("UInt8", "types"),
+        ] {
+            places.push(announce(out, data_type, name, 1)?);
+        }
+        write!(
+            out,
+            "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+        )?;
+
+        let start = out.stream_position()?;
+        let mut offsets = Vec::with_capacity(places.len());
+        for field in &self.fields {
+            offsets.push(out.stream_position()? - start);
+            field.write(out, points)?;
+        }
+        offsets.push(out.stream_position()? - start);
+        write_array(out, 3 * points, |k| {
+            interleaved(self.positions, points, k).to_le_bytes()
+        })?;
+        offsets.push(out.stream_position()? - start);
+        write_array(out, points, |i| (i as i64).to_le_bytes())?;
+        offsets.push(out.stream_position()? - start);
+        write_array(out, points, |i| (i as i64 + 1).to_le_bytes())?;
+        offsets.push(out.stream_position()? - start);
+        write_array(out, points, |_| [VTK_VERTEX])?;
+        write!(out, "\n</AppendedData>\n</VTKFile>\n")?;
+
+        for (place, offset) in places.into_iter().zip(offsets) {
+            out.seek(SeekFrom::Start(place))?;
+            write!(out, "offset=\"{offset}\"")?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes the element that announces an appended array, and returns where its offset goes.
+fn announce(
+    out: &mut (impl Write + Seek),
+    data_type: &str,
+    name: &str,
+    components: usize,
+) -> io::Result<u64> {
+    write!(out, "<DataArray type=\"{data_type}\" Name=\"{name}\" ")?;
+    // Said of a scalar, some readers make n × 1 matrices of it.
+    if components > 1 {
+        write!(out, "NumberOfComponents=\"{components}\" ")?;
+    }
+    write!(out, "format=\"appended\" ")?;
+    let place = out.stream_position()?;
+    writeln!(out, "{:OFFSET_WIDTH$}/>", "")?;
+    Ok(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::decode::Vtu;
+    use super::*;
+    use proptest::prelude::*;
+    use std::fs;
+
+    fn wave(count: usize, phase: f64) -> Vec<f64> {
+        (0..count)
+            .map(|i| (i as f64 * 0.37 + phase).sin())
+            .collect()
+    }
+
+    #[test]
+    fn every_array_is_read_back_over_several_blocks() {
+        // 3 · 8 · 7001 bytes: six blocks, the last one part full
+        let n = 7001;
+        let (x, u, e) = (wave(2 * n, 0.0), wave(2 * n, 1.0), wave(n, 2.0));
+        let kind: Vec<i32> = (0..n as i32).map(|i| 7 - i).collect();
+        let mask: Vec<u8> = (0..n).map(|i| (i % 251) as u8).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.vtu");
+        VtuFile::new(2, &x)
+            .time(4.6e-5)
+            .field(VtkField::vector("Displacement", &u))
+            .field(VtkField::scalar("E < \"W\" & more", &e))
+            .field(VtkField::scalar("single", &e).in_single_precision())
+            .field(VtkField::integers("kind", &kind))
+            .field(VtkField::bytes("mask", &mask))
+            .write(&path)
+            .unwrap();
+
+        let vtu = Vtu::read(&path);
+        assert_eq!(vtu.time, 4.6e-5);
+        assert_eq!(vtu.points, n);
+        let three = |data: &[f64]| -> Vec<f64> {
+            (0..n).flat_map(|i| [data[i], data[n + i], 0.0]).collect()
+        };
+        assert_eq!(vtu.f64("Points"), three(&x));
+        assert_eq!(vtu.f64("Displacement"), three(&u));
+        assert_eq!(vtu.f64("E &lt; &quot;W&quot; &amp; more"), e);
+        let rounded: Vec<u8> = e.iter().flat_map(|&v| (v as f32).to_le_bytes()).collect();
+        assert_eq!(vtu.raw("single", "Float32"), rounded);
+        let kinds: Vec<u8> = kind.iter().flat_map(|v| v.to_le_bytes()).collect();
+        assert_eq!(vtu.raw("kind", "Int32"), kinds);
+        assert_eq!(vtu.raw("mask", "UInt8"), mask);
+        assert_eq!(vtu.raw("types", "UInt8"), vec![1; n]);
+        let count =
+            |from: i64| -> Vec<u8> { (from..from + n as i64).flat_map(i64::to_le_bytes).collect() };
+        assert_eq!(vtu.raw("connectivity", "Int64"), count(0));
+        assert_eq!(vtu.raw("offsets", "Int64"), count(1));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn bits_survive_for_any_size_and_dimension(
+            dimension in 1_usize..=3, n in prop_oneof![0_usize..40, 4090_usize..4102, 1360_usize..1370],
+            components in 1_usize..=3, seed in any::<u64>())
+        {
+            let mut state = seed;
+            let mut bits = || {
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                f64::from_bits(state ^ (state >> 29))
+            };
+            let x: Vec<f64> = (0..dimension * n).map(|_| bits()).collect();
+            let v: Vec<f64> = (0..components * n).map(|_| bits()).collect();
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("a.vtu");
+            VtuFile::new(dimension, &x).field(VtkField::vector("v", &v)).write(&path).unwrap();
+            let vtu = Vtu::read(&path);
+            for (name, data, count) in [("Points", &x, dimension), ("v", &v, components)] {
+                let found = vtu.f64(name);
+                prop_assert_eq!(found.len(), 3 * n);
+                for i in 0..n {
+                    for c in 0..3 {
+                        let expected = if c < count { data[c * n + i] } else { 0.0 };
+                        prop_assert_eq!(found[3 * i + c].to_bits(), expected.to_bits());
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn equal_data_give_equal_bytes_in_any_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let x = wave(300, 0.0);
+        let write = |name: &str| {
+            let path = folder.path().join(name);
+            let energy = wave(100, 1.0);
+            let file = VtuFile::new(3, &x).field(VtkField::scalar("W", &energy));
+            file.write(&path).unwrap();
+            fs::read(path).unwrap()
+        };
+        assert_eq!(write("first.vtu"), write("another_name.vtu"));
+    }
+
+    #[test]
+    fn fields_that_do_not_fit_are_refused_and_nothing_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.vtu");
+        let (x, long) = (wave(6, 0.0), wave(4, 0.0));
+        let good = wave(3, 0.0);
+        let file = || VtuFile::new(2, &x);
+        for refused in [
+            file().field(VtkField::scalar("a", &long)),
+            file().field(VtkField::vector("a", &long)),
+            file().field(VtkField::bytes("a", &[1, 2])),
+            file().field(VtkField::scalar("", &good)),
+            file()
+                .field(VtkField::scalar("a", &good))
+                .field(VtkField::scalar("a", &good)),
+            file().time(f64::NAN),
+            VtuFile::new(4, &x),
+            VtuFile::new(2, &x[..5]),
+        ] {
+            let error = refused.write(&path).unwrap_err();
+            let data = matches!(error, IoError::Shape { .. } | IoError::Unsuitable { .. });
+            assert!(data && !error.is_output_problem(), "{error}");
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
