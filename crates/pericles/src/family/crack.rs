@@ -54,21 +54,11 @@ impl Crack {
         }
     }
 
-    /// Some point of the crack, from which its tip's advance is measured: the middle.
-    pub fn centre(&self) -> Point {
-        match self {
-            Self::Section { x } => [*x, 0.0, 0.0],
-            Self::Segment { from, to } => [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]), 0.0],
-            Self::Polygon { corners } => {
-                let mut mean = [0.0; 3];
-                for corner in corners {
-                    for c in 0..3 {
-                        mean[c] += corner[c] / corners.len() as f64;
-                    }
-                }
-                mean
-            }
-            Self::Disc { centre, .. } => *centre,
+    /// Distance of a point from the crack's surface, m; that to infinity for a crack without extent.
+    pub fn distance(&self, point: Point) -> f64 {
+        match self.cutter(EndRule::Closed, 0.0) {
+            Ok(cutter) => cutter.distance(point),
+            Err(_) => f64::INFINITY,
         }
     }
 
@@ -215,7 +205,8 @@ impl Frame {
             .iter()
             .map(|&p| norm(sub(p, first)))
             .fold(0.0, f64::max);
-        if corners.len() < 3 || !(norm(normal) > 1e-12 * size * size) {
+        let spans_area = norm(normal) > 1e-12 * size * size;
+        if corners.len() < 3 || !spans_area {
             return Err(PericlesError::BadCrack {
                 reason: "a polygon needs at least three corners that span an area",
             });
@@ -273,14 +264,25 @@ impl Cutter {
         }
     }
 
-    /// Whether a place of the crack's plane belongs to the crack.
-    fn covers(&self, place: [f64; 2]) -> bool {
-        let depth = match &self.outline {
-            Outline::Everything => return true,
+    /// Distance of a point from the surface.
+    fn distance(&self, point: Point) -> f64 {
+        let beside = (-self.depth(self.frame.place(point))).max(0.0);
+        self.frame.height(point).hypot(beside)
+    }
+
+    /// Distance of a place of the crack's plane from the border, positive on the crack.
+    fn depth(&self, place: [f64; 2]) -> f64 {
+        match &self.outline {
+            Outline::Everything => f64::INFINITY,
             Outline::Interval(length) => place[0].min(length - place[0]),
             Outline::Disc(radius) => radius - place[0].hypot(place[1]),
             Outline::Polygon(corners) => polygon_depth(place, corners),
-        };
+        }
+    }
+
+    /// Whether a place of the crack's plane belongs to the crack.
+    fn covers(&self, place: [f64; 2]) -> bool {
+        let depth = self.depth(place);
         match self.rule {
             EndRule::Closed => depth >= -self.tolerance,
             EndRule::Open => depth > self.tolerance,

@@ -3,10 +3,12 @@
 //! A point's family are the points within the horizon δ. [`BondList`] stores all families; [`VolumeCorrection`] weighs cells that the
 //! horizon cuts; [`Crack`] removes bonds before the run starts.
 
+mod bonds;
 mod crack;
-
+mod search;
 mod volume;
 
-pub use crack::{Crack, EndRule};
-
+pub use bonds::{BondList, Cut, LANES};
+pub use crack::{Crack, Cutter, EndRule};
+pub use search::pairs_within;
 pub use volume::VolumeCorrection;

@@ -1,9 +1,189 @@
-//! placeholder
+//! Pair forces of bonds.
+
+use crate::operator::lanes::{Real, dot};
+
 /// Which pair force a material uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PairLaw {
-    /// Linear in the relative displacement: stretch s = ξ·η/|ξ|², direction ξ/|ξ|.
+    /// [`LinearBond`].
     Linear,
-    /// Stretch s = (|ξ+η| − |ξ|)/|ξ| along the deformed bond.
+    /// [`BondStretch`].
     BondStretch,
+}
+
+/// The pair force of a bond with reference vector ξ, relative displacement η and unit stiffness k = c α(|ξ|).
+///
+/// Written once for one bond or eight side by side (see [`Real`]); inlined into the operators' loops.
+pub trait PairForce: Copy + Default + Send + Sync + 'static {
+    /// Whether the force is linear in η.
+    const LINEAR: bool;
+
+    /// The force on the point the bond starts from: s n.
+    fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D];
+
+    /// The energy ½ s² |ξ|, whose gradient in η is the force.
+    fn energy<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T;
+
+    /// The derivative of the force in the direction d.
+    fn tangent<T: Real, const D: usize>(xi: [T; D], eta: [T; D], d: [T; D]) -> [T; D];
+
+    /// A pair (m, r²) such that the bond is stretched beyond s if m > threshold(s) r². No root, and the same bits seen from either end.
+    fn stretch_measure<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T);
+
+    /// See [`PairForce::stretch_measure`].
+    fn threshold(stretch: f64) -> f64;
+}
+
+/// s = (|ξ+η| − |ξ|)/|ξ|, n = (ξ+η)/|ξ+η|: the prototype microelastic brittle material (Silling & Askari 2005).
+///
+/// With q = η·(2ξ+η) the stretch is q/(|ξ| (|ξ+η| + |ξ|)), free of cancellation at small strains.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BondStretch;
+
+/// s = ξ·η/|ξ|², n = ξ/|ξ|: the linearisation of [`BondStretch`] about the reference.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LinearBond;
+
+/// (|ξ|², q, |ξ+η|, |ξ|)
+#[inline(always)]
+fn lengths<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T, T, T) {
+    let square = dot(xi, xi);
+    let q = growth(xi, eta);
+    (square, q, (square + q).sqrt(), square.sqrt())
+}
+
+/// q = |ξ+η|² − |ξ|² = η·(2ξ+η)
+#[inline(always)]
+fn growth<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
+    dot(eta, std::array::from_fn(|c| xi[c] + xi[c] + eta[c]))
+}
+
+impl PairForce for BondStretch {
+    const LINEAR: bool = false;
+
+    #[inline(always)]
+    fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
+        let (_, q, deformed, reference) = lengths(xi, eta);
+        let factor = q / (reference * (deformed + reference) * deformed);
+        std::array::from_fn(|c| factor * (xi[c] + eta[c]))
+    }
+
+    #[inline(always)]
+    fn energy<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
+        let (_, q, deformed, reference) = lengths(xi, eta);
+        let elongation = q / (deformed + reference);
+        T::splat(0.5) * elongation * elongation / reference
+    }
+
+    #[inline(always)]
+    fn tangent<T: Real, const D: usize>(xi: [T; D], eta: [T; D], d: [T; D]) -> [T; D] {
+        let (square, q, deformed, reference) = lengths(xi, eta);
+        let y: [T; D] = std::array::from_fn(|c| xi[c] + eta[c]);
+        let factor = q / (reference * (deformed + reference) * deformed);
+        let along = dot(y, d) / (square + q) * (T::splat(1.0) / reference - factor);
+        std::array::from_fn(|c| factor * d[c] + along * y[c])
+    }
+
+    #[inline(always)]
+    fn stretch_measure<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T) {
+        (growth(xi, eta), dot(xi, xi))
+    }
+
+    fn threshold(stretch: f64) -> f64 {
+        stretch * (2.0 + stretch)
+    }
+}
+
+impl PairForce for LinearBond {
+    const LINEAR: bool = true;
+
+    #[inline(always)]
+    fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
+        let square = dot(xi, xi);
+        let factor = dot(xi, eta) / (square * square.sqrt());
+        std::array::from_fn(|c| factor * xi[c])
+    }
+
+    #[inline(always)]
+    fn energy<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
+        let square = dot(xi, xi);
+        let along = dot(xi, eta);
+        T::splat(0.5) * along * along / (square * square.sqrt())
+    }
+
+    #[inline(always)]
+    fn tangent<T: Real, const D: usize>(xi: [T; D], _eta: [T; D], d: [T; D]) -> [T; D] {
+        Self::force(xi, d)
+    }
+
+    #[inline(always)]
+    fn stretch_measure<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T) {
+        (dot(xi, eta), dot(xi, xi))
+    }
+
+    fn threshold(stretch: f64) -> f64 {
+        stretch
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The definition, without the cancellation-free forms.
+    fn naive(xi: [f64; 3], eta: [f64; 3]) -> [f64; 3] {
+        let y: [f64; 3] = std::array::from_fn(|c| xi[c] + eta[c]);
+        let (r, l) = (dot(xi, xi).sqrt(), dot(y, y).sqrt());
+        std::array::from_fn(|c| (l - r) / r * y[c] / l)
+    }
+
+    fn check_gradients<L: PairForce>(xi: [f64; 3], eta: [f64; 3], d: [f64; 3]) {
+        let h = 1e-5;
+        let moved = |sign: f64| -> [f64; 3] { std::array::from_fn(|c| eta[c] + sign * h * d[c]) };
+        let slope = (L::energy(xi, moved(1.0)) - L::energy(xi, moved(-1.0))) / (2.0 * h);
+        let work = dot(L::force(xi, eta), d);
+        assert!(
+            (slope - work).abs() < 1e-8,
+            "force is no gradient: {slope} {work}"
+        );
+        let tangent = L::tangent(xi, eta, d);
+        let (up, down) = (L::force(xi, moved(1.0)), L::force(xi, moved(-1.0)));
+        for c in 0..3 {
+            let slope = (up[c] - down[c]) / (2.0 * h);
+            assert!(
+                (slope - tangent[c]).abs() < 1e-8,
+                "tangent: {slope} {}",
+                tangent[c]
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn forces_are_gradients_and_tangents_derivatives(
+            xi in prop::array::uniform3(0.5f64..1.0),
+            eta in prop::array::uniform3(-0.3f64..0.3),
+            d in prop::array::uniform3(-1.0f64..1.0),
+        ) {
+            check_gradients::<BondStretch>(xi, eta, d);
+            check_gradients::<LinearBond>(xi, eta, d);
+            let (force, expected) = (BondStretch::force(xi, eta), naive(xi, eta));
+            for c in 0..3 {
+                prop_assert!((force[c] - expected[c]).abs() < 1e-14);
+            }
+            let (measure, square) = BondStretch::stretch_measure(xi, eta);
+            let y: [f64; 3] = std::array::from_fn(|c| xi[c] + eta[c]);
+            let stretch = (dot(y, y) / square).sqrt() - 1.0;
+            prop_assert!(measure > BondStretch::threshold(stretch - 1e-9) * square);
+            prop_assert!(measure < BondStretch::threshold(stretch + 1e-9) * square);
+        }
+    }
+
+    #[test]
+    fn small_strains_keep_their_digits() {
+        let (xi, eta) = ([0.3, 0.4, 0.0], [3e-17, 4e-17, 0.0]);
+        let force = BondStretch::force(xi, eta);
+        assert!((force[0] / (0.6 * 1e-16) - 1.0).abs() < 1e-12, "{force:?}");
+    }
 }

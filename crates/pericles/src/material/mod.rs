@@ -19,4 +19,4 @@ mod law;
 pub use constants::{
     BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
-pub use law::PairLaw;
+pub use law::{BondStretch, LinearBond, PairForce, PairLaw};

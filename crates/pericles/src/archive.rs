@@ -1,0 +1,110 @@
+//! Stored state: what a run must keep to go on as if it had never stopped.
+
+use std::collections::BTreeMap;
+
+use crate::error::{PericlesError, Result};
+
+/// An array of an archive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Floating-point numbers.
+    F64(Vec<f64>),
+    /// Counts.
+    U64(Vec<u64>),
+    /// Bytes.
+    U8(Vec<u8>),
+}
+
+/// Named arrays; the file format is not this library's business.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Archive {
+    arrays: BTreeMap<String, Values>,
+}
+
+/// Things that carry state from step to step: operators (damage), boundaries, integrators, observers.
+pub trait Saved {
+    /// Adds the state to the archive.
+    fn save(&self, archive: &mut Archive);
+    /// Takes the state back.
+    ///
+    /// # Errors
+    /// [`PericlesError::BadArchive`] if an array is missing or has another size; the object is then unchanged or to be thrown away.
+    fn restore(&mut self, archive: &Archive) -> Result<()>;
+}
+
+impl Archive {
+    /// Adds an array; an array of the same name is replaced.
+    pub fn put(&mut self, name: impl Into<String>, values: Values) {
+        self.arrays.insert(name.into(), values);
+    }
+
+    /// All arrays by name.
+    pub fn arrays(&self) -> &BTreeMap<String, Values> {
+        &self.arrays
+    }
+
+    /// All arrays, given away.
+    pub fn into_arrays(self) -> BTreeMap<String, Values> {
+        self.arrays
+    }
+
+    /// Fills `target` with the numbers stored under `name`.
+    pub fn f64_into(&self, name: &str, target: &mut [f64]) -> Result<()> {
+        match self.arrays.get(name) {
+            Some(Values::F64(stored)) => copy(name, stored, target),
+            _ => Err(missing(name)),
+        }
+    }
+
+    /// Fills `target` with the bytes stored under `name`.
+    pub fn u8_into(&self, name: &str, target: &mut [u8]) -> Result<()> {
+        match self.arrays.get(name) {
+            Some(Values::U8(stored)) => copy(name, stored, target),
+            _ => Err(missing(name)),
+        }
+    }
+
+    /// Fills `target` with the counts stored under `name`.
+    pub fn u64_into(&self, name: &str, target: &mut [u64]) -> Result<()> {
+        match self.arrays.get(name) {
+            Some(Values::U64(stored)) => copy(name, stored, target),
+            _ => Err(missing(name)),
+        }
+    }
+
+    /// The array of counts stored under `name`, of any length.
+    pub fn u64s(&self, name: &str) -> Result<&[u64]> {
+        match self.arrays.get(name) {
+            Some(Values::U64(stored)) => Ok(stored),
+            _ => Err(missing(name)),
+        }
+    }
+
+    /// The array of numbers stored under `name`, of any length.
+    pub fn f64s(&self, name: &str) -> Result<&[f64]> {
+        match self.arrays.get(name) {
+            Some(Values::F64(stored)) => Ok(stored),
+            _ => Err(missing(name)),
+        }
+    }
+}
+
+fn missing(name: &str) -> PericlesError {
+    PericlesError::BadArchive {
+        reason: format!("the array \"{name}\" is missing or of another type"),
+    }
+}
+
+fn copy<T: Copy>(name: &str, stored: &[T], target: &mut [T]) -> Result<()> {
+    if stored.len() != target.len() {
+        return Err(PericlesError::BadArchive {
+            reason: format!(
+                "the array \"{name}\" has {} entries, the model needs {}",
+                stored.len(),
+                target.len()
+            ),
+        });
+    }
+    target.copy_from_slice(stored);
+    Ok(())
+}

@@ -1,0 +1,261 @@
+//! All families of a body, in compressed rows of eight.
+
+use rayon::prelude::*;
+
+use super::search::{bond_vector, distance, pairs_within};
+use super::{Crack, EndRule, VolumeCorrection};
+use crate::error::{PericlesError, Result};
+use crate::space::{PointCloud, PointSet};
+
+/// Bonds are kept in groups of this many, one per SIMD lane; a byte tells which of them exist.
+pub const LANES: usize = 8;
+
+/// What a crack removed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut {
+    /// Bonds removed.
+    pub bonds: u64,
+    /// Points that lost bonds.
+    pub points: PointSet,
+}
+
+/// The bonds of every point: compressed rows whose length is padded to whole groups of [`LANES`].
+///
+/// Group g holds `neighbours[g * LANES..][..LANES]`; bit k of `present[g]` says whether its k-th bond exists. Point i owns the groups
+/// `start[i]..start[i + 1]`. Padding entries name the point itself, so that loading them is harmless. Each bond
+/// is stored at both of its ends, in ascending order of the neighbour's number.
+#[derive(Debug, Clone)]
+pub struct BondList {
+    start: Vec<usize>,
+    neighbours: Vec<u32>,
+    /// Bonds of the geometric family.
+    geometric: Vec<u8>,
+    /// Bonds left after pre-cutting.
+    present: Vec<u8>,
+    horizon: f64,
+    correction: VolumeCorrection,
+}
+
+impl BondList {
+    /// The families of a cloud.
+    ///
+    /// # Errors
+    /// A horizon that reaches no neighbour at all.
+    pub fn new(cloud: &PointCloud, horizon: f64, correction: VolumeCorrection) -> Result<Self> {
+        let reach = correction.reach(horizon, cloud.spacing());
+        let (row_start, pairs) = pairs_within(cloud, reach);
+        if pairs.is_empty() {
+            return Err(PericlesError::HorizonTooSmall {
+                horizon,
+                spacing: cloud.spacing(),
+            });
+        }
+        let n = cloud.len();
+        let mut start = Vec::with_capacity(n + 1);
+        start.push(0);
+        for i in 0..n {
+            start.push(start[i] + (row_start[i + 1] - row_start[i]).div_ceil(LANES));
+        }
+        let mut neighbours = Vec::with_capacity(start[n] * LANES);
+        let mut geometric = Vec::with_capacity(start[n]);
+        for i in 0..n {
+            for group in pairs[row_start[i]..row_start[i + 1]].chunks(LANES) {
+                neighbours.extend_from_slice(group);
+                neighbours.extend(std::iter::repeat_n(i as u32, LANES - group.len()));
+                geometric.push(0xFF >> (LANES - group.len()));
+            }
+        }
+        Ok(Self {
+            start,
+            neighbours,
+            present: geometric.clone(),
+            geometric,
+            horizon,
+            correction,
+        })
+    }
+
+    /// Removes the bonds that meet a crack.
+    ///
+    /// # Errors
+    /// A crack of another dimension than the cloud's, or without extent.
+    pub fn cut(&mut self, cloud: &PointCloud, crack: &Crack, rule: EndRule) -> Result<Cut> {
+        if crack.dimension() != cloud.dimension() {
+            return Err(PericlesError::WrongDimension {
+                what: "a crack of this kind",
+                needed: ["1", "2", "3"][crack.dimension() - 1],
+                dimension: cloud.dimension(),
+            });
+        }
+        let cutter = crack.cutter(rule, 1e-9 * cloud.spacing())?;
+        let (start, neighbours) = (&self.start, &self.neighbours);
+        let removed: Vec<u32> = rows_mut(start, &mut self.present)
+            .into_par_iter()
+            .enumerate()
+            .with_min_len(256)
+            .map(|(i, row)| {
+                let mut removed = 0;
+                let here = cloud.point(i);
+                for (g, present) in row.iter_mut().enumerate() {
+                    for k in 0..LANES {
+                        let j = neighbours[(start[i] + g) * LANES + k] as usize;
+                        if *present >> k & 1 == 1 && cutter.cuts(here, cloud.point(j)) {
+                            *present &= !(1 << k);
+                            removed += 1;
+                        }
+                    }
+                }
+                removed
+            })
+            .collect();
+        Ok(Cut {
+            bonds: removed.iter().map(|&count| u64::from(count)).sum::<u64>() / 2,
+            points: (0..removed.len() as u32)
+                .filter(|&i| removed[i as usize] > 0)
+                .collect(),
+        })
+    }
+
+    /// First group of each point, and the number of groups at the end.
+    pub fn start(&self) -> &[usize] {
+        &self.start
+    }
+
+    /// Neighbours of all groups.
+    pub fn neighbours(&self) -> &[u32] {
+        &self.neighbours
+    }
+
+    /// Bonds that exist once the pre-cracks are cut, one byte a group.
+    pub fn present(&self) -> &[u8] {
+        &self.present
+    }
+
+    /// Bonds of the geometric family, pre-cut ones included.
+    pub fn geometric(&self) -> &[u8] {
+        &self.geometric
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Never true.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Entries of all families after pre-cutting: each bond counts twice.
+    pub fn directed_bonds(&self) -> u64 {
+        self.present.iter().map(|g| u64::from(g.count_ones())).sum()
+    }
+
+    /// Horizon δ, m.
+    pub fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    /// The neighbours of a point in its geometric family, with the entry's place in the list.
+    pub fn family(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (self.start[i]..self.start[i + 1]).flat_map(move |g| {
+            (0..LANES)
+                .filter(move |k| self.geometric[g] >> k & 1 == 1)
+                .map(move |k| (g * LANES + k, self.neighbours[g * LANES + k] as usize))
+        })
+    }
+
+    /// The partial-volume factor κ of the bond between two points.
+    pub fn volume_factor(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
+        let cell = 0.5 * (cloud.cell_size(i) + cloud.cell_size(j));
+        self.correction
+            .factor(distance(cloud, i, j), self.horizon, cell)
+    }
+
+    /// Reference length of the bond between two points, m.
+    pub fn length(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
+        distance(cloud, i, j)
+    }
+
+    /// Reference vector ξ from point i to point j, m.
+    pub fn vector(&self, cloud: &PointCloud, i: usize, j: usize) -> [f64; 3] {
+        bond_vector(cloud, i, j)
+    }
+
+    /// Memory of the list, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.start[..])
+            + size_of_val(&self.neighbours[..])
+            + self.present.len()
+            + self.geometric.len()
+    }
+}
+
+/// Splits an array with one entry per group into one slice per point.
+fn rows_mut<'a, T>(start: &[usize], mut groups: &'a mut [T]) -> Vec<&'a mut [T]> {
+    start
+        .windows(2)
+        .map(|bounds| {
+            let (row, rest) = std::mem::take(&mut groups).split_at_mut(bounds[1] - bounds[0]);
+            groups = rest;
+            row
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Grid, Shape};
+
+    fn plate(cells: f64) -> PointCloud {
+        Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![cells, cells],
+            },
+            spacing: 1.0,
+            section: 1.0,
+            holes: vec![],
+        }
+        .points()
+        .unwrap()
+    }
+
+    #[test]
+    fn interior_families_of_a_plate() {
+        let cloud = plate(12.0);
+        let count = |correction| {
+            let bonds = BondList::new(&cloud, 3.0, correction).unwrap();
+            bonds.family(6 * 12 + 6).count()
+        };
+        // Nodes within 3 spacings: 28; those within 3.5 spacings add (2,2)… up to √10 and √(2²+2²) < 3: 36 in all.
+        assert_eq!(count(VolumeCorrection::None), 28);
+        assert_eq!(count(VolumeCorrection::Extended), 36);
+    }
+
+    #[test]
+    fn a_crack_cuts_both_ends_of_a_bond() {
+        let cloud = plate(12.0);
+        let mut bonds = BondList::new(&cloud, 3.0, VolumeCorrection::None).unwrap();
+        let before = bonds.directed_bonds();
+        let crack = Crack::Segment {
+            from: [0.0, 6.0],
+            to: [6.0, 6.0],
+        };
+        let cut = bonds.cut(&cloud, &crack, EndRule::Closed).unwrap();
+        assert_eq!(before - bonds.directed_bonds(), 2 * cut.bonds);
+        let again = bonds.cut(&cloud, &crack, EndRule::Closed).unwrap();
+        assert_eq!((again.bonds, again.points.len()), (0, 0));
+        let mut open = BondList::new(&cloud, 3.0, VolumeCorrection::None).unwrap();
+        let kept = cut.bonds - open.cut(&cloud, &crack, EndRule::Open).unwrap().bonds;
+        // Through the closed end pass the six bonds of types (1,1), twice, and (2,2) … that lie symmetrically about it.
+        assert_eq!(kept, 6);
+    }
+
+    #[test]
+    fn a_horizon_below_the_spacing_is_refused() {
+        let error = BondList::new(&plate(4.0), 0.9, VolumeCorrection::None).unwrap_err();
+        assert!(matches!(error, PericlesError::HorizonTooSmall { .. }));
+    }
+}

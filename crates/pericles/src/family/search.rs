@@ -1,0 +1,158 @@
+//! Neighbour search by a cell list.
+
+use rayon::prelude::*;
+
+use crate::space::PointCloud;
+
+/// For every point, the points within `reach` (m) of it, itself excluded, ascending. Result in compressed rows: neighbours of i are
+/// `neighbours[start[i]..start[i + 1]]`.
+///
+/// Points are sorted into cubes of side `reach` by counting; each point looks through the 3^D cubes around its own. On a lattice, lengths are taken
+/// from integer offsets, so that points at exactly the same distance are treated alike. Cost O(N · family), memory
+/// O(N) besides the result.
+pub fn pairs_within(cloud: &PointCloud, reach: f64) -> (Vec<usize>, Vec<u32>) {
+    let cells = CellList::new(cloud, reach);
+    let rows: Vec<Vec<u32>> = (0..cloud.len())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|i| {
+            let mut row = Vec::new();
+            cells.for_each_near(i, |j| {
+                if j != i && distance(cloud, i, j) <= reach {
+                    row.push(j as u32);
+                }
+            });
+            row.sort_unstable();
+            row
+        })
+        .collect();
+    let mut start = Vec::with_capacity(rows.len() + 1);
+    let mut total = 0;
+    start.push(0);
+    for row in &rows {
+        total += row.len();
+        start.push(total);
+    }
+    let mut neighbours = Vec::with_capacity(total);
+    for row in rows {
+        neighbours.extend_from_slice(&row);
+    }
+    (start, neighbours)
+}
+
+/// The vector from point i to point j; exact multiples of the spacing on a lattice.
+pub(crate) fn bond_vector(cloud: &PointCloud, i: usize, j: usize) -> [f64; 3] {
+    if let Some(lattice) = cloud.lattice() {
+        let (a, b) = (
+            lattice.coordinates(lattice.node[i]),
+            lattice.coordinates(lattice.node[j]),
+        );
+        return std::array::from_fn(|c| f64::from(b[c] - a[c]) * lattice.spacing);
+    }
+    let (a, b) = (cloud.point(i), cloud.point(j));
+    std::array::from_fn(|c| b[c] - a[c])
+}
+
+pub(crate) fn distance(cloud: &PointCloud, i: usize, j: usize) -> f64 {
+    let xi = bond_vector(cloud, i, j);
+    (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt()
+}
+
+struct CellList {
+    shape: [usize; 3],
+    cell_of: Vec<u32>,
+    start: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl CellList {
+    fn new(cloud: &PointCloud, reach: f64) -> Self {
+        let bounds = cloud.bounds();
+        let n = cloud.len();
+        // No more cells than points: sparse clouds get larger cells instead of more memory.
+        let mut side = reach * (1.0 + 1e-6);
+        let shape_for = |side: f64| -> [f64; 3] {
+            std::array::from_fn(|c| ((bounds[1][c] - bounds[0][c]) / side).floor().max(1.0))
+        };
+        while shape_for(side).iter().product::<f64>() > (n as f64).max(27.0) {
+            side *= 1.3;
+        }
+        let shape = shape_for(side).map(|count| count as usize);
+        let width: [f64; 3] = std::array::from_fn(|c| {
+            ((bounds[1][c] - bounds[0][c]) / shape[c] as f64).max(f64::MIN_POSITIVE)
+        });
+        let cell_of: Vec<u32> = (0..n)
+            .map(|i| {
+                let x = cloud.point(i);
+                let at = |c: usize| (((x[c] - bounds[0][c]) / width[c]) as usize).min(shape[c] - 1);
+                (at(0) + shape[0] * (at(1) + shape[1] * at(2))) as u32
+            })
+            .collect();
+        let mut start = vec![0u32; shape.iter().product::<usize>() + 1];
+        for &cell in &cell_of {
+            start[cell as usize + 1] += 1;
+        }
+        for k in 1..start.len() {
+            start[k] += start[k - 1];
+        }
+        let mut next = start.clone();
+        let mut order = vec![0u32; n];
+        for (i, &cell) in cell_of.iter().enumerate() {
+            order[next[cell as usize] as usize] = i as u32;
+            next[cell as usize] += 1;
+        }
+        Self {
+            shape,
+            cell_of,
+            start,
+            order,
+        }
+    }
+
+    fn for_each_near(&self, i: usize, mut visit: impl FnMut(usize)) {
+        let cell = self.cell_of[i] as usize;
+        let at = [
+            cell % self.shape[0],
+            cell / self.shape[0] % self.shape[1],
+            cell / self.shape[0] / self.shape[1],
+        ];
+        let around = |c: usize| at[c].saturating_sub(1)..=(at[c] + 1).min(self.shape[c] - 1);
+        for z in around(2) {
+            for y in around(1) {
+                for x in around(0) {
+                    let cell = x + self.shape[0] * (y + self.shape[1] * z);
+                    let (from, to) = (self.start[cell] as usize, self.start[cell + 1] as usize);
+                    for &j in &self.order[from..to] {
+                        visit(j as usize);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn equals_the_search_over_all_pairs(
+            dimension in 1usize..=3,
+            coordinates in prop::collection::vec(-1.0f64..1.0, 30..90),
+            reach in 0.05f64..2.5,
+        ) {
+            let n = coordinates.len() / dimension;
+            let cloud = PointCloud::new(dimension, coordinates[..n * dimension].to_vec(), vec![1e-3; n], 1.0).unwrap();
+            let (start, neighbours) = pairs_within(&cloud, reach);
+            for i in 0..n {
+                let naive: Vec<u32> = (0..n)
+                    .filter(|&j| j != i && distance(&cloud, i, j) <= reach)
+                    .map(|j| j as u32)
+                    .collect();
+                prop_assert_eq!(&neighbours[start[i]..start[i + 1]], &naive[..]);
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Crack tips.
+
+use crate::family::{Crack, pairs_within};
+use crate::space::{Point, PointCloud, PointSet};
+
+/// A pre-crack with the points that lost bonds to it.
+#[derive(Debug, Clone)]
+pub struct TrackedCrack {
+    /// The surface.
+    pub crack: Crack,
+    /// Points it took bonds from.
+    pub points: PointSet,
+}
+
+/// The tip of a growing crack.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrackTip {
+    /// Reference position of the tip, m.
+    pub place: Point,
+    /// Its distance from the pre-crack, m.
+    pub advance: f64,
+    /// Points of the crack: damaged beyond the threshold and connected to the pre-crack.
+    pub points: usize,
+}
+
+/// Finds the crack that has grown from each pre-crack: the points damaged beyond a threshold that are connected to it through such points,
+/// neighbours on the grid (diagonals included) being connected.
+#[derive(Debug, Clone)]
+pub struct CrackTracker {
+    cracks: Vec<TrackedCrack>,
+    threshold: f64,
+    start: Vec<usize>,
+    neighbours: Vec<u32>,
+}
+
+impl CrackTracker {
+    /// A tracker for the pre-cracks of a body.
+    pub fn new(cloud: &PointCloud, cracks: Vec<TrackedCrack>, threshold: f64) -> Self {
+        let diagonal = 1.01 * (cloud.dimension() as f64).sqrt() * cloud.spacing();
+        let (start, neighbours) = pairs_within(cloud, diagonal);
+        Self {
+            cracks,
+            threshold,
+            start,
+            neighbours,
+        }
+    }
+
+    /// The pre-cracks.
+    pub fn cracks(&self) -> &[TrackedCrack] {
+        &self.cracks
+    }
+
+    /// The points of the crack that has grown from a pre-crack, ascending.
+    pub fn connected(&self, crack: usize, damage: &[f64]) -> PointSet {
+        let mut reached = vec![false; damage.len()];
+        let mut open: Vec<u32> = self.cracks[crack].points.clone();
+        for &i in &open {
+            reached[i as usize] = true;
+        }
+        while let Some(i) = open.pop() {
+            let i = i as usize;
+            for &j in &self.neighbours[self.start[i]..self.start[i + 1]] {
+                let j = j as usize;
+                if !reached[j] && damage[j] > self.threshold {
+                    reached[j] = true;
+                    open.push(j as u32);
+                }
+            }
+        }
+        (0..damage.len())
+            .filter(|&i| reached[i] && damage[i] > self.threshold)
+            .map(|i| i as u32)
+            .collect()
+    }
+
+    /// The tip of each crack: its point farthest from the pre-crack; none while nothing has grown.
+    pub fn tips(&self, cloud: &PointCloud, damage: &[f64]) -> Vec<Option<CrackTip>> {
+        (0..self.cracks.len())
+            .map(|k| {
+                let points = self.connected(k, damage);
+                let advance = |i: u32| self.cracks[k].crack.distance(cloud.point(i as usize));
+                let tip = points
+                    .iter()
+                    .copied()
+                    .reduce(|best, i| if advance(i) > advance(best) { i } else { best })?;
+                Some(CrackTip {
+                    place: cloud.point(tip as usize),
+                    advance: advance(tip),
+                    points: points.len(),
+                })
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Grid, Shape};
+
+    #[test]
+    fn only_what_is_connected_belongs_to_the_crack() {
+        let cloud = Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![10.0, 3.0],
+            },
+            spacing: 1.0,
+            section: 1.0,
+            holes: vec![],
+        }
+        .points()
+        .unwrap();
+        let crack = Crack::Segment {
+            from: [0.0, 1.5],
+            to: [2.0, 1.5],
+        };
+        let points = vec![10, 11];
+        let tracker = CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35);
+        let mut damage = vec![0.0; 30];
+        assert_eq!(tracker.tips(&cloud, &damage), [None]);
+        for i in [11, 12, 23, 24, 26, 27] {
+            damage[i] = 0.5;
+        }
+        // 26 and 27 are damaged, but a column away from the rest.
+        assert_eq!(tracker.connected(0, &damage), [11, 12, 23, 24]);
+        let tip = tracker.tips(&cloud, &damage)[0].unwrap();
+        assert_eq!((tip.place, tip.points), ([4.5, 2.5, 0.0], 4));
+        assert!((tip.advance - 2.5f64.hypot(1.0)).abs() < 1e-12);
+    }
+}

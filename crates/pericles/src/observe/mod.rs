@@ -1,0 +1,28 @@
+//! Observers: what looks at a run without touching it.
+//!
+//! The loop hands a [`Snapshot`] to every [`Observer`] whose [`Schedule`] names the step. Fields that cost an evaluation are computed when first
+//! asked for, once per snapshot.
+
+mod crack;
+mod probe;
+mod schedule;
+mod snapshot;
+
+pub use crack::{CrackTip, CrackTracker, TrackedCrack};
+pub use probe::{Probe, ProbeReading};
+pub use schedule::Schedule;
+pub use snapshot::{Energies, Field, Snapshot};
+
+use crate::archive::Saved;
+
+/// What an observer failed of; the library does not know files.
+pub type ObserveError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Someone who looks at a run. What is saved lets an observer continue where it was, without gap or repetition.
+pub trait Observer: Saved {
+    /// Sees a state.
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from doing its work; the run then stops.
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError>;
+}

@@ -1,0 +1,42 @@
+//! Readings at points and means over sets.
+
+use super::Snapshot;
+use crate::space::PointSet;
+
+/// A place where displacement and velocity are read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// Name in tables.
+    pub name: String,
+    /// The points over which the mean is taken, each weighing the same.
+    pub points: PointSet,
+}
+
+/// Mean displacement (m) and velocity (m/s) of a probe.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ProbeReading {
+    /// Mean displacement, m.
+    pub displacement: [f64; 3],
+    /// Mean velocity, m/s.
+    pub velocity: [f64; 3],
+}
+
+impl Probe {
+    /// Reads the probe.
+    pub fn read(&self, snapshot: &Snapshot<'_>) -> ProbeReading {
+        let n = snapshot.system().points();
+        let mean = |field: &[f64]| -> [f64; 3] {
+            std::array::from_fn(|c| {
+                if c >= snapshot.system().dimension() {
+                    return 0.0;
+                }
+                let sum: f64 = self.points.iter().map(|&i| field[c * n + i as usize]).sum();
+                sum / self.points.len() as f64
+            })
+        };
+        ProbeReading {
+            displacement: mean(&snapshot.state().u),
+            velocity: mean(&snapshot.state().v),
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! A view of a run at one time.
+
+use std::cell::OnceCell;
+
+use crate::system::System;
+use crate::time::State;
+
+/// A field on the points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Field {
+    /// u, m.
+    Displacement,
+    /// v, m/s.
+    Velocity,
+    /// Internal and external force density, N/m³.
+    ForceDensity,
+    /// 1 − bonds left over bonds at the start.
+    Damage,
+    /// Elastic energy density, J/m³.
+    StrainEnergyDensity,
+}
+
+impl Field {
+    /// All fields.
+    pub const ALL: [Self; 5] = [
+        Self::Displacement,
+        Self::Velocity,
+        Self::ForceDensity,
+        Self::Damage,
+        Self::StrainEnergyDensity,
+    ];
+
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "Displacement",
+            Self::Velocity => "Velocity",
+            Self::ForceDensity => "Force_Density",
+            Self::Damage => "Damage",
+            Self::StrainEnergyDensity => "Strain_Energy_Density",
+        }
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Displacement => "m",
+            Self::Velocity => "m/s",
+            Self::ForceDensity => "N/m³",
+            Self::Damage => "",
+            Self::StrainEnergyDensity => "J/m³",
+        }
+    }
+
+    /// Whether it is a vector field, component-major.
+    pub fn is_vector(self) -> bool {
+        matches!(
+            self,
+            Self::Displacement | Self::Velocity | Self::ForceDensity
+        )
+    }
+}
+
+/// The energy account of a body, J.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Energies {
+    /// ½ Σ ρ V v².
+    pub kinetic: f64,
+    /// Stored in bonds.
+    pub elastic: f64,
+    /// Lost to breaking.
+    pub dissipated: f64,
+    /// Work of loads and supports since the start.
+    pub work: f64,
+    /// Kinetic and elastic energy at the start.
+    pub initial: f64,
+}
+
+impl Energies {
+    /// kinetic + elastic + dissipated − work − initial: zero if nothing is lost.
+    pub fn balance(&self) -> f64 {
+        self.kinetic + self.elastic + self.dissipated - self.work - self.initial
+    }
+}
+
+/// A body at one time.
+pub struct Snapshot<'a> {
+    system: &'a System,
+    state: &'a State,
+    initial_energy: f64,
+    force: OnceCell<Vec<f64>>,
+    damage: OnceCell<Vec<f64>>,
+    energy_density: OnceCell<Vec<f64>>,
+}
+
+impl<'a> Snapshot<'a> {
+    /// A view of a state; `initial_energy` is kinetic and elastic energy at the start.
+    pub fn new(system: &'a System, state: &'a State, initial_energy: f64) -> Self {
+        Self {
+            system,
+            state,
+            initial_energy,
+            force: OnceCell::new(),
+            damage: OnceCell::new(),
+            energy_density: OnceCell::new(),
+        }
+    }
+
+    /// The equation of motion.
+    pub fn system(&self) -> &'a System {
+        self.system
+    }
+
+    /// The state.
+    pub fn state(&self) -> &'a State {
+        self.state
+    }
+
+    /// A field; vectors component-major.
+    pub fn field(&self, field: Field) -> &[f64] {
+        let (t, u) = (self.state.t, &self.state.u);
+        match field {
+            Field::Displacement => u,
+            Field::Velocity => &self.state.v,
+            Field::ForceDensity => self.force.get_or_init(|| {
+                let mut force = vec![0.0; u.len()];
+                self.system.force_density_into(t, u, &mut force);
+                force
+            }),
+            Field::Damage => self.damage.get_or_init(|| {
+                let mut damage = vec![0.0; self.system.points()];
+                self.system.operator().damage_into(&mut damage);
+                damage
+            }),
+            Field::StrainEnergyDensity => self.energy_density.get_or_init(|| {
+                let mut density = vec![0.0; self.system.points()];
+                self.system
+                    .operator()
+                    .add_energy_density(t, u, &mut density);
+                density
+            }),
+        }
+    }
+
+    /// The energy account.
+    pub fn energies(&self) -> Energies {
+        Energies {
+            kinetic: self.system.kinetic_energy(&self.state.v),
+            elastic: self.system.operator().energy(self.state.t, &self.state.u),
+            dissipated: self.system.operator().dissipated(),
+            work: self.system.ledger().work,
+            initial: self.initial_energy,
+        }
+    }
+}

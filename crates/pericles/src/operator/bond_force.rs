@@ -1,0 +1,465 @@
+//! The force operator of a bond list: any body, any family.
+
+use std::sync::Arc;
+
+use super::bond_kernels::{
+    Bonds, BreakRule, Rows, Tally, Which, accept_rows, energy_rows, force_rows, tangent_rows,
+};
+use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use crate::archive::{Archive, Saved, Values};
+use crate::error::Result;
+use crate::family::{BondList, LANES};
+use crate::material::{BondConstants, BondMaterial, PairForce};
+use crate::parallel::{BLOCK, components, components_mut, for_each_block, ordered_sum};
+use crate::space::PointCloud;
+
+/// How damage weighs bonds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct DamageMeasure {
+    /// Count bonds instead of weighing them by the volume Vκ they stand for.
+    pub count: bool,
+    /// Let bonds cut by pre-cracks count as broken; else they never belonged to the family.
+    pub count_precut: bool,
+}
+
+/// When and which bonds break.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Breaking<'a> {
+    /// Critical stretch s₀; infinite: never.
+    pub critical_stretch: f64,
+    /// Points whose bonds never break.
+    pub no_fail: &'a [u32],
+}
+
+/// Damage of a block of points.
+#[derive(Debug, Clone)]
+struct BlockState {
+    /// Bonds left, one byte a group.
+    intact: Vec<u8>,
+    tally: Tally,
+}
+
+/// f(x_i) = Σ_j c α κ V_j s n over the bonds of a list: force density, N/m³.
+///
+/// A gather per point over [`BondList`], in parallel blocks; every bond is computed at both ends, with the same bits but for the sign. Memory: 13 bytes
+/// per family entry (12 stored, 1/8 + 1/8 masks, and padding of rows to eight) and 8·(D+1) per point.
+pub struct BondForce<L: PairForce, const D: usize> {
+    cloud: Arc<PointCloud>,
+    bonds: BondList,
+    reference: [Vec<f64>; D],
+    unit: f64,
+    stiffness: Vec<f64>,
+    breakable: Option<Vec<u8>>,
+    critical_stretch: f64,
+    damage: DamageMeasure,
+    blocks: Vec<BlockState>,
+    instruction_set: InstructionSet,
+    law: std::marker::PhantomData<L>,
+}
+
+impl<L: PairForce, const D: usize> BondForce<L, D> {
+    /// The operator of a material on a body.
+    pub fn new(
+        cloud: Arc<PointCloud>,
+        bonds: BondList,
+        material: &BondMaterial,
+        constants: &BondConstants,
+        no_fail: &[u32],
+        damage: DamageMeasure,
+    ) -> Self {
+        let breaking = Breaking {
+            critical_stretch: constants.critical_stretch,
+            no_fail,
+        };
+        let stiffness =
+            |r: f64| constants.micromodulus * material.influence.alpha(r, material.horizon);
+        Self::with_stiffness(cloud, bonds, stiffness, breaking, damage)
+    }
+
+    /// An operator whose bonds have the stiffness c α(r) given as a function of their reference length r.
+    ///
+    /// # Panics
+    /// If the cloud has another dimension than D.
+    pub fn with_stiffness(
+        cloud: Arc<PointCloud>,
+        bonds: BondList,
+        stiffness_of_length: impl Fn(f64) -> f64,
+        breaking: Breaking<'_>,
+        damage: DamageMeasure,
+    ) -> Self {
+        assert_eq!(cloud.dimension(), D, "an operator of the cloud's dimension");
+        let n = cloud.len();
+        let mut stiffness = vec![0.0; bonds.neighbours().len()];
+        for i in 0..n {
+            for (entry, j) in bonds.family(i) {
+                let r = bonds.length(&cloud, i, j);
+                stiffness[entry] =
+                    stiffness_of_length(r) * bonds.volume_factor(&cloud, i, j) * cloud.volumes()[j];
+            }
+        }
+        // Integer coordinates make bonds of equal offset equal to the last bit.
+        let (reference, unit) = match cloud.lattice() {
+            Some(lattice) => (
+                std::array::from_fn(|c| {
+                    lattice
+                        .node
+                        .iter()
+                        .map(|&node| f64::from(lattice.coordinates(node)[c]))
+                        .collect()
+                }),
+                lattice.spacing,
+            ),
+            None => (std::array::from_fn(|c| cloud.axis(c).to_vec()), 1.0),
+        };
+        let breakable = (!breaking.no_fail.is_empty()).then(|| {
+            let mut held = vec![false; n];
+            for &i in breaking.no_fail {
+                held[i as usize] = true;
+            }
+            let mut breakable = vec![0u8; bonds.geometric().len()];
+            for i in (0..n).filter(|&i| !held[i]) {
+                for (entry, j) in bonds.family(i) {
+                    if !held[j] {
+                        breakable[entry / LANES] |= 1 << (entry % LANES);
+                    }
+                }
+            }
+            breakable
+        });
+        let blocks = (0..n.div_ceil(BLOCK))
+            .map(|b| {
+                let (from, to) = (b * BLOCK, ((b + 1) * BLOCK).min(n));
+                BlockState {
+                    intact: bonds.present()[bonds.start()[from]..bonds.start()[to]].to_vec(),
+                    tally: Tally::default(),
+                }
+            })
+            .collect();
+        Self {
+            cloud,
+            bonds,
+            reference,
+            unit,
+            stiffness,
+            breakable,
+            critical_stretch: breaking.critical_stretch,
+            damage,
+            blocks,
+            instruction_set: InstructionSet::detect(),
+            law: std::marker::PhantomData,
+        }
+    }
+
+    /// Runs the loops with another instruction set; for tests and benchmarks.
+    pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+        self
+    }
+
+    /// The families.
+    pub fn bonds(&self) -> &BondList {
+        &self.bonds
+    }
+
+    /// Whether an entry's bond is still there.
+    pub fn is_intact(&self, i: usize, entry: usize) -> bool {
+        let block = i / BLOCK;
+        let group = entry / LANES - self.bonds.start()[block * BLOCK];
+        self.blocks[block].intact[group] >> (entry % LANES) & 1 == 1
+    }
+
+    fn view(&self) -> Bonds<'_, D> {
+        Bonds {
+            reference: std::array::from_fn(|c| &self.reference[c][..]),
+            unit: self.unit,
+            start: self.bonds.start(),
+            neighbours: self.bonds.neighbours(),
+            stiffness: &self.stiffness,
+        }
+    }
+
+    /// Runs a read-only loop over all blocks.
+    fn sweep<const C: usize>(
+        &self,
+        on: &On<'_>,
+        out: &mut [f64],
+        rows: impl Fn(&[u8], &Rows<'_>, &mut [&mut [f64]; C]) + Sync,
+    ) {
+        let n = self.points();
+        // A vector of nothing: the blocks' state is only read, and no memory is taken.
+        let mut nothing = vec![(); self.blocks.len()];
+        for_each_block(
+            components_mut::<C>(out, n),
+            &mut nothing,
+            &|first, mut out, ()| {
+                let Some(which) = rows_of_block(on, first, out[0].len()) else {
+                    return;
+                };
+                rows(
+                    &self.blocks[first / BLOCK].intact,
+                    &Rows { first, which },
+                    &mut out,
+                );
+            },
+        );
+    }
+
+    fn decide<const FORCE: bool>(
+        &mut self,
+        u: &[f64],
+        step: Option<(&[f64], f64)>,
+        on: &On<'_>,
+        out: &mut [f64],
+    ) {
+        let n = self.points();
+        let whole = matches!(on, On::All);
+        let mut blocks = std::mem::take(&mut self.blocks);
+        let bonds = self.view();
+        let rule = BreakRule {
+            threshold: L::threshold(self.critical_stretch),
+            breakable: self.breakable.as_deref(),
+            volumes: self.cloud.volumes(),
+            step: step.map(|(velocity, dt)| (components::<D>(velocity, n), dt)),
+            note_events: !whole,
+        };
+        let u = components::<D>(u, n);
+        for_each_block(
+            components_mut::<D>(out, n),
+            &mut blocks,
+            &|first, mut out, block| {
+                if let Some(which) = rows_of_block(on, first, n.min(first + BLOCK) - first) {
+                    accept_rows::<L, D, FORCE>(
+                        self.instruction_set,
+                        &bonds,
+                        &rule,
+                        &u,
+                        &mut block.intact,
+                        &Rows { first, which },
+                        &mut out,
+                        &mut block.tally,
+                    );
+                }
+            },
+        );
+        self.blocks = blocks;
+        if !whole {
+            self.tell_the_other_ends();
+        }
+    }
+
+    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
+    fn tell_the_other_ends(&mut self) {
+        for b in 0..self.blocks.len() {
+            let events = std::mem::take(&mut self.blocks[b].tally.events);
+            for event in events {
+                let here = event.point as usize;
+                let j = self.bonds.neighbours()[event.entry] as usize;
+                let Some((back, _)) = self.bonds.family(j).find(|&(_, other)| other == here) else {
+                    continue;
+                };
+                if !self.is_intact(j, back) {
+                    continue;
+                }
+                let block = j / BLOCK;
+                let group = back / LANES - self.bonds.start()[block * BLOCK];
+                self.blocks[block].intact[group] &= !(1 << (back % LANES));
+                self.blocks[block].tally.broken += 1;
+                self.blocks[block].tally.dissipated += event.dissipated;
+            }
+        }
+    }
+}
+
+/// The wanted points of a block, none if there are none.
+fn rows_of_block<'a>(on: &On<'a>, first: usize, len: usize) -> Option<Which<'a>> {
+    let block = first..first + len;
+    match on {
+        On::All => Some(Which::Range(block)),
+        On::Range(range) => {
+            let common = range.start.max(block.start)..range.end.min(block.end);
+            (!common.is_empty()).then_some(Which::Range(common))
+        }
+        On::Set(set) => {
+            let from = set.partition_point(|&i| (i as usize) < block.start);
+            let to = set.partition_point(|&i| (i as usize) < block.end);
+            (from < to).then_some(Which::Set(&set[from..to]))
+        }
+    }
+}
+
+impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
+    fn points(&self) -> usize {
+        self.cloud.len()
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        let (bonds, u) = (self.view(), components::<D>(u, self.points()));
+        self.sweep::<D>(&on, out, |intact, rows, out| {
+            force_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
+        });
+    }
+
+    fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
+        let (bonds, u) = (self.view(), components::<D>(u, self.points()));
+        self.sweep::<1>(&On::All, out, |intact, rows, out| {
+            energy_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
+        });
+    }
+
+    fn energy(&self, t: f64, u: &[f64]) -> f64 {
+        let mut density = vec![0.0; self.points()];
+        self.add_energy_density(t, u, &mut density);
+        ordered_sum(self.points(), |i| density[i] * self.cloud.volumes()[i])
+    }
+
+    /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ|, by Gershgorin's discs of 3×3 blocks.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let mut largest: f64 = 0.0;
+        for i in 0..self.points() {
+            let row: f64 = self
+                .bonds
+                .family(i)
+                .filter(|&(entry, _)| self.is_intact(i, entry))
+                .map(|(entry, j)| {
+                    self.stiffness[entry].abs() / self.bonds.length(&self.cloud, i, j)
+                })
+                .sum();
+            largest = largest.max(2.0 * row / density(i));
+        }
+        largest.sqrt()
+    }
+
+    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
+        if self.can_break() {
+            let step = Some((accepted.mean_velocity, accepted.dt));
+            self.decide::<true>(accepted.u, step, &on, out);
+        } else {
+            self.add_force(accepted.t, accepted.u, on, out);
+        }
+    }
+
+    fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
+        if self.can_break() {
+            // No force is written: any array of the right shape will do for the loop's slices.
+            let mut unused = vec![0.0; D * self.points()];
+            self.decide::<false>(u, None, &on, &mut unused);
+        }
+    }
+
+    fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        let n = self.points();
+        let (bonds, u) = (self.view(), components::<D>(u, n));
+        let direction = components::<D>(direction, n);
+        self.sweep::<D>(&On::All, out, |intact, rows, out| {
+            tangent_rows::<L, D>(
+                self.instruction_set,
+                &bonds,
+                &u,
+                &direction,
+                intact,
+                rows,
+                out,
+            );
+        });
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.blocks.iter().map(|block| block.tally.dissipated).sum()
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        self.blocks
+            .iter()
+            .map(|block| block.tally.broken)
+            .sum::<u64>()
+            / 2
+    }
+
+    fn can_break(&self) -> bool {
+        self.critical_stretch.is_finite()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        for (i, damage) in out.iter_mut().enumerate() {
+            let (mut whole, mut left) = (0.0, 0.0);
+            for (entry, j) in self.bonds.family(i) {
+                let present = self.bonds.present()[entry / LANES] >> (entry % LANES) & 1 == 1;
+                if !(present || self.damage.count_precut) {
+                    continue;
+                }
+                let weight = if self.damage.count {
+                    1.0
+                } else {
+                    self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
+                };
+                whole += weight;
+                if self.is_intact(i, entry) {
+                    left += weight;
+                }
+            }
+            *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
+        }
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.bonds.directed_bonds()
+    }
+
+    fn bytes(&self) -> usize {
+        self.bonds.bytes()
+            + size_of_val(&self.stiffness[..])
+            + self.bonds.geometric().len()
+            + self.breakable.as_ref().map_or(0, Vec::len)
+            + self.points() * (D + 1) * size_of::<f64>()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    fn as_linear(&self) -> Option<&dyn LinearOperator> {
+        L::LINEAR.then_some(self as &dyn LinearOperator)
+    }
+}
+
+impl<L: PairForce, const D: usize> LinearOperator for BondForce<L, D> {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.add_force(0.0, u, On::All, out);
+    }
+}
+
+impl<L: PairForce, const D: usize> Saved for BondForce<L, D> {
+    fn save(&self, archive: &mut Archive) {
+        let gather = |part: &dyn Fn(&BlockState) -> u64| self.blocks.iter().map(part).collect();
+        let intact = self.blocks.iter().flat_map(|b| b.intact.iter().copied());
+        archive.put("operator/intact", Values::U8(intact.collect()));
+        archive.put("operator/broken", Values::U64(gather(&|b| b.tally.broken)));
+        let dissipated = self.blocks.iter().map(|b| b.tally.dissipated);
+        archive.put("operator/dissipated", Values::F64(dissipated.collect()));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let mut intact = vec![0; self.bonds.geometric().len()];
+        let mut broken = vec![0; self.blocks.len()];
+        let mut dissipated = vec![0.0; self.blocks.len()];
+        archive.u8_into("operator/intact", &mut intact)?;
+        archive.u64_into("operator/broken", &mut broken)?;
+        archive.f64_into("operator/dissipated", &mut dissipated)?;
+        let mut rest = &intact[..];
+        for (k, block) in self.blocks.iter_mut().enumerate() {
+            let (own, after) = rest.split_at(block.intact.len());
+            block.intact.copy_from_slice(own);
+            rest = after;
+            block.tally.broken = broken[k];
+            block.tally.dissipated = dissipated[k];
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,212 @@
+//! Numbers on which pair forces are written: one `f64`, or eight side by side.
+//!
+//! A pair law is written once, generic over [`Real`]. With [`F64x8`] the loops over the lanes become vector instructions of the
+//! set the surrounding function is compiled for; with `f64` the same text is the naive twin used by tests. No
+//! operation is contracted or reassociated, so all instruction sets give the same bits.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::family::LANES;
+
+/// Arithmetic of the hot loops.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The same number in every lane.
+    fn splat(value: f64) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+}
+
+/// Eight numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct F64x8(pub [f64; LANES]);
+
+impl F64x8 {
+    /// Number by number.
+    #[inline(always)]
+    pub fn from_fn(number: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(number))
+    }
+
+    /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
+    #[inline(always)]
+    pub fn masked(self, mask: u8) -> Self {
+        Self::from_fn(|k| if mask >> k & 1 == 1 { self.0[k] } else { 0.0 })
+    }
+
+    /// One bit per lane: self > other. NaN compares false.
+    #[inline(always)]
+    pub fn greater(self, other: Self) -> u8 {
+        let mut mask = 0;
+        for k in 0..LANES {
+            mask |= u8::from(self.0[k] > other.0[k]) << k;
+        }
+        mask
+    }
+
+    /// The sum of the lanes, in a fixed order.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let a = self.0;
+        ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]))
+    }
+}
+
+macro_rules! lanewise {
+    ($trait:ident, $method:ident, $op:tt) => {
+        impl $trait for F64x8 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self::from_fn(|k| self.0[k] $op other.0[k])
+            }
+        }
+    };
+}
+lanewise!(Add, add, +);
+lanewise!(Sub, sub, -);
+lanewise!(Mul, mul, *);
+lanewise!(Div, div, /);
+
+impl Neg for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::from_fn(|k| -self.0[k])
+    }
+}
+
+impl Real for F64x8 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; LANES])
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::from_fn(|k| self.0[k].sqrt())
+    }
+}
+
+/// Σ a_c b_c.
+#[inline(always)]
+pub fn dot<T: Real, const D: usize>(a: [T; D], b: [T; D]) -> T {
+    let mut sum = a[0] * b[0];
+    for c in 1..D {
+        sum = sum + a[c] * b[c];
+    }
+    sum
+}
+
+/// The instruction set the hot loops run with, chosen once at start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InstructionSet {
+    /// What every machine of the architecture has.
+    Baseline,
+    /// AVX2.
+    Avx2,
+    /// AVX-512 (F, VL, DQ, BW).
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The best set of this machine.
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512bw")
+            {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+
+    /// All sets this machine can run.
+    pub fn available() -> Vec<Self> {
+        let best = Self::detect();
+        let mut sets = vec![Self::Baseline];
+        if best != Self::Baseline {
+            sets.push(Self::Avx2);
+        }
+        if best == Self::Avx512 {
+            sets.push(Self::Avx512);
+        }
+        sets
+    }
+
+    /// As written in run.json.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "baseline",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+}
+
+/// Compiles one inlined function for every instruction set and chooses among the copies at run time.
+macro_rules! for_each_instruction_set {
+    ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident) => {
+        $(#[$doc])*
+        #[allow(clippy::too_many_arguments)]
+        $visibility fn $name<$($generics)*>(set: InstructionSet, $($parameter: $type),*) {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+                fn avx512<$($generics)*>($($parameter: $type),*) {
+                    $body::<$($argument),*>($($parameter),*)
+                }
+                #[target_feature(enable = "avx2")]
+                fn avx2<$($generics)*>($($parameter: $type),*) {
+                    $body::<$($argument),*>($($parameter),*)
+                }
+                match set {
+                    // SAFETY: InstructionSet::detect found these features on this machine.
+                    InstructionSet::Avx512 => return unsafe { avx512::<$($argument),*>($($parameter),*) },
+                    // SAFETY: as above.
+                    InstructionSet::Avx2 => return unsafe { avx2::<$($argument),*>($($parameter),*) },
+                    InstructionSet::Baseline => {}
+                }
+            }
+            let _ = set;
+            $body::<$($argument),*>($($parameter),*)
+        }
+    };
+}
+pub(crate) use for_each_instruction_set;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks() {
+        let numbers = F64x8([1.0, f64::NAN, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+        assert_eq!(numbers.masked(0b1000_0101).sum(), 12.0);
+        assert_eq!(numbers.greater(F64x8::splat(4.5)), 0b1111_0000);
+    }
+}

@@ -1,0 +1,103 @@
+//! Force operators: u ↦ internal force density.
+//!
+//! All vectors on points are component-major slices of length `dimension * points` (see [`crate::space::PointCloud`]): displacements in m,
+//! force densities in N/m³. An operator knows neither the density nor the scheme that calls it.
+
+mod bond_force;
+mod bond_kernels;
+pub mod lanes;
+
+use std::ops::Range;
+
+pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use lanes::InstructionSet;
+
+use crate::archive::Saved;
+
+/// Which points an evaluation is wanted for. A point's result does not depend on this choice, bit for bit.
+#[derive(Debug, Clone)]
+pub enum On<'a> {
+    /// All points.
+    All,
+    /// A range of points.
+    Range(Range<usize>),
+    /// Points by number, ascending.
+    Set(&'a [u32]),
+}
+
+/// A state at the end of an accepted step.
+#[derive(Debug, Clone, Copy)]
+pub struct Accepted<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// Displacement, m.
+    pub u: &'a [f64],
+    /// Mean velocity over the step that led here, m/s: (u − u before)/dt.
+    pub mean_velocity: &'a [f64],
+    /// Length of that step, s.
+    pub dt: f64,
+}
+
+/// The internal force density of a body.
+pub trait ForceOperator: Saved + Send + Sync {
+    /// Number of points.
+    fn points(&self) -> usize;
+
+    /// Dimension, so that vectors have `dimension * points` entries.
+    fn dimension(&self) -> usize;
+
+    /// Adds the force density at displacement `u` to `out`, for the points named by `on`; other entries stay.
+    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]);
+
+    /// Adds the elastic energy density (J/m³, one number per point) at displacement `u` to `out`.
+    fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]);
+
+    /// Elastic energy of the body, J.
+    fn energy(&self, t: f64, u: &[f64]) -> f64;
+
+    /// An upper bound of the highest angular frequency (1/s) about the reference state, for the density ρ (kg/m³) of each point.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64;
+
+    /// Decides breaking at an accepted state and adds the force density there, in one sweep: a bond found over-stretched exerts no
+    /// force in it. For schemes whose step ends on an evaluation.
+    ///
+    /// The bond's force acted in the first half of the step only, so the energy it dissipates is its energy at breaking minus
+    /// half the work its force would have done in this step.
+    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]);
+
+    /// The same decision alone, for schemes that do not end on an evaluation: the bond acted until now and dissipates its whole energy.
+    fn advance_history(&mut self, t: f64, u: &[f64], on: On<'_>);
+
+    /// The derivative of the force density at `u` in the given direction, for Newton–Krylov methods and frequency estimates.
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]);
+
+    /// Energy dissipated by breaking so far, J.
+    fn dissipated(&self) -> f64;
+
+    /// Bonds broken so far, each counted once.
+    fn broken_bonds(&self) -> u64;
+
+    /// Whether anything in the body can break.
+    fn can_break(&self) -> bool;
+
+    /// Damage of each point, 0 … 1.
+    fn damage_into(&self, out: &mut [f64]);
+
+    /// Family entries that the loops run over: each bond counts twice.
+    fn directed_bonds(&self) -> u64;
+
+    /// Memory, bytes.
+    fn bytes(&self) -> usize;
+
+    /// What the loops are compiled for.
+    fn instruction_set(&self) -> InstructionSet;
+
+    /// The operator as a linear map, if it is one.
+    fn as_linear(&self) -> Option<&dyn LinearOperator>;
+}
+
+/// A force density linear in the displacement.
+pub trait LinearOperator: Send + Sync {
+    /// `out` = force density at `u`.
+    fn apply_into(&self, u: &[f64], out: &mut [f64]);
+}

@@ -1,0 +1,110 @@
+//! Loops over points on all cores whose results do not depend on the number of threads.
+//!
+//! Points are taken in fixed blocks; a block is computed by one thread from start to end, and sums over blocks are added in the blocks' order.
+
+use rayon::prelude::*;
+
+/// Points in a block.
+pub const BLOCK: usize = 512;
+
+/// Calls `work(first point, one slice per component, the block's own state)` for every block, on all cores, without allocating.
+pub(crate) fn for_each_block<const D: usize, S: Send>(
+    out: [&mut [f64]; D],
+    states: &mut [S],
+    work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+) {
+    split(0, out, states, work);
+}
+
+fn split<const D: usize, S: Send>(
+    first_block: usize,
+    out: [&mut [f64]; D],
+    states: &mut [S],
+    work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+) {
+    match states {
+        [] => {}
+        [state] => work(first_block * BLOCK, out, state),
+        _ => {
+            let middle = states.len() / 2;
+            let (low_states, high_states) = states.split_at_mut(middle);
+            let mut high: [&mut [f64]; D] = std::array::from_fn(|_| Default::default());
+            let mut component = 0;
+            let low = out.map(|slice| {
+                let (low, rest) = slice.split_at_mut(middle * BLOCK);
+                high[component] = rest;
+                component += 1;
+                low
+            });
+            rayon::join(
+                || split(first_block, low, low_states, work),
+                || split(first_block + middle, high, high_states, work),
+            );
+        }
+    }
+}
+
+/// The components of a component-major array.
+pub(crate) fn components_mut<const D: usize>(array: &mut [f64], n: usize) -> [&mut [f64]; D] {
+    let mut rest = array;
+    std::array::from_fn(|_| {
+        let (component, tail) = std::mem::take(&mut rest).split_at_mut(n);
+        rest = tail;
+        component
+    })
+}
+
+/// The components of a component-major array.
+pub(crate) fn components<const D: usize>(array: &[f64], n: usize) -> [&[f64]; D] {
+    std::array::from_fn(|c| &array[c * n..(c + 1) * n])
+}
+
+/// Σ term(i) for i < n, with the same rounding for any number of threads.
+pub fn ordered_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let partial: Vec<f64> = (0..n.div_ceil(BLOCK))
+        .into_par_iter()
+        .map(|block| {
+            (block * BLOCK..((block + 1) * BLOCK).min(n))
+                .map(&term)
+                .sum()
+        })
+        .collect();
+    partial.iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_is_visited_once() {
+        let n = 5 * BLOCK + 17;
+        let mut out = vec![0.0; 2 * n];
+        let mut states = vec![0usize; n.div_ceil(BLOCK)];
+        let [x, y] = components_mut::<2>(&mut out, n);
+        for_each_block([x, y], &mut states, &|first, [x, y], state| {
+            *state = x.len();
+            for k in 0..x.len() {
+                x[k] += (first + k) as f64;
+                y[k] += 1.0;
+            }
+        });
+        for i in 0..n {
+            assert_eq!((out[i], out[n + i]), (i as f64, 1.0));
+        }
+        assert_eq!(states.iter().sum::<usize>(), n);
+    }
+
+    #[test]
+    fn sums_have_the_same_bits_on_any_number_of_threads() {
+        let term = |i: usize| (i as f64 * 0.37).sin() / (1.0 + i as f64);
+        let on = |threads| {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap()
+                .install(|| ordered_sum(100_003, term))
+        };
+        assert_eq!(on(1).to_bits(), on(3).to_bits());
+    }
+}

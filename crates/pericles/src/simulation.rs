@@ -1,0 +1,245 @@
+//! The loop over time, written once.
+
+use crate::archive::{Archive, Saved};
+use crate::error::PericlesError;
+use crate::observe::{ObserveError, Observer, Schedule, Snapshot};
+use crate::system::System;
+use crate::time::{Integrator, State};
+
+/// What the caller wants after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop here, between two steps.
+    Stop,
+}
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It reached its end.
+    Finished,
+    /// The caller stopped it.
+    Stopped,
+}
+
+/// Why a run failed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// Numbers that are no longer numbers, or more energy than was put in.
+    #[error(
+        "the run became unstable at step {step}, t = {t:e} s: {cause}; the fastest point is {point} at ({}, {}, {}) m with {speed:e} m/s. \
+         Usual causes: a time step above the stable limit, a load that tears points off, a displacement prescribed too fast",
+        place[0], place[1], place[2]
+    )]
+    Unstable {
+        /// Step at which it was found.
+        step: u64,
+        /// Time, s.
+        t: f64,
+        /// What was found.
+        cause: &'static str,
+        /// The fastest point, in the user's numbering.
+        point: usize,
+        /// Its reference position, m.
+        place: [f64; 3],
+        /// Its speed, m/s.
+        speed: f64,
+    },
+    /// The integrator failed.
+    #[error(transparent)]
+    Step(#[from] PericlesError),
+    /// An observer failed, usually because it could not write.
+    #[error("{0}")]
+    Observe(#[source] ObserveError),
+}
+
+/// An observer with its schedule.
+struct Scheduled {
+    schedule: Schedule,
+    observer: Box<dyn Observer>,
+}
+
+/// A body, a scheme, and those who look on.
+pub struct Simulation {
+    system: System,
+    integrator: Box<dyn Integrator>,
+    state: State,
+    dt: f64,
+    steps: u64,
+    observers: Vec<Scheduled>,
+    /// Energy at the start, J: what the guard allows for besides work.
+    initial_energy: f64,
+}
+
+/// Steps between two looks at the kinetic energy.
+const GUARD_EVERY: u64 = 20;
+
+impl Simulation {
+    /// A run of `steps` steps of length `dt` from the given state, which is prepared by the integrator.
+    pub fn new(
+        mut system: System,
+        mut integrator: Box<dyn Integrator>,
+        mut state: State,
+        dt: f64,
+        steps: u64,
+    ) -> Self {
+        integrator.start(&mut system, &mut state);
+        let initial_energy =
+            system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u);
+        Self {
+            system,
+            integrator,
+            state,
+            dt,
+            steps,
+            observers: Vec::new(),
+            initial_energy,
+        }
+    }
+
+    /// Adds an observer.
+    pub fn observe(&mut self, schedule: Schedule, observer: Box<dyn Observer>) {
+        self.observers.push(Scheduled { schedule, observer });
+    }
+
+    /// The equation of motion.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The present state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The scheme.
+    pub fn integrator(&self) -> &dyn Integrator {
+        &*self.integrator
+    }
+
+    /// Step length, s.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Steps of the whole run.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Kinetic and elastic energy at the start, J.
+    pub fn initial_energy(&self) -> f64 {
+        self.initial_energy
+    }
+
+    /// A view of the present for observers.
+    pub fn snapshot(&self) -> Snapshot<'_> {
+        Snapshot::new(&self.system, &self.state, self.initial_energy)
+    }
+
+    /// Runs to the end, or until `control` says stop; `control` is asked after every step.
+    ///
+    /// Observers see the initial state of a fresh run, every state their schedule names, and the last.
+    ///
+    /// # Errors
+    /// Instability, a failing integrator, a failing observer. The state is then the one at which it happened.
+    pub fn run(
+        &mut self,
+        mut control: impl FnMut(&Self) -> Control,
+    ) -> Result<Outcome, SimulationError> {
+        if self.state.step == 0 {
+            self.show()?;
+        }
+        while self.state.step < self.steps {
+            // From the step's number, not by adding up, so that time carries no error.
+            let t_next = (self.state.step + 1) as f64 * self.dt;
+            self.integrator
+                .step(&mut self.system, &mut self.state, t_next)?;
+            let last = self.state.step == self.steps;
+            if last || self.state.step.is_multiple_of(GUARD_EVERY) {
+                self.guard()?;
+            }
+            self.show()?;
+            if !last && control(self) == Control::Stop {
+                return Ok(Outcome::Stopped);
+            }
+        }
+        Ok(Outcome::Finished)
+    }
+
+    fn show(&mut self) -> Result<(), SimulationError> {
+        let (step, dt, steps) = (self.state.step, self.dt, self.steps);
+        let due = |s: &Scheduled| s.schedule.is_due(step, dt, steps);
+        if !self.observers.iter().any(due) {
+            return Ok(());
+        }
+        let mut observers = std::mem::take(&mut self.observers);
+        let snapshot = self.snapshot();
+        let mut shown = Ok(());
+        for scheduled in observers.iter_mut().filter(|s| due(s)) {
+            shown = scheduled.observer.observe(&snapshot);
+            if shown.is_err() {
+                break;
+            }
+        }
+        self.observers = observers;
+        shown.map_err(SimulationError::Observe)
+    }
+
+    /// The kinetic energy cannot exceed what was there and what was put in. Twice that, to leave room for the errors of a coarse step.
+    fn guard(&self) -> Result<(), SimulationError> {
+        let kinetic = self.system.kinetic_energy(&self.state.v);
+        let available = self.initial_energy + self.system.ledger().exchanged;
+        let cause = if !kinetic.is_finite() {
+            "a velocity is not a number"
+        } else if kinetic > 2.0 * available.max(f64::MIN_POSITIVE) {
+            "the kinetic energy exceeds twice the energy put in"
+        } else {
+            return Ok(());
+        };
+        let n = self.system.points();
+        let speed = |i: usize| -> f64 {
+            let square: f64 = (0..self.system.dimension())
+                .map(|c| self.state.v[c * n + i].powi(2))
+                .sum();
+            if square.is_nan() {
+                f64::INFINITY
+            } else {
+                square.sqrt()
+            }
+        };
+        let point = (0..n).fold(0, |best, i| if speed(i) > speed(best) { i } else { best });
+        Err(SimulationError::Unstable {
+            step: self.state.step,
+            t: self.state.t,
+            cause,
+            point: self.system.cloud().user_number(point),
+            place: self.system.cloud().point(point),
+            speed: speed(point),
+        })
+    }
+}
+
+impl Saved for Simulation {
+    fn save(&self, archive: &mut Archive) {
+        self.state.save(archive);
+        self.system.save(archive);
+        self.integrator.save(archive);
+        for scheduled in &self.observers {
+            scheduled.observer.save(archive);
+        }
+    }
+
+    fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
+        self.state.restore(archive)?;
+        self.system.restore(archive)?;
+        self.integrator.restore(archive)?;
+        for scheduled in &mut self.observers {
+            scheduled.observer.restore(archive)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! The highest frequency of a body, which limits explicit time steps.
+
+use crate::error::{PericlesError, Result};
+use crate::parallel::ordered_sum;
+use crate::system::System;
+
+/// The highest angular frequency of the linearised free vibration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HighestFrequency {
+    /// Estimate from below, 1/s: the largest Ritz value.
+    pub estimate: f64,
+    /// Whether the residual shows the estimate to be within 0.1 %.
+    pub converged: bool,
+    /// A bound that is never exceeded, 1/s (Gershgorin).
+    pub bound: f64,
+    /// Operator applications used.
+    pub applications: usize,
+}
+
+impl HighestFrequency {
+    /// The largest stable step of a scheme with the limit ω dt ≤ `limit`, with a safety factor: from the estimate if it converged, else from the
+    /// bound.
+    pub fn stable_step(&self, limit: f64, safety: f64) -> f64 {
+        safety * limit
+            / if self.converged {
+                self.estimate
+            } else {
+                self.bound
+            }
+    }
+}
+
+/// Relative residual at which the largest Ritz value counts as converged; the value's own error is smaller still.
+const TOLERANCE: f64 = 1e-3;
+const MOST_APPLICATIONS: usize = 300;
+const CHECK_EVERY: usize = 10;
+
+/// Lanczos iteration on M⁻¹K at displacement `u`, in the inner product of the masses, from a fixed start vector.
+///
+/// # Errors
+/// A body without any stiffness.
+pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency> {
+    let density = |i: usize| system.density().at(i);
+    let bound = system.operator().frequency_bound(&density);
+    let n = system.points();
+    let mass = |entry: usize| system.cloud().volumes()[entry % n] * density(entry % n);
+    let inner = |x: &[f64], y: &[f64]| ordered_sum(x.len(), |k| mass(k) * x[k] * y[k]);
+
+    let mut current = start_vector(u.len());
+    system.hold(&mut current);
+    let norm = inner(&current, &current).sqrt();
+    if norm == 0.0 || bound == 0.0 {
+        return Err(PericlesError::NoStiffness);
+    }
+    scale(&mut current, 1.0 / norm);
+    let mut previous = vec![0.0; u.len()];
+    let mut next = vec![0.0; u.len()];
+    let (mut diagonal, mut off) = (Vec::new(), Vec::<f64>::new());
+    let mut estimate = 0.0;
+    let mut converged = false;
+    while diagonal.len() < MOST_APPLICATIONS && !converged {
+        system.vibration_into(u, &current, &mut next);
+        let alpha = inner(&next, &current);
+        let before = off.last().copied().unwrap_or(0.0);
+        for k in 0..next.len() {
+            next[k] -= alpha * current[k] + before * previous[k];
+        }
+        let beta = inner(&next, &next).sqrt();
+        diagonal.push(alpha);
+        let exhausted = beta <= 1e-12 * (alpha.abs() + before);
+        if exhausted || diagonal.len() % CHECK_EVERY == 0 {
+            let (value, last) = largest_eigenpair(&diagonal, &off);
+            estimate = value;
+            converged = exhausted || beta * last.abs() <= TOLERANCE * value;
+        }
+        if exhausted {
+            break;
+        }
+        off.push(beta);
+        scale(&mut next, 1.0 / beta);
+        std::mem::swap(&mut previous, &mut current);
+        std::mem::swap(&mut current, &mut next);
+    }
+    if !(estimate > 0.0 && estimate.is_finite()) {
+        return Err(PericlesError::NoStiffness);
+    }
+    Ok(HighestFrequency {
+        estimate: estimate.sqrt(),
+        converged,
+        bound,
+        applications: diagonal.len(),
+    })
+}
+
+fn scale(x: &mut [f64], factor: f64) {
+    x.iter_mut().for_each(|x| *x *= factor);
+}
+
+/// Pseudo-random numbers in (−1, 1) that are the same on every machine (SplitMix64).
+fn start_vector(len: usize) -> Vec<f64> {
+    let mut seed = 0x9E37_79B9_7F4A_7C15u64;
+    (0..len)
+        .map(|_| {
+            seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let mut z = seed;
+            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        })
+        .collect()
+}
+
+/// The largest eigenvalue of a symmetric tridiagonal matrix, by bisection, and the last entry of its unit eigenvector, by inverse iteration.
+fn largest_eigenpair(diagonal: &[f64], off: &[f64]) -> (f64, f64) {
+    let n = diagonal.len();
+    let coupling = |k: usize| off.get(k).copied().unwrap_or(0.0);
+    let radius = |k: usize| {
+        let before = if k > 0 { coupling(k - 1).abs() } else { 0.0 };
+        let after = if k + 1 < n { coupling(k).abs() } else { 0.0 };
+        before + after
+    };
+    let mut high = (0..n).fold(f64::NEG_INFINITY, |m, k| m.max(diagonal[k] + radius(k)));
+    let mut low = (0..n).fold(f64::NEG_INFINITY, |m, k| m.max(diagonal[k]));
+    // Sturm: all pivots of T − x are negative exactly if x lies above every eigenvalue.
+    let above = |x: f64| {
+        let mut pivot = diagonal[0] - x;
+        for k in 1..n {
+            if pivot >= 0.0 {
+                return false;
+            }
+            pivot = diagonal[k] - x - coupling(k - 1).powi(2) / pivot;
+        }
+        pivot < 0.0
+    };
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if above(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let value = high;
+    let mut vector = vec![1.0; n];
+    for _ in 0..3 {
+        solve_shifted(diagonal, off, value * (1.0 + 1e-14), &mut vector);
+        let norm = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+        vector.iter_mut().for_each(|x| *x /= norm);
+    }
+    (value, vector[n - 1])
+}
+
+/// Solves (T − x) y = y in place; x above the spectrum, so that no pivoting is needed.
+fn solve_shifted(diagonal: &[f64], off: &[f64], x: f64, y: &mut [f64]) {
+    let n = diagonal.len();
+    let tiny = f64::EPSILON * x.abs().max(f64::MIN_POSITIVE);
+    let mut pivots = vec![0.0; n];
+    pivots[0] = (diagonal[0] - x).min(-tiny);
+    for k in 1..n {
+        let factor = off[k - 1] / pivots[k - 1];
+        pivots[k] = (diagonal[k] - x - factor * off[k - 1]).min(-tiny);
+        y[k] -= factor * y[k - 1];
+    }
+    y[n - 1] /= pivots[n - 1];
+    for k in (0..n - 1).rev() {
+        y[k] = (y[k] - off[k] * y[k + 1]) / pivots[k];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tridiagonal_matrix_of_a_string() {
+        // 2 on the diagonal, −1 beside it: eigenvalues 2 − 2 cos(kπ/(n+1)).
+        let n = 40;
+        let (value, last) = largest_eigenpair(&vec![2.0; n], &vec![-1.0; n - 1]);
+        let angle = std::f64::consts::PI / (n + 1) as f64;
+        let exact = 2.0 + 2.0 * angle.cos();
+        assert!((value - exact).abs() < 1e-13);
+        let entry = (2.0 / (n + 1) as f64).sqrt() * (n as f64 * angle * n as f64).sin();
+        assert!((last.abs() - entry.abs()).abs() < 1e-6, "{last} {entry}");
+    }
+}

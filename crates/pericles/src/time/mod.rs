@@ -1,0 +1,78 @@
+//! Time integration: u(t) ↦ u(t + dt), any scheme.
+
+mod frequency;
+mod verlet;
+
+pub use frequency::{HighestFrequency, highest_frequency};
+pub use verlet::VelocityVerlet;
+
+use crate::archive::{Archive, Saved, Values};
+use crate::error::Result;
+use crate::system::System;
+
+/// The state of a body: structure of arrays, component-major.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Time, s.
+    pub t: f64,
+    /// Steps taken.
+    pub step: u64,
+    /// Displacement, m.
+    pub u: Vec<f64>,
+    /// Velocity, m/s.
+    pub v: Vec<f64>,
+    /// Acceleration at (t, u), m/s².
+    pub a: Vec<f64>,
+}
+
+impl State {
+    /// A body at rest in its reference position at t = 0.
+    pub fn at_rest(entries: usize) -> Self {
+        Self {
+            t: 0.0,
+            step: 0,
+            u: vec![0.0; entries],
+            v: vec![0.0; entries],
+            a: vec![0.0; entries],
+        }
+    }
+}
+
+impl Saved for State {
+    fn save(&self, archive: &mut Archive) {
+        archive.put("state/t", Values::F64(vec![self.t]));
+        archive.put("state/step", Values::U64(vec![self.step]));
+        archive.put("state/u", Values::F64(self.u.clone()));
+        archive.put("state/v", Values::F64(self.v.clone()));
+        archive.put("state/a", Values::F64(self.a.clone()));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        archive.f64_into("state/t", std::slice::from_mut(&mut self.t))?;
+        archive.u64_into("state/step", std::slice::from_mut(&mut self.step))?;
+        archive.f64_into("state/u", &mut self.u)?;
+        archive.f64_into("state/v", &mut self.v)?;
+        archive.f64_into("state/a", &mut self.a)
+    }
+}
+
+/// A scheme that takes a body from one time to the next. Integrators never print, save to files or catch signals.
+pub trait Integrator: Saved + Send {
+    /// Name as in decks.
+    fn name(&self) -> &'static str;
+
+    /// Order of the error in dt.
+    fn order(&self) -> u32;
+
+    /// The largest stable ω dt for an undamped oscillation; none if the scheme is stable for any step.
+    fn stability_limit(&self) -> Option<f64>;
+
+    /// Prepares the state at t = 0: prescribed values and initial acceleration.
+    fn start(&mut self, system: &mut System, state: &mut State);
+
+    /// Steps from `state.t` to `t_next`.
+    ///
+    /// # Errors
+    /// Schemes that iterate report when they do not converge.
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()>;
+}
