@@ -2,7 +2,7 @@
 
 use crate::archive::{Archive, Saved};
 use crate::error::PericlesError;
-use crate::observe::{ObserveError, Observer, Schedule, Snapshot};
+use crate::observe::{ObserveError, Observer, Schedule, Snapshot, StartEnergy};
 use crate::system::System;
 use crate::time::{Integrator, State};
 
@@ -70,8 +70,7 @@ pub struct Simulation {
     dt: f64,
     steps: u64,
     observers: Vec<Scheduled>,
-    /// Energy at the start, J: what the guard allows for besides work.
-    initial_energy: f64,
+    start: StartEnergy,
 }
 
 /// Steps between two looks at the kinetic energy.
@@ -87,8 +86,10 @@ impl Simulation {
         steps: u64,
     ) -> Self {
         integrator.start(&mut system, &mut state);
-        let initial_energy =
-            system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u);
+        let start = StartEnergy {
+            energy: system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u),
+            scheme: integrator.energy_correction(&system, &state, dt),
+        };
         Self {
             system,
             integrator,
@@ -96,7 +97,7 @@ impl Simulation {
             dt,
             steps,
             observers: Vec::new(),
-            initial_energy,
+            start,
         }
     }
 
@@ -130,14 +131,17 @@ impl Simulation {
         self.steps
     }
 
-    /// Kinetic and elastic energy at the start, J.
-    pub fn initial_energy(&self) -> f64 {
-        self.initial_energy
+    /// Energies at the start.
+    pub fn start_energy(&self) -> StartEnergy {
+        self.start
     }
 
     /// A view of the present for observers.
     pub fn snapshot(&self) -> Snapshot<'_> {
-        Snapshot::new(&self.system, &self.state, self.initial_energy)
+        let scheme = self
+            .integrator
+            .energy_correction(&self.system, &self.state, self.dt);
+        Snapshot::new(&self.system, &self.state, self.start, scheme)
     }
 
     /// Runs to the end, or until `control` says stop; `control` is asked after every step.
@@ -192,7 +196,7 @@ impl Simulation {
     /// The kinetic energy cannot exceed what was there and what was put in. Twice that, to leave room for the errors of a coarse step.
     fn guard(&self) -> Result<(), SimulationError> {
         let kinetic = self.system.kinetic_energy(&self.state.v);
-        let available = self.initial_energy + self.system.ledger().exchanged;
+        let available = self.start.energy + self.system.ledger().exchanged;
         let cause = if !kinetic.is_finite() {
             "a velocity is not a number"
         } else if kinetic > 2.0 * available.max(f64::MIN_POSITIVE) {

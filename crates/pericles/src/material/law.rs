@@ -1,6 +1,6 @@
 //! Pair forces of bonds.
 
-use crate::operator::lanes::{Real, dot};
+use crate::operator::lanes::{Real, dot, vector};
 
 /// Which pair force a material uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +55,7 @@ fn lengths<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T, T, T) {
 /// q = |ξ+η|² − |ξ|² = η·(2ξ+η)
 #[inline(always)]
 fn growth<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
-    dot(eta, std::array::from_fn(|c| xi[c] + xi[c] + eta[c]))
+    dot(eta, vector(|c| xi[c] + xi[c] + eta[c]))
 }
 
 impl PairForce for BondStretch {
@@ -65,7 +65,7 @@ impl PairForce for BondStretch {
     fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
         let (_, q, deformed, reference) = lengths(xi, eta);
         let factor = q / (reference * (deformed + reference) * deformed);
-        std::array::from_fn(|c| factor * (xi[c] + eta[c]))
+        vector(|c| factor * (xi[c] + eta[c]))
     }
 
     #[inline(always)]
@@ -78,10 +78,10 @@ impl PairForce for BondStretch {
     #[inline(always)]
     fn tangent<T: Real, const D: usize>(xi: [T; D], eta: [T; D], d: [T; D]) -> [T; D] {
         let (square, q, deformed, reference) = lengths(xi, eta);
-        let y: [T; D] = std::array::from_fn(|c| xi[c] + eta[c]);
+        let y: [T; D] = vector(|c| xi[c] + eta[c]);
         let factor = q / (reference * (deformed + reference) * deformed);
         let along = dot(y, d) / (square + q) * (T::splat(1.0) / reference - factor);
-        std::array::from_fn(|c| factor * d[c] + along * y[c])
+        vector(|c| factor * d[c] + along * y[c])
     }
 
     #[inline(always)]
@@ -101,7 +101,7 @@ impl PairForce for LinearBond {
     fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
         let square = dot(xi, xi);
         let factor = dot(xi, eta) / (square * square.sqrt());
-        std::array::from_fn(|c| factor * xi[c])
+        vector(|c| factor * xi[c])
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ mod snapshot;
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
-pub use snapshot::{Energies, Field, Snapshot};
+pub use snapshot::{Energies, Field, Snapshot, StartEnergy};
 
 use crate::archive::Saved;
 

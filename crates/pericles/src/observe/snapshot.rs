@@ -74,32 +74,46 @@ pub struct Energies {
     pub work: f64,
     /// Kinetic and elastic energy at the start.
     pub initial: f64,
+    /// What the scheme's own conserved energy differs from kinetic + elastic, less that difference at the start
+    /// ([`crate::time::Integrator::energy_correction`]).
+    pub scheme: f64,
 }
 
 impl Energies {
-    /// kinetic + elastic + dissipated − work − initial: zero if nothing is lost.
+    /// kinetic + elastic + dissipated + scheme − work − initial: zero but for the nonlinearity of the forces, of order dt², if nothing is lost.
     pub fn balance(&self) -> f64 {
-        self.kinetic + self.elastic + self.dissipated - self.work - self.initial
+        self.kinetic + self.elastic + self.dissipated + self.scheme - self.work - self.initial
     }
+}
+
+/// Energies at the start of a run, J.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StartEnergy {
+    /// Kinetic and elastic energy.
+    pub energy: f64,
+    /// The scheme's correction.
+    pub scheme: f64,
 }
 
 /// A body at one time.
 pub struct Snapshot<'a> {
     system: &'a System,
     state: &'a State,
-    initial_energy: f64,
+    start: StartEnergy,
+    scheme: f64,
     force: OnceCell<Vec<f64>>,
     damage: OnceCell<Vec<f64>>,
     energy_density: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Snapshot<'a> {
-    /// A view of a state; `initial_energy` is kinetic and elastic energy at the start.
-    pub fn new(system: &'a System, state: &'a State, initial_energy: f64) -> Self {
+    /// A view of a state, with the energies of the run's start and the scheme's correction at this state.
+    pub fn new(system: &'a System, state: &'a State, start: StartEnergy, scheme: f64) -> Self {
         Self {
             system,
             state,
-            initial_energy,
+            start,
+            scheme,
             force: OnceCell::new(),
             damage: OnceCell::new(),
             energy_density: OnceCell::new(),
@@ -149,7 +163,8 @@ impl<'a> Snapshot<'a> {
             elastic: self.system.operator().energy(self.state.t, &self.state.u),
             dissipated: self.system.operator().dissipated(),
             work: self.system.ledger().work,
-            initial: self.initial_energy,
+            initial: self.start.energy,
+            scheme: self.scheme - self.start.scheme,
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A point's bonds are taken eight at a time: gather the neighbours, compute the pair force in lanes, mask bonds that do not exist, and
 //! add up. The lanes of the sum are added in a fixed order at the end, so a point's force depends on nothing but its neighbours.
 
-use super::lanes::{F64x8, InstructionSet, for_each_instruction_set};
+use super::lanes::{F64x8, InstructionSet, for_each_instruction_set, vector};
 use crate::family::LANES;
 use crate::material::PairForce;
 
@@ -33,10 +33,18 @@ pub(super) enum Which<'a> {
 
 impl Which<'_> {
     #[inline(always)]
-    fn for_each(&self, mut row: impl FnMut(usize)) {
+    fn len(&self) -> usize {
         match self {
-            Which::Range(range) => range.clone().for_each(row),
-            Which::Set(set) => set.iter().for_each(|&i| row(i as usize)),
+            Which::Range(range) => range.len(),
+            Which::Set(set) => set.len(),
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, k: usize) -> usize {
+        match self {
+            Which::Range(range) => range.start + k,
+            Which::Set(set) => set[k] as usize,
         }
     }
 }
@@ -51,7 +59,7 @@ impl<const D: usize> Bonds<'_, D> {
     /// ξ of the eight bonds of a group of point i.
     #[inline(always)]
     fn vectors(&self, i: usize, group: usize) -> [F64x8; D] {
-        std::array::from_fn(|c| {
+        vector(|c| {
             let here = self.reference[c][i];
             let there = self.gather(group, self.reference[c]);
             F64x8::from_fn(|k| (there.0[k] - here) * self.unit)
@@ -61,7 +69,7 @@ impl<const D: usize> Bonds<'_, D> {
     /// Differences of a vector field along the eight bonds of a group.
     #[inline(always)]
     fn differences(&self, i: usize, group: usize, field: &[&[f64]; D]) -> [F64x8; D] {
-        std::array::from_fn(|c| {
+        vector(|c| {
             let here = field[c][i];
             let there = self.gather(group, field[c]);
             F64x8::from_fn(|k| there.0[k] - here)
@@ -84,7 +92,9 @@ fn force_rows_body<L: PairForce, const D: usize>(
     out: &mut [&mut [f64]; D],
 ) {
     let first_group = bonds.start[rows.first];
-    rows.which.for_each(|i| {
+    // No closure here: one that is not inlined would take the baseline's instructions.
+    for k in 0..rows.which.len() {
+        let i = rows.which.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mask = intact[group - first_group];
@@ -101,7 +111,7 @@ fn force_rows_body<L: PairForce, const D: usize>(
         for c in 0..D {
             out[c][i - rows.first] += sum[c].sum();
         }
-    });
+    }
 }
 
 /// An entry that broke, and the energy it booked.
@@ -147,7 +157,8 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
 ) {
     let first_group = bonds.start[rows.first];
     let threshold = F64x8([rule.threshold; LANES]);
-    rows.which.for_each(|i| {
+    for k in 0..rows.which.len() {
+        let i = rows.which.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mut mask = intact[group - first_group];
@@ -177,7 +188,7 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
                 out[c][i - rows.first] += sum[c].sum();
             }
         }
-    });
+    }
 }
 
 /// Books the energy of the bonds of a group that have just broken. Each end books half.
@@ -230,7 +241,8 @@ fn energy_rows_body<L: PairForce, const D: usize>(
     out: &mut [&mut [f64]; 1],
 ) {
     let first_group = bonds.start[rows.first];
-    rows.which.for_each(|i| {
+    for k in 0..rows.which.len() {
+        let i = rows.which.at(k);
         let mut sum = F64x8([0.0; LANES]);
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mask = intact[group - first_group];
@@ -239,7 +251,7 @@ fn energy_rows_body<L: PairForce, const D: usize>(
             sum = sum + (bonds.stiffness(group) * L::energy(xi, eta)).masked(mask);
         }
         out[0][i - rows.first] += 0.5 * sum.sum();
-    });
+    }
 }
 
 #[inline(always)]
@@ -252,7 +264,8 @@ fn tangent_rows_body<L: PairForce, const D: usize>(
     out: &mut [&mut [f64]; D],
 ) {
     let first_group = bonds.start[rows.first];
-    rows.which.for_each(|i| {
+    for k in 0..rows.which.len() {
+        let i = rows.which.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mask = intact[group - first_group];
@@ -268,7 +281,7 @@ fn tangent_rows_body<L: PairForce, const D: usize>(
         for c in 0..D {
             out[c][i - rows.first] = sum[c].sum();
         }
-    });
+    }
 }
 
 for_each_instruction_set! {

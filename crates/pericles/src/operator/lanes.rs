@@ -42,8 +42,12 @@ pub struct F64x8(pub [f64; LANES]);
 impl F64x8 {
     /// Number by number.
     #[inline(always)]
-    pub fn from_fn(number: impl FnMut(usize) -> f64) -> Self {
-        Self(std::array::from_fn(number))
+    pub fn from_fn(mut number: impl FnMut(usize) -> f64) -> Self {
+        let mut lanes = [0.0; LANES];
+        for k in 0..LANES {
+            lanes[k] = number(k);
+        }
+        Self(lanes)
     }
 
     /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
@@ -103,6 +107,18 @@ impl Real for F64x8 {
     fn sqrt(self) -> Self {
         Self::from_fn(|k| self.0[k].sqrt())
     }
+}
+
+/// The vector whose component c is `component(c)`.
+///
+/// `std::array::from_fn` would do, but is not always inlined, and a copy that is not takes the instruction set of the baseline.
+#[inline(always)]
+pub fn vector<T: Real, const D: usize>(mut component: impl FnMut(usize) -> T) -> [T; D] {
+    let mut vector = [T::splat(0.0); D];
+    for c in 0..D {
+        vector[c] = component(c);
+    }
+    vector
 }
 
 /// Σ a_c b_c.

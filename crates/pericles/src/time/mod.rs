@@ -67,6 +67,13 @@ pub trait Integrator: Saved + Send {
     /// The largest stable ω dt for an undamped oscillation; none if the scheme is stable for any step.
     fn stability_limit(&self) -> Option<f64>;
 
+    /// What must be added to the kinetic and elastic energy of a state so that their sum is what the scheme itself conserves, J. Zero
+    /// for schemes that conserve the plain energy, or none.
+    fn energy_correction(&self, system: &System, state: &State, dt: f64) -> f64 {
+        let _ = (system, state, dt);
+        0.0
+    }
+
     /// Prepares the state at t = 0: prescribed values and initial acceleration.
     fn start(&mut self, system: &mut System, state: &mut State);
 
