@@ -1,10 +1,45 @@
-//! Files of Pericles.
+//! The files of Pericles.
+//!
+//! | what | for whom | entry |
+//! |---|---|---|
+//! | output folder | one run at a time, locked | [`OutputFolder`] |
+//! | `.vtu` and `.pvd` | ParaView and other viewers | [`VtuFile`], [`PvdSeries`] |
+//! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
+//! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
+//! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
+//!
+//! Everything takes plain slices in the layout of Pericles, one component after the other (`u[c * n + i]`), in SI units, and knows
+//! nothing of physics. Field files, pictures and checkpoints are written whole or not at all ([`write_atomically`]), and their bytes
+//! depend on the data alone: no clock, path or thread count. [`IoError`] tells apart what a user can do something about.
+//!
+//! ```
+//! use pericles_io::{CheckpointFolder, Column, CsvTable, OutputFolder, PvdSeries, VtkField, VtuFile};
+//! # fn main() -> Result<(), pericles_io::IoError> {
+//! # let place = tempfile::tempdir().unwrap();
+//! # let stem = place.path().join("branching");
+//! let folder = OutputFolder::create_numbered(stem)?;
+//! let mut history = CsvTable::create(folder.file("history.csv"), &[Column::real("time", "s")])?;
+//! let mut series = PvdSeries::create(folder.file("fields.pvd"))?;
+//! folder.subfolder("fields")?;
+//!
+//! let (x, damage) = ([0.0, 1e-3], [0.0, 0.5]);
+//! let file = PvdSeries::field_file(series.len());
+//! VtuFile::new(1, &x).field(VtkField::scalar("Damage", &damage)).write(folder.file(&file))?;
+//! series.push(0.0, &file)?;
+//! history.append(&[0.0.into()])?;
+//! history.sync()?; // what a checkpoint remembers must be on the disk
+//! let checkpoints = CheckpointFolder::new(folder.file("checkpoints"));
+//! # drop(checkpoints);
+//! # Ok(())
+//! # }
+//! ```
 
 mod atomic;
 mod checkpoint;
 mod csv;
 mod error;
 mod folder;
+mod picture;
 mod vtk;
 
 pub use atomic::write_atomically;
@@ -12,4 +47,5 @@ pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
 pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
+pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -1,108 +1,12 @@
-//! Tables of numbers as comma-separated text: one header row with units, then one row per output.
-//!
-//! ```text
-//! step,time [s],kinetic [J],tip x [m]
-//! 0,0.0,0.0,
-//! 400,1e-6,3.2147,0.05
-//! ```
-//! Real numbers are written with the fewest digits that read back to the same number; NaN is an empty cell. A header cell that
-//! holds a comma or a quote is quoted as in RFC 4180. A table can be cut back to a length known from a checkpoint and continued
-//! there, so that the file of a stopped and resumed run equals that of an uninterrupted one.
-//!
-//! ```
-//! use pericles_io::{Column, CsvTable, read_csv};
-//! let folder = tempfile::tempdir().unwrap();
-//! let path = folder.path().join("history.csv");
-//! let mut table = CsvTable::create(&path, &[Column::integer("step"), Column::real("time", "s")]).unwrap();
-//! table.append(&[400.into(), 1e-6.into()]).unwrap();
-//! table.flush().unwrap();
-//! let read = read_csv(&path).unwrap();
-//! assert_eq!(read.column("time"), Some(&[1e-6][..]));
-//! ```
+//! The table that a run writes.
 
 use std::fmt::Write as _;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use super::column::{Cell, Column, header_row};
 use crate::IoError;
-
-/// One column of a table.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Column {
-    name: String,
-    unit: String,
-    integer: bool,
-}
-
-impl Column {
-    /// A column of real numbers; the unit is empty for a pure number.
-    pub fn real(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-            integer: false,
-        }
-    }
-
-    /// A column of whole numbers.
-    pub fn integer(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: String::new(),
-            integer: true,
-        }
-    }
-
-    /// The name, without the unit.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// The unit; empty for a pure number.
-    pub fn unit(&self) -> &str {
-        &self.unit
-    }
-
-    fn header(&self) -> String {
-        if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{} [{}]", self.name, self.unit)
-        }
-    }
-
-    fn from_header(cell: &str) -> Self {
-        match cell
-            .strip_suffix(']')
-            .and_then(|rest| rest.rsplit_once(" ["))
-        {
-            Some((name, unit)) => Self::real(name, unit),
-            None => Self::real(cell, ""),
-        }
-    }
-}
-
-/// One value of a row.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cell {
-    /// A real number; NaN leaves the cell empty.
-    Real(f64),
-    /// A whole number.
-    Integer(i64),
-}
-
-impl From<f64> for Cell {
-    fn from(value: f64) -> Self {
-        Self::Real(value)
-    }
-}
-
-impl From<i64> for Cell {
-    fn from(value: i64) -> Self {
-        Self::Integer(value)
-    }
-}
 
 /// A table that grows row by row.
 #[derive(Debug)]
@@ -252,112 +156,12 @@ impl CsvTable {
     }
 }
 
-/// A table read back.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CsvData {
-    /// Names and units.
-    pub columns: Vec<Column>,
-    /// One vector per column, all of the same length; empty cells are NaN.
-    pub values: Vec<Vec<f64>>,
-}
-
-impl CsvData {
-    /// The values of the first column of this name.
-    pub fn column(&self, name: &str) -> Option<&[f64]> {
-        let index = self.columns.iter().position(|column| column.name == name)?;
-        Some(&self.values[index])
-    }
-
-    /// The number of rows below the header.
-    pub fn rows(&self) -> usize {
-        self.values.first().map_or(0, Vec::len)
-    }
-}
-
-/// Reads a table of numbers; columns of whole numbers come as reals too.
-pub fn read_csv(path: impl AsRef<Path>) -> Result<CsvData, IoError> {
-    let path = path.as_ref();
-    let text = fs::read_to_string(path).map_err(|source| match source.kind() {
-        std::io::ErrorKind::InvalidData => IoError::damaged(path, "it is not UTF-8 text"),
-        _ => IoError::reading(path, source),
-    })?;
-    let mut lines = text.lines().enumerate();
-    let header = lines
-        .next()
-        .and_then(|(_, line)| split_quoted(line))
-        .ok_or_else(|| IoError::damaged(path, "it has no header row"))?;
-    let columns: Vec<_> = header
-        .iter()
-        .map(|cell| Column::from_header(cell))
-        .collect();
-    let mut values = vec![Vec::new(); columns.len()];
-    for (index, line) in lines {
-        let row = index + 1;
-        let count = line.split(',').count();
-        if count != columns.len() {
-            let expected = columns.len();
-            let reason = format!("row {row} has {count} cells instead of {expected}");
-            return Err(IoError::damaged(path, reason));
-        }
-        for (cell, column) in line.split(',').zip(&mut values) {
-            column.push(match cell.trim() {
-                "" => f64::NAN,
-                text => text.parse().map_err(|_| {
-                    IoError::damaged(
-                        path,
-                        format!("row {row} holds {text:?}, which is no number"),
-                    )
-                })?,
-            });
-        }
-    }
-    Ok(CsvData { columns, values })
-}
-
-fn header_row(path: &Path, columns: &[Column]) -> Result<String, IoError> {
-    let cells: Vec<_> = columns.iter().map(Column::header).collect();
-    if cells.is_empty() || cells.iter().any(|cell| cell.contains(['\n', '\r'])) {
-        return Err(IoError::Unsuitable {
-            path: path.to_path_buf(),
-            reason: "a table needs at least one column, and names of one line".into(),
-        });
-    }
-    let quoted: Vec<_> = cells
-        .iter()
-        .map(|cell| {
-            if cell.contains(['"', ',']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.clone()
-            }
-        })
-        .collect();
-    Ok(quoted.join(",") + "\n")
-}
-
-/// Splits a row with quoted cells; `None` when a quote is left open.
-fn split_quoted(line: &str) -> Option<Vec<String>> {
-    let mut cells = vec![String::new()];
-    let mut quoted = false;
-    let mut characters = line.chars().peekable();
-    while let Some(character) = characters.next() {
-        match character {
-            '"' if quoted && characters.peek() == Some(&'"') => {
-                characters.next();
-                cells.last_mut()?.push('"');
-            }
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            _ => cells.last_mut()?.push(character),
-        }
-    }
-    (!quoted).then_some(cells)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::read_csv;
     use super::*;
     use proptest::prelude::*;
+    use std::fs;
 
     fn columns() -> [Column; 3] {
         [

@@ -1,0 +1,158 @@
+//! Lines cut to a rectangle and into dashes, in pixels.
+
+use super::frame::Area;
+
+pub(super) fn inside((x, y): (f64, f64), area: Area) -> bool {
+    x >= area.left - 0.5 && x <= area.right + 0.5 && y >= area.top - 0.5 && y <= area.bottom + 0.5
+}
+
+/// The parts of a line inside an area, without points that lie on the one before.
+pub(super) fn clipped(line: &[(f64, f64)], area: Area) -> Vec<Vec<(f64, f64)>> {
+    let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
+    if let [only] = line {
+        return if inside(*only, area) {
+            vec![vec![*only]]
+        } else {
+            pieces
+        };
+    }
+    for pair in line.windows(2) {
+        let Some((from, to)) = clipped_segment(pair[0], pair[1], area) else {
+            continue;
+        };
+        match pieces.last_mut() {
+            Some(piece) if piece.last() == Some(&from) => piece.push(to),
+            _ => pieces.push(vec![from, to]),
+        }
+    }
+    pieces
+}
+
+/// The part of a segment inside an area (Y.-D. Liang, B. Barsky, ACM Transactions on Graphics 3, 1984).
+fn clipped_segment(a: (f64, f64), b: (f64, f64), area: Area) -> Option<((f64, f64), (f64, f64))> {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for (speed, room) in [
+        (-dx, a.0 - area.left),
+        (dx, area.right - a.0),
+        (-dy, a.1 - area.top),
+        (dy, area.bottom - a.1),
+    ] {
+        if speed == 0.0 && room < 0.0 {
+            return None;
+        }
+        if speed < 0.0 {
+            enter = enter.max(room / speed);
+        } else if speed > 0.0 {
+            leave = leave.min(room / speed);
+        }
+    }
+    // ends inside are kept as they are, so that the next segment starts at the same place
+    let at = |s: f64, end| {
+        if s == 0.0 || s == 1.0 {
+            end
+        } else {
+            (a.0 + s * dx, a.1 + s * dy)
+        }
+    };
+    (enter <= leave).then(|| (at(enter, a), at(leave, b)))
+}
+
+/// The length of a line inside an area; a single point counts as one.
+pub(super) fn length_inside(line: &[(f64, f64)], area: Area) -> f64 {
+    if let [only] = line {
+        return if inside(*only, area) { 1.0 } else { 0.0 };
+    }
+    line.windows(2)
+        .filter_map(|pair| clipped_segment(pair[0], pair[1], area))
+        .map(|(a, b)| (b.0 - a.0).hypot(b.1 - a.1) + 1e-3)
+        .sum()
+}
+
+/// Cuts a line into dashes; the round ends of a stroke take a part of the gaps.
+pub(super) fn dashes(line: &[(f64, f64)], length: f64) -> Vec<Vec<(f64, f64)>> {
+    let lengths = [length, 0.9 * length];
+    let mut pieces = Vec::new();
+    let mut piece: Vec<(f64, f64)> = line.first().copied().into_iter().collect();
+    let (mut drawing, mut left) = (true, lengths[0]);
+    for pair in line.windows(2) {
+        let (mut at, to) = (pair[0], pair[1]);
+        loop {
+            let rest = (to.0 - at.0).hypot(to.1 - at.1);
+            if rest <= left {
+                left -= rest;
+                if drawing {
+                    piece.push(to);
+                }
+                break;
+            }
+            let part = left / rest;
+            at = (at.0 + part * (to.0 - at.0), at.1 + part * (to.1 - at.1));
+            if drawing {
+                piece.push(at);
+                pieces.push(std::mem::take(&mut piece));
+            } else {
+                piece = vec![at];
+            }
+            drawing = !drawing;
+            left = lengths[usize::from(!drawing)];
+        }
+    }
+    if drawing {
+        pieces.push(piece);
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AREA: Area = Area {
+        left: 0.0,
+        top: 0.0,
+        right: 10.0,
+        bottom: 10.0,
+    };
+
+    fn length(line: &[(f64, f64)]) -> f64 {
+        line.windows(2)
+            .map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1))
+            .sum()
+    }
+
+    #[test]
+    fn lines_are_cut_where_they_cross_the_border() {
+        let zigzag = [
+            (-5.0, 5.0),
+            (5.0, 5.0),
+            (5.0, 15.0),
+            (8.0, 15.0),
+            (8.0, 2.0),
+        ];
+        let expected = vec![
+            vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)],
+            vec![(8.0, 10.0), (8.0, 2.0)],
+        ];
+        assert_eq!(clipped(&zigzag, AREA), expected);
+        assert_eq!(length_inside(&zigzag, AREA).round(), 18.0);
+        assert!(clipped(&[(-1.0, 5.0), (-1.0, 9.0)], AREA).is_empty());
+        // passes the corner
+        assert!(clipped(&[(-5.0, 5.0), (5.0, -6.0)], AREA).is_empty());
+        assert_eq!(clipped(&[(5.0, 5.0)], AREA), vec![vec![(5.0, 5.0)]]);
+        assert!(clipped(&[], AREA).is_empty());
+    }
+
+    #[test]
+    fn dashes_have_their_length_round_corners_too() {
+        let line = [(0.0, 0.0), (7.0, 0.0), (7.0, 30.0)];
+        let pieces = dashes(&line, 5.0);
+        assert!(
+            pieces[..pieces.len() - 1]
+                .iter()
+                .all(|piece| (length(piece) - 5.0).abs() < 1e-9)
+        );
+        // 37 = 3 × (5 + 4.5) + 5 + 3.5: four dashes
+        assert_eq!(pieces.len(), 4);
+    }
+}

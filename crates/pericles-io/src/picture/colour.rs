@@ -1,0 +1,137 @@
+//! Colour maps, as tables of colours at equal distances with straight lines between them.
+
+use super::bitmap::Rgb;
+
+/// From a number to a colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ColourMap {
+    /// From dark blue over green to yellow: equal steps look equal, in grey too. For damage, energies, sizes.
+    #[default]
+    Viridis,
+    /// From blue over light grey to red, zero in the middle. For displacements, velocities and everything with a sign.
+    Diverging,
+}
+
+/// Every sixteenth of `viridis` by N. Smith and S. van der Walt (2015), <https://bids.github.io/colormap/>, public domain (CC0).
+const VIRIDIS: [Rgb; 17] = [
+    [68, 1, 84],
+    [72, 24, 106],
+    [71, 45, 123],
+    [66, 64, 134],
+    [59, 82, 139],
+    [51, 99, 141],
+    [44, 114, 142],
+    [38, 129, 142],
+    [33, 144, 140],
+    [31, 159, 136],
+    [40, 174, 128],
+    [62, 188, 116],
+    [93, 201, 99],
+    [130, 211, 76],
+    [171, 220, 50],
+    [213, 226, 26],
+    [253, 231, 37],
+];
+
+/// Every sixteenth of the cool to warm map of K. Moreland, Diverging color maps for scientific visualization, ISVC 2009,
+/// <https://www.kennethmoreland.com/color-maps/>.
+const COOL_TO_WARM: [Rgb; 17] = [
+    [59, 76, 192],
+    [77, 104, 215],
+    [98, 130, 234],
+    [119, 154, 247],
+    [141, 176, 254],
+    [163, 194, 254],
+    [184, 208, 249],
+    [204, 217, 238],
+    [221, 221, 221],
+    [236, 211, 197],
+    [245, 196, 173],
+    [247, 177, 148],
+    [244, 154, 123],
+    [236, 127, 99],
+    [222, 96, 77],
+    [203, 62, 56],
+    [180, 4, 38],
+];
+
+/// Where there is no number.
+pub(super) const NO_VALUE: Rgb = [170, 170, 170];
+
+/// Colours of curves, told apart by colour-blind readers too: M. Okabe and K. Ito, Color universal design (2008); black and the
+/// yellow, which is faint on white, come last.
+pub(super) const CURVES: [Rgb; 8] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [86, 180, 233],
+    [230, 159, 0],
+    [0, 0, 0],
+    [240, 228, 66],
+];
+
+impl ColourMap {
+    /// The colour of a number between 0 and 1; numbers outside take the colour of the nearer end, NaN is grey.
+    pub fn colour(self, fraction: f64) -> [u8; 3] {
+        if fraction.is_nan() {
+            return NO_VALUE;
+        }
+        let table = match self {
+            Self::Viridis => &VIRIDIS,
+            Self::Diverging => &COOL_TO_WARM,
+        };
+        let last = table.len() - 1;
+        let place = fraction.clamp(0.0, 1.0) * last as f64;
+        let below = (place as usize).min(last - 1);
+        let weight = place - below as f64;
+        std::array::from_fn(|c| {
+            let (a, b) = (f64::from(table[below][c]), f64::from(table[below + 1][c]));
+            (a + weight * (b - a)).round() as u8
+        })
+    }
+}
+
+/// The same colour darker, for faces in the shade.
+pub(super) fn shaded(colour: Rgb, light: f64) -> Rgb {
+    colour.map(|value| (f64::from(value) * light).round() as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn luminance([r, g, b]: Rgb) -> f64 {
+        let linear = |v: u8| (f64::from(v) / 255.0).powf(2.2);
+        0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+    }
+
+    #[test]
+    fn viridis_grows_lighter_all_the_way() {
+        let light: Vec<_> = (0..=255)
+            .map(|k| luminance(ColourMap::Viridis.colour(f64::from(k) / 255.0)))
+            .collect();
+        assert!(light.windows(2).all(|pair| pair[1] >= pair[0] - 2e-3));
+        assert!(light[255] - light[0] > 0.6);
+    }
+
+    #[test]
+    fn the_diverging_map_is_lightest_in_the_middle() {
+        let middle = luminance(ColourMap::Diverging.colour(0.5));
+        for fraction in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
+            assert!(luminance(ColourMap::Diverging.colour(fraction)) < middle);
+        }
+        let [r, g, b] = ColourMap::Diverging.colour(0.5);
+        assert!(r == g && g == b);
+    }
+
+    #[test]
+    fn ends_and_middles_are_as_tabulated() {
+        assert_eq!(ColourMap::Viridis.colour(-1.0), [68, 1, 84]);
+        assert_eq!(ColourMap::Viridis.colour(f64::INFINITY), [253, 231, 37]);
+        assert_eq!(ColourMap::Viridis.colour(0.5), [33, 144, 140]);
+        assert_eq!(ColourMap::Viridis.colour(1.0 / 32.0), [70, 13, 95]);
+        assert_eq!(ColourMap::Viridis.colour(f64::NAN), NO_VALUE);
+    }
+}

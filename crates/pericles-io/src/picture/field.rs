@@ -1,0 +1,344 @@
+//! A scalar field on the points of a body.
+
+use std::path::Path;
+
+use super::bitmap::{Bitmap, Rgb, SIZES};
+use super::colour::ColourMap;
+use super::curve::{Axis, Curve};
+use super::frame::{ColourBar, Header, finite_range, widened};
+use super::line_chart::LineChart;
+use super::units::{Shown, quantity};
+use super::{plane, solid};
+use crate::IoError;
+
+/// The edges of the cells that the points stand for, in metres.
+#[derive(Debug, Clone, Copy)]
+pub enum CellSize<'a> {
+    /// Equal squares or cubes.
+    Uniform(f64),
+    /// Equal rectangles or blocks.
+    Block([f64; 3]),
+    /// A square or cube per point.
+    PerPoint(&'a [f64]),
+}
+
+impl CellSize<'_> {
+    fn of(&self, point: usize) -> [f64; 3] {
+        match *self {
+            Self::Uniform(edge) => [edge; 3],
+            Self::Block(edges) => edges,
+            Self::PerPoint(edges) => [edges[point]; 3],
+        }
+    }
+}
+
+/// A picture of a scalar on the points of a bar, a plane body or a solid.
+#[derive(Debug, Clone)]
+#[must_use = "nothing is drawn before `write`"]
+pub struct FieldPicture<'a> {
+    dimension: usize,
+    positions: &'a [f64],
+    values: &'a [f64],
+    cell: CellSize<'a>,
+    displacement: Option<(&'a [f64], f64)>,
+    name: String,
+    unit: String,
+    title: String,
+    time: Option<f64>,
+    colours: ColourMap,
+    range: Option<(f64, f64)>,
+    window: Option<([f64; 3], [f64; 3])>,
+    view: [f64; 3],
+    width: u32,
+}
+
+/// Where a cell is drawn, its half edges, and its colour.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drawn {
+    pub(super) middle: [f64; 3],
+    pub(super) half: [f64; 3],
+    pub(super) colour: Rgb,
+}
+
+/// What the plane and the solid picture have in common.
+#[derive(Debug)]
+pub(super) struct Scene {
+    pub(super) width: usize,
+    pub(super) cells: Vec<Drawn>,
+    /// Opposite corners of the part that is shown.
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
+    pub(super) bar: ColourBar,
+    pub(super) header: Header,
+    pub(super) view: [f64; 3],
+}
+
+impl<'a> FieldPicture<'a> {
+    /// `values` on points in 1, 2 or 3 dimensions; positions are x of all points, then y, then z.
+    pub fn new(
+        dimension: usize,
+        positions: &'a [f64],
+        values: &'a [f64],
+        cell: CellSize<'a>,
+    ) -> Self {
+        Self {
+            dimension,
+            positions,
+            values,
+            cell,
+            displacement: None,
+            name: String::new(),
+            unit: String::new(),
+            title: String::new(),
+            time: None,
+            colours: ColourMap::default(),
+            range: None,
+            window: None,
+            // from the front right, a little above: x runs to the right, z upwards
+            view: [0.5, -1.0, 0.6],
+            width: 1200,
+        }
+    }
+
+    /// What the values are, and their SI unit; empty for a pure number.
+    pub fn label(mut self, name: impl Into<String>, unit: impl Into<String>) -> Self {
+        self.name = name.into();
+        self.unit = unit.into();
+        self
+    }
+
+    /// Draws the points at their displaced places, the displacement (x of all points, then y …) enlarged by `scale`.
+    pub fn displacement(mut self, displacement: &'a [f64], scale: f64) -> Self {
+        self.displacement = Some((displacement, scale));
+        self
+    }
+
+    /// The line above the picture.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// The time in seconds, for the stamp in the upper right corner.
+    pub fn time(mut self, time: f64) -> Self {
+        self.time = Some(time);
+        self
+    }
+
+    /// The colours; [`ColourMap::Viridis`] if not chosen.
+    pub fn colours(mut self, colours: ColourMap) -> Self {
+        self.colours = colours;
+        self
+    }
+
+    /// The values at the ends of the colour bar. Otherwise they are the smallest and the largest value, and for
+    /// [`ColourMap::Diverging`] the largest size to both sides of zero.
+    pub fn range(mut self, low: f64, high: f64) -> Self {
+        self.range = Some((low, high));
+        self
+    }
+
+    /// The part of space that is shown, by opposite corners, so that the pictures of a series have the same axes. Otherwise it is
+    /// what the displaced body fills.
+    pub fn window(mut self, low: [f64; 3], high: [f64; 3]) -> Self {
+        self.window = Some((low, high));
+        self
+    }
+
+    /// The direction from a solid to the eye.
+    pub fn view(mut self, view: [f64; 3]) -> Self {
+        self.view = view;
+        self
+    }
+
+    /// The width of the picture in pixels, from 200 to 16 000; 1200 if not chosen. The height follows the body.
+    pub fn width(mut self, width: u32) -> Self {
+        self.width = width;
+        self
+    }
+
+    /// Draws the picture and writes it as PNG, whole or not at all.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
+        let path = path.as_ref();
+        self.draw(path)?.write_png(path)
+    }
+
+    fn draw(&self, path: &Path) -> Result<Bitmap, IoError> {
+        self.check(path)?;
+        if self.dimension == 1 {
+            return self.along_the_bar().draw(path);
+        }
+        let scene = self.scene();
+        if scene.cells.is_empty() {
+            return Err(IoError::Unsuitable {
+                path: path.to_path_buf(),
+                reason: "no point has a finite position".into(),
+            });
+        }
+        Ok(if self.dimension == 2 {
+            plane::draw(&scene)
+        } else {
+            solid::draw(&scene)
+        })
+    }
+
+    fn check(&self, path: &Path) -> Result<(), IoError> {
+        let unsuitable = |reason: String| IoError::Unsuitable {
+            path: path.to_path_buf(),
+            reason,
+        };
+        if !(1..=3).contains(&self.dimension) {
+            let given = self.dimension;
+            return Err(unsuitable(format!(
+                "a body of dimension {given}; 1, 2 and 3 are allowed"
+            )));
+        }
+        if !SIZES.contains(&self.width) {
+            let (width, least, most) = (self.width, SIZES.start(), SIZES.end());
+            return Err(unsuitable(format!(
+                "a width of {width} pixels; {least} to {most} are allowed"
+            )));
+        }
+        if self.view.iter().any(|c| !c.is_finite()) || self.view == [0.0; 3] {
+            return Err(unsuitable(
+                "the view needs a direction that is finite and not zero".into(),
+            ));
+        }
+        let n = self.values.len();
+        let mut arrays = vec![("positions", self.positions.len(), self.dimension * n)];
+        if let Some((u, _)) = self.displacement {
+            arrays.push(("displacement", u.len(), self.dimension * n));
+        }
+        if let CellSize::PerPoint(edges) = self.cell {
+            arrays.push(("cell sizes", edges.len(), n));
+        }
+        for (what, given, expected) in arrays {
+            if given != expected {
+                return Err(IoError::Shape {
+                    path: path.to_path_buf(),
+                    what: what.into(),
+                    expected,
+                    given,
+                });
+            }
+        }
+        if let Some((low, high)) = self.window {
+            let fits =
+                (0..self.dimension).all(|c| low[c] < high[c] && (high[c] - low[c]).is_finite());
+            if !fits {
+                return Err(unsuitable(
+                    "the window needs a lower and a higher corner".into(),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The displaced place of a point; zero in the dimensions that the body does not have.
+    fn place(&self, point: usize) -> [f64; 3] {
+        let n = self.values.len();
+        std::array::from_fn(|c| {
+            if c >= self.dimension {
+                return 0.0;
+            }
+            let at = c * n + point;
+            let moved = self.displacement.map_or(0.0, |(u, scale)| scale * u[at]);
+            self.positions[at] + moved
+        })
+    }
+
+    fn colour_bar(&self) -> ColourBar {
+        let (low, high) = self.range.unwrap_or_else(|| {
+            let (low, high) = finite_range(self.values.iter().copied());
+            match self.colours {
+                ColourMap::Diverging if low <= high => {
+                    let size = low.abs().max(high.abs());
+                    (-size, size)
+                }
+                _ => (low, high),
+            }
+        });
+        let (low, high) = match (widened(low, high), self.colours) {
+            ((0.0, high), ColourMap::Diverging) if self.range.is_none() => (-high, high),
+            (range, _) => range,
+        };
+        ColourBar {
+            map: self.colours,
+            low,
+            high,
+            shown: Shown::for_size(low.abs().max(high.abs()), &self.unit),
+        }
+    }
+
+    fn scene(&self) -> Scene {
+        let bar = self.colour_bar();
+        let mut cells = Vec::with_capacity(self.values.len());
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for (point, &value) in self.values.iter().enumerate() {
+            let middle = self.place(point);
+            let half = self.cell.of(point).map(|edge| {
+                if edge.is_finite() {
+                    0.5 * edge.abs()
+                } else {
+                    0.0
+                }
+            });
+            // After a blow-up some places are not finite; the rest is still worth seeing.
+            if middle.iter().any(|c| !c.is_finite()) {
+                continue;
+            }
+            for c in 0..3 {
+                low[c] = low[c].min(middle[c] - half[c]);
+                high[c] = high[c].max(middle[c] + half[c]);
+            }
+            let colour = bar.colour(value);
+            cells.push(Drawn {
+                middle,
+                half,
+                colour,
+            });
+        }
+        let (low, high) = self.window.unwrap_or((low, high));
+        let header = Header {
+            title: self.title.clone(),
+            stamp: self.stamp(),
+            bar_label: bar.shown.label(&self.name),
+        };
+        Scene {
+            width: self.width as usize,
+            cells,
+            low,
+            high,
+            bar,
+            header,
+            view: self.view,
+        }
+    }
+
+    fn stamp(&self) -> String {
+        self.time
+            .map(|time| format!("t = {}", quantity(time, "s")))
+            .unwrap_or_default()
+    }
+
+    /// The field of a bar as a curve.
+    fn along_the_bar(&self) -> LineChart {
+        let mut order: Vec<usize> = (0..self.values.len()).collect();
+        order.sort_by(|&a, &b| self.positions[a].total_cmp(&self.positions[b]));
+        let x: Vec<f64> = order.iter().map(|&point| self.place(point)[0]).collect();
+        let y: Vec<f64> = order.iter().map(|&point| self.values[point]).collect();
+        let mut along = Axis::new("x", "m");
+        if let Some((low, high)) = self.window {
+            along = along.range(low[0], high[0]);
+        }
+        let mut across = Axis::new(&self.name, &self.unit);
+        if let Some((low, high)) = self.range {
+            across = across.range(low, high);
+        }
+        LineChart::new(along, across)
+            .title(&self.title)
+            .stamp(self.stamp())
+            .width(self.width)
+            .curve(Curve::line("", &x, &y))
+    }
+}

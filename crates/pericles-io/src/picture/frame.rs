@@ -1,0 +1,330 @@
+//! What surrounds the data: axes, header and colour bar.
+
+use super::bitmap::{Bitmap, INK, Rgb};
+use super::colour::ColourMap;
+use super::text::{self, Align, Style};
+use super::ticks::Ticks;
+use super::units::Shown;
+
+const GRID: Rgb = [224, 224, 224];
+
+/// Sizes in pixels, for a picture of a certain width. They make text readable when a width of 1200 is shown on half a page.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    pub(super) tick_text: f64,
+    pub(super) label_text: f64,
+    pub(super) title_text: f64,
+    pub(super) gap: f64,
+    pub(super) tick: f64,
+    pub(super) line: f64,
+}
+
+impl Sizes {
+    pub(super) fn of_width(width: usize) -> Self {
+        let unit = width as f64 / 1200.0;
+        Self {
+            tick_text: 21.0 * unit,
+            label_text: 23.0 * unit,
+            title_text: 26.0 * unit,
+            gap: 12.0 * unit,
+            tick: 8.0 * unit,
+            line: (1.5 * unit).max(1.0),
+        }
+    }
+
+    /// Room below a plot for ticks and a label.
+    pub(super) fn below(&self) -> f64 {
+        self.tick + 1.5 * self.tick_text + 1.3 * self.label_text + self.gap
+    }
+
+    /// Room beside a plot for ticks and a label that runs upwards.
+    pub(super) fn beside(&self, ticks: &Ticks) -> f64 {
+        let labels = ticks.longest(|label| text::width(label, self.tick_text));
+        2.0 * self.gap + 1.3 * self.label_text + labels + 1.5 * self.tick
+    }
+}
+
+/// A rectangle of the picture, in pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Area {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Area {
+    pub(super) fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    pub(super) fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+}
+
+/// The numbers along one direction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) logarithmic: bool,
+}
+
+impl Scale {
+    /// Where a number lies, 0 at the low and 1 at the high end.
+    pub(super) fn fraction(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
+
+    pub(super) fn ticks(&self, wanted: usize) -> Ticks {
+        if self.logarithmic {
+            Ticks::logarithmic(self.low, self.high, wanted)
+        } else {
+            Ticks::linear(self.low, self.high, wanted)
+        }
+    }
+}
+
+/// One axis as drawn.
+#[derive(Debug, Clone)]
+pub(super) struct AxisText {
+    pub(super) ticks: Ticks,
+    pub(super) label: String,
+}
+
+/// A rectangle with coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) area: Area,
+    pub(super) x: Scale,
+    pub(super) y: Scale,
+}
+
+impl Frame {
+    /// The place of a point in pixels.
+    pub(super) fn place(&self, x: f64, y: f64) -> (f64, f64) {
+        (
+            self.area.left + self.x.fraction(x) * self.area.width(),
+            self.area.bottom - self.y.fraction(y) * self.area.height(),
+        )
+    }
+
+    pub(super) fn draw_grid(&self, bitmap: &mut Bitmap, x: &AxisText, y: &AxisText, sizes: &Sizes) {
+        let area = self.area;
+        for (value, _) in &x.ticks.major {
+            let (place, _) = self.place(*value, self.y.low);
+            bitmap.rule((place, area.top), (place, area.bottom), sizes.line, GRID);
+        }
+        for (value, _) in &y.ticks.major {
+            let (_, place) = self.place(self.x.low, *value);
+            bitmap.rule((area.left, place), (area.right, place), sizes.line, GRID);
+        }
+    }
+
+    pub(super) fn draw_axes(&self, bitmap: &mut Bitmap, x: &AxisText, y: &AxisText, sizes: &Sizes) {
+        let area = self.area;
+        let corner = (area.right, area.bottom);
+        bitmap.outline((area.left, area.top), corner, sizes.line, INK);
+        let tick = |bitmap: &mut Bitmap, from: (f64, f64), length: (f64, f64)| {
+            let to = (from.0 + length.0, from.1 + length.1);
+            bitmap.rule(from, to, sizes.line, INK);
+        };
+        let short = sizes.tick / 2.0;
+        for value in &x.ticks.minor {
+            let (place, _) = self.place(*value, self.y.low);
+            tick(bitmap, (place, area.bottom), (0.0, short));
+        }
+        for value in &y.ticks.minor {
+            let (_, place) = self.place(self.x.low, *value);
+            tick(bitmap, (area.left, place), (-short, 0.0));
+        }
+        let middle = area.bottom + sizes.tick + 0.8 * sizes.tick_text;
+        for (value, label) in &x.ticks.major {
+            let (place, _) = self.place(*value, self.y.low);
+            tick(bitmap, (place, area.bottom), (0.0, sizes.tick));
+            let style = Style::new(sizes.tick_text, Align::Middle);
+            text::draw(bitmap, label, (place, middle), style);
+        }
+        for (value, label) in &y.ticks.major {
+            let (_, place) = self.place(self.x.low, *value);
+            tick(bitmap, (area.left, place), (-sizes.tick, 0.0));
+            let style = Style::new(sizes.tick_text, Align::End);
+            text::draw(bitmap, label, (area.left - 1.5 * sizes.tick, place), style);
+        }
+        let style = Style::new(sizes.label_text, Align::Middle).fitted(&x.label, area.width());
+        let place = (
+            (area.left + area.right) / 2.0,
+            area.bottom + sizes.below() - sizes.gap - 0.5 * sizes.label_text,
+        );
+        text::draw(bitmap, &x.label, place, style);
+        let style = Style::new(sizes.label_text, Align::Middle).fitted(&y.label, area.height());
+        let place = (
+            area.left - sizes.beside(&y.ticks) + sizes.gap + 0.5 * sizes.label_text,
+            (area.top + area.bottom) / 2.0,
+        );
+        text::draw(bitmap, &y.label, place, style.up());
+    }
+}
+
+/// The lines above the plot: the title with the time, and the label of the colour bar.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Header {
+    pub(super) title: String,
+    pub(super) stamp: String,
+    pub(super) bar_label: String,
+}
+
+impl Header {
+    pub(super) fn height(&self, sizes: &Sizes) -> f64 {
+        sizes.gap + self.first_line(sizes) + self.second_line(sizes) + 0.5 * sizes.gap
+    }
+
+    fn first_line(&self, sizes: &Sizes) -> f64 {
+        if self.title.is_empty() && self.stamp.is_empty() {
+            0.0
+        } else {
+            1.5 * sizes.title_text
+        }
+    }
+
+    fn second_line(&self, sizes: &Sizes) -> f64 {
+        if self.bar_label.is_empty() {
+            0.0
+        } else {
+            1.5 * sizes.label_text
+        }
+    }
+
+    /// Draws between `left` and `right`, from the top of the picture on.
+    pub(super) fn draw(&self, bitmap: &mut Bitmap, left: f64, right: f64, sizes: &Sizes) {
+        let middle = sizes.gap + 0.5 * self.first_line(sizes);
+        let style = Style::new(sizes.title_text, Align::End);
+        text::draw(bitmap, &self.stamp, (right, middle), style);
+        let mut room = right - left;
+        if !self.stamp.is_empty() {
+            room -= text::width(&self.stamp, sizes.title_text) + sizes.title_text;
+        }
+        let style = Style::new(sizes.title_text, Align::Start).fitted(&self.title, room);
+        text::draw(bitmap, &self.title, (left, middle), style);
+
+        let middle = sizes.gap + self.first_line(sizes) + 0.5 * self.second_line(sizes);
+        let style = Style::new(sizes.label_text, Align::End).fitted(&self.bar_label, right - left);
+        text::draw(bitmap, &self.bar_label, (right, middle), style);
+    }
+}
+
+/// The key from colours to numbers, right of the plot.
+#[derive(Debug, Clone)]
+pub(super) struct ColourBar {
+    pub(super) map: ColourMap,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) shown: Shown,
+}
+
+impl ColourBar {
+    pub(super) fn colour(&self, value: f64) -> Rgb {
+        self.map.colour((value - self.low) / (self.high - self.low))
+    }
+
+    /// Ticks for a bar of this height in pixels.
+    pub(super) fn ticks(&self, height: f64, sizes: &Sizes) -> Ticks {
+        let factor = self.shown.factor;
+        let wanted = (height / (3.0 * sizes.tick_text)).clamp(2.0, 8.0) as usize;
+        Ticks::linear(self.low / factor, self.high / factor, wanted)
+    }
+
+    fn thickness(sizes: &Sizes) -> f64 {
+        1.3 * sizes.label_text
+    }
+
+    /// Room from the plot to the right end of the picture.
+    pub(super) fn room(ticks: &Ticks, sizes: &Sizes) -> f64 {
+        let labels = ticks.longest(|label| text::width(label, sizes.tick_text));
+        2.0 * sizes.gap + Self::thickness(sizes) + 1.5 * sizes.tick + labels + sizes.gap
+    }
+
+    /// Draws beside the right end of the plot, over its whole height.
+    pub(super) fn draw(&self, bitmap: &mut Bitmap, plot: Area, ticks: &Ticks, sizes: &Sizes) {
+        let left = (plot.right + 2.0 * sizes.gap).round();
+        let right = (left + Self::thickness(sizes)).round();
+        let (top, bottom) = (plot.top.round(), plot.bottom.round());
+        let height = bottom - top;
+        for row in 0..height as usize {
+            let fraction = 1.0 - (row as f64 + 0.5) / height;
+            let j = top + row as f64;
+            let colour = self.map.colour(fraction);
+            bitmap.fill_rectangle((left, j), (right, j + 1.0), colour, 1.0);
+        }
+        bitmap.outline((left, top), (right, bottom), sizes.line, INK);
+        let scale = Scale {
+            low: self.low / self.shown.factor,
+            high: self.high / self.shown.factor,
+            logarithmic: false,
+        };
+        for (value, label) in &ticks.major {
+            let place = bottom - scale.fraction(*value) * height;
+            bitmap.rule((right, place), (right + sizes.tick, place), sizes.line, INK);
+            let style = Style::new(sizes.tick_text, Align::Start);
+            text::draw(bitmap, label, (right + 1.5 * sizes.tick, place), style);
+        }
+    }
+}
+
+/// A range that can be drawn: finite, and wider than rounding errors.
+pub(super) fn widened(low: f64, high: f64) -> (f64, f64) {
+    if !low.is_finite() || !high.is_finite() || low > high {
+        return (0.0, 1.0);
+    }
+    let size = low.abs().max(high.abs());
+    if size == 0.0 {
+        (0.0, 1.0)
+    } else if high - low > 1e-9 * size {
+        (low, high)
+    } else {
+        (low - 0.05 * size, high + 0.05 * size)
+    }
+}
+
+/// The smallest and the largest of the finite numbers.
+pub(super) fn finite_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_without_width_are_widened() {
+        assert_eq!(widened(0.0, 0.0), (0.0, 1.0));
+        assert_eq!(widened(2.0, 2.0), (1.9, 2.1));
+        assert_eq!(widened(-1.0, 3.0), (-1.0, 3.0));
+        assert_eq!(
+            finite_range([].into_iter()),
+            (f64::INFINITY, f64::NEG_INFINITY)
+        );
+        assert_eq!(widened(f64::INFINITY, f64::NEG_INFINITY), (0.0, 1.0));
+        assert_eq!(finite_range([3.0, f64::NAN, -1.0].into_iter()), (-1.0, 3.0));
+    }
+
+    #[test]
+    fn a_logarithmic_scale_has_equal_decades() {
+        let scale = Scale {
+            low: 1e-2,
+            high: 1e2,
+            logarithmic: true,
+        };
+        assert!((scale.fraction(1e-1) - 0.25).abs() < 1e-12);
+        assert!((scale.fraction(1e2) - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,246 @@
+//! Charts of curves.
+
+use std::path::Path;
+
+use super::bitmap::{Bitmap, INK, SIZES, WHITE};
+use super::clip::{clipped, inside, length_inside};
+use super::curve::{Axis, Curve, Pen};
+use super::frame::{Area, AxisText, Frame, Header, Sizes};
+use super::text::{self, Align, Style};
+use super::units::quantity;
+use crate::IoError;
+
+/// Curves over a common axis.
+#[derive(Debug, Clone)]
+#[must_use = "nothing is drawn before `write`"]
+pub struct LineChart {
+    x: Axis,
+    y: Axis,
+    header: Header,
+    curves: Vec<Curve>,
+    width: u32,
+    height: u32,
+}
+
+impl LineChart {
+    /// A chart without curves yet.
+    pub fn new(x: Axis, y: Axis) -> Self {
+        Self {
+            x,
+            y,
+            header: Header::default(),
+            curves: Vec::new(),
+            width: 1200,
+            height: 750,
+        }
+    }
+
+    /// The line above the chart.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.header.title = title.into();
+        self
+    }
+
+    /// The time in seconds, for the stamp in the upper right corner.
+    pub fn time(self, time: f64) -> Self {
+        self.stamp(format!("t = {}", quantity(time, "s")))
+    }
+
+    pub(super) fn stamp(mut self, stamp: String) -> Self {
+        self.header.stamp = stamp;
+        self
+    }
+
+    /// Adds a curve.
+    pub fn curve(mut self, curve: Curve) -> Self {
+        self.curves.push(curve);
+        self
+    }
+
+    /// The width in pixels, from 200 to 16 000; 1200 if not chosen. The height follows at 5 : 8.
+    pub fn width(self, width: u32) -> Self {
+        let height = (f64::from(width) * 0.625).round() as u32;
+        self.size(width, height.max(*SIZES.start()))
+    }
+
+    /// Width and height in pixels, from 200 to 16 000 each.
+    pub fn size(mut self, width: u32, height: u32) -> Self {
+        self.width = width;
+        self.height = height;
+        self
+    }
+
+    /// Draws the chart and writes it as PNG, whole or not at all.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
+        let path = path.as_ref();
+        self.draw(path)?.write_png(path)
+    }
+
+    pub(super) fn draw(&self, path: &Path) -> Result<Bitmap, IoError> {
+        self.check(path)?;
+        let sizes = Sizes::of_width(self.width as usize);
+        let usable = |&(x, y): &(f64, f64)| self.x.allows(x) && self.y.allows(y);
+        let all = || {
+            self.curves
+                .iter()
+                .flat_map(|c| &c.points)
+                .filter(|p| usable(p))
+        };
+        let (x_shown, x) = self.x.scale(all().map(|p| p.0));
+        let (y_shown, y) = self.y.scale(all().map(|p| p.1));
+
+        let top = self.header.height(&sizes).max(2.0 * sizes.gap).round();
+        let bottom = (f64::from(self.height) - sizes.below()).round();
+        let y_text = AxisText {
+            ticks: y.ticks(((bottom - top) / (3.0 * sizes.tick_text)).clamp(2.0, 9.0) as usize),
+            label: y_shown.label(&self.y.name),
+        };
+        let left = sizes.beside(&y_text.ticks).round();
+        let mut right = (f64::from(self.width) - 2.0 * sizes.gap).round();
+        let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
+        let x_text = AxisText {
+            ticks: x.ticks(wanted),
+            label: x_shown.label(&self.x.name),
+        };
+        // A label under the right end must not be cut.
+        let overhang = x_text
+            .ticks
+            .longest(|label| text::width(label, sizes.tick_text));
+        right -= (0.5 * overhang - sizes.gap).max(0.0).round();
+        let area = Area {
+            left,
+            top,
+            right,
+            bottom,
+        };
+        let frame = Frame { area, x, y };
+
+        let mut bitmap = Bitmap::white(self.width as usize, self.height as usize);
+        frame.draw_grid(&mut bitmap, &x_text, &y_text, &sizes);
+        let mut drawn = Vec::new();
+        for (number, curve) in self.curves.iter().enumerate() {
+            let pen = Pen::of(number, curve, &sizes);
+            // In pixels, with gaps where there is no number.
+            let mut pieces = vec![Vec::new()];
+            for point in &curve.points {
+                if usable(point) {
+                    let place = frame.place(point.0 / x_shown.factor, point.1 / y_shown.factor);
+                    if let Some(piece) = pieces.last_mut() {
+                        piece.push(place);
+                    }
+                } else {
+                    pieces.push(Vec::new());
+                }
+            }
+            if curve.line {
+                let lines = pieces
+                    .iter()
+                    .flat_map(|piece| clipped(piece, area))
+                    .collect();
+                pen.stroke(&mut bitmap, lines);
+            }
+            if curve.markers {
+                for &place in pieces
+                    .iter()
+                    .flatten()
+                    .filter(|place| inside(**place, area))
+                {
+                    pen.mark(&mut bitmap, place);
+                }
+            }
+            drawn.push(pieces);
+        }
+        frame.draw_axes(&mut bitmap, &x_text, &y_text, &sizes);
+        self.draw_key(&mut bitmap, area, &drawn, &sizes);
+        self.header.draw(&mut bitmap, left, right, &sizes);
+        Ok(bitmap)
+    }
+
+    fn check(&self, path: &Path) -> Result<(), IoError> {
+        if !SIZES.contains(&self.width) || !SIZES.contains(&self.height) {
+            let (width, height, least, most) =
+                (self.width, self.height, SIZES.start(), SIZES.end());
+            return Err(IoError::Unsuitable {
+                path: path.to_path_buf(),
+                reason: format!(
+                    "a chart of {width} × {height} pixels; {least} to {most} are allowed"
+                ),
+            });
+        }
+        for curve in &self.curves {
+            let (expected, given) = curve.lengths;
+            if expected != given {
+                return Err(IoError::Shape {
+                    path: path.to_path_buf(),
+                    what: format!("y of curve {:?}", curve.name),
+                    expected,
+                    given,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The key, in the corner where it hides the least of the curves.
+    fn draw_key(
+        &self,
+        bitmap: &mut Bitmap,
+        area: Area,
+        drawn: &[Vec<Vec<(f64, f64)>>],
+        sizes: &Sizes,
+    ) {
+        let named: Vec<_> = (self.curves.iter().enumerate())
+            .filter(|(_, curve)| !curve.name.is_empty())
+            .collect();
+        if named.is_empty() {
+            return;
+        }
+        let (gap, row) = (sizes.gap, 1.5 * sizes.tick_text);
+        let sample = 2.2 * sizes.tick_text;
+        let longest = named
+            .iter()
+            .map(|(_, curve)| text::width(&curve.name, sizes.tick_text))
+            .fold(0.0, f64::max);
+        let room = area.width() - sample - 5.0 * gap;
+        let width = sample + 3.0 * gap + longest.min(room);
+        let height = row * named.len() as f64 + gap;
+        let places = [
+            (area.right - gap - width, area.top + gap),
+            (area.left + gap, area.top + gap),
+            (area.right - gap - width, area.bottom - gap - height),
+            (area.left + gap, area.bottom - gap - height),
+        ];
+        let hidden = |&(left, top): &(f64, f64)| {
+            let area = Area {
+                left,
+                top,
+                right: left + width,
+                bottom: top + height,
+            };
+            let pieces = drawn.iter().flatten();
+            pieces.map(|piece| length_inside(piece, area)).sum::<f64>()
+        };
+        let Some(place) = places
+            .into_iter()
+            .min_by(|a, b| hidden(a).total_cmp(&hidden(b)))
+        else {
+            return;
+        };
+        let corner = (place.0 + width, place.1 + height);
+        bitmap.fill_rectangle(place, corner, WHITE, 0.85);
+        bitmap.outline(place, corner, 1.0, [200, 200, 200]);
+        for (line, (number, curve)) in named.into_iter().enumerate() {
+            let pen = Pen::of(number, curve, sizes);
+            let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
+            let (from, to) = (place.0 + gap, place.0 + gap + sample);
+            if curve.line {
+                pen.stroke(bitmap, vec![vec![(from, y), (to, y)]]);
+            }
+            if curve.markers {
+                pen.mark(bitmap, (0.5 * (from + to), y));
+            }
+            let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, room);
+            text::draw(bitmap, &curve.name, (to + gap, y), style.colour(INK));
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A plane body with its axes.
+
+use super::bitmap::Bitmap;
+use super::field::Scene;
+use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
+use super::raster::Raster;
+use super::ticks::Ticks;
+use super::units::Shown;
+
+/// White space around the body, as a part of its larger side.
+const MARGIN: f64 = 0.03;
+
+/// The height of the plot over the width of the picture stays between these; a slender body gets white space.
+const FLATTEST: f64 = 0.16;
+const TALLEST: f64 = 1.1;
+
+/// Fine pixels per pixel and direction, see [`Raster`].
+const FINE: usize = 2;
+
+pub(super) fn draw(scene: &Scene) -> Bitmap {
+    let sizes = Sizes::of_width(scene.width);
+    let width = scene.width as f64;
+    let (bw, bh) = (scene.high[0] - scene.low[0], scene.high[1] - scene.low[1]);
+    let largest = bw.max(bh).max(f64::MIN_POSITIVE);
+    let shown = Shown::for_size(largest, "m");
+    let margin = MARGIN * largest;
+    let (ew, eh) = (bw + 2.0 * margin, bh + 2.0 * margin);
+
+    // The labels take room, the room decides the size of the plot, and that which labels there are: twice is enough.
+    let (mut left, mut right) = (100.0 * width / 1200.0, 130.0 * width / 1200.0);
+    let mut height = 0.0;
+    let mut y_ticks = Ticks::default();
+    let mut bar_ticks = Ticks::default();
+    let middle = |c: usize| 0.5 * (scene.low[c] + scene.high[c]);
+    let scale = |c: usize, pixels: f64, per_metre: f64| Scale {
+        low: (middle(c) - 0.5 * pixels / per_metre) / shown.factor,
+        high: (middle(c) + 0.5 * pixels / per_metre) / shown.factor,
+        logarithmic: false,
+    };
+    for _ in 0..2 {
+        let plot = width - left - right;
+        height = (plot * eh / ew)
+            .clamp(FLATTEST * width, TALLEST * width)
+            .round();
+        let per_metre = (plot / ew).min(height / eh);
+        let wanted = (height / (4.0 * sizes.tick_text)).clamp(2.0, 8.0) as usize;
+        y_ticks = scale(1, height, per_metre).ticks(wanted);
+        bar_ticks = scene.bar.ticks(height, &sizes);
+        left = sizes.beside(&y_ticks).round();
+        right = ColourBar::room(&bar_ticks, &sizes).round();
+    }
+    let top = scene.header.height(&sizes).round();
+    let area = Area {
+        left,
+        top,
+        right: width - right,
+        bottom: top + height,
+    };
+    let per_metre = (area.width() / ew).min(height / eh);
+    let frame = Frame {
+        area,
+        x: scale(0, area.width(), per_metre),
+        y: scale(1, height, per_metre),
+    };
+
+    let mut raster = Raster::new(area.width() as usize, height as usize, FINE);
+    for cell in &scene.cells {
+        let (x, y) = frame.place(cell.middle[0] / shown.factor, cell.middle[1] / shown.factor);
+        let half = (cell.half[0] * per_metre, cell.half[1] * per_metre);
+        raster.cell((x - left, y - top), half, cell.colour);
+    }
+    let mut bitmap = Bitmap::white(scene.width, (area.bottom + sizes.below()).ceil() as usize);
+    raster.lay_on(&mut bitmap, left as usize, top as usize);
+
+    let x = AxisText {
+        ticks: frame
+            .x
+            .ticks((area.width() / (6.0 * sizes.tick_text)).max(2.0) as usize),
+        label: shown.label("x"),
+    };
+    let y = AxisText {
+        ticks: y_ticks,
+        label: shown.label("y"),
+    };
+    frame.draw_axes(&mut bitmap, &x, &y, &sizes);
+    scene.bar.draw(&mut bitmap, area, &bar_ticks, &sizes);
+    scene
+        .header
+        .draw(&mut bitmap, left, width - sizes.gap, &sizes);
+    bitmap
+}

@@ -1,0 +1,271 @@
+//! A solid in parallel projection: cells as little blocks, nearer ones in front, with the directions of the axes and a length.
+
+use super::bitmap::{Bitmap, INK, Rgb};
+use super::colour::shaded;
+use super::field::Scene;
+use super::frame::{Area, ColourBar, Sizes};
+use super::raster::{Face, Raster};
+use super::text::{self, Align, Style};
+use super::ticks::{Ticks, round_below};
+use super::units::quantity;
+
+const MARGIN: f64 = 0.03;
+const FLATTEST: f64 = 0.2;
+const TALLEST: f64 = 0.9;
+
+/// Beyond so many cells edges are left unsmoothed, for the sake of time.
+const MANY: usize = 300_000;
+
+/// The light on faces turned away from it, as a part of the full light.
+const SHADE: f64 = 0.75;
+
+/// Colours of the axes x, y, z, as usual in computer graphics but dark enough for white paper.
+const AXES: [(&str, Rgb); 3] = [
+    ("x", [200, 30, 30]),
+    ("y", [20, 130, 40]),
+    ("z", [30, 60, 200]),
+];
+
+/// Unit vectors on the screen: to the right, upwards, and towards the eye.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    right: [f64; 3],
+    up: [f64; 3],
+    eye: [f64; 3],
+}
+
+impl View {
+    fn new(direction: [f64; 3]) -> Self {
+        let eye = normalised(direction);
+        // z is up, and y if one looks along z
+        let upright = if eye[2].abs() > 0.999 {
+            [0.0, 1.0, 0.0]
+        } else {
+            [0.0, 0.0, 1.0]
+        };
+        let right = normalised(cross(upright, eye));
+        Self {
+            right,
+            up: cross(eye, right),
+            eye,
+        }
+    }
+
+    /// To the right, upwards, towards the eye.
+    fn project(&self, p: [f64; 3]) -> [f64; 3] {
+        [dot(p, self.right), dot(p, self.up), dot(p, self.eye)]
+    }
+
+    /// The light on the visible faces across the three axes, from above the left shoulder; the brightest has all of it.
+    fn light(&self) -> [f64; 3] {
+        let lamp: [f64; 3] =
+            std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.4 * self.right[k]);
+        let straight: [f64; 3] = std::array::from_fn(|c| (self.eye[c].signum() * lamp[c]).max(0.0));
+        let most = straight.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+        straight.map(|part| SHADE + (1.0 - SHADE) * part / most)
+    }
+}
+
+pub(super) fn draw(scene: &Scene) -> Bitmap {
+    let sizes = Sizes::of_width(scene.width);
+    let width = scene.width as f64;
+    let view = View::new(scene.view);
+
+    // What the box of the body fills on the screen
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for corner in 0..8 {
+        let p = std::array::from_fn(|c| {
+            if corner >> c & 1 == 0 {
+                scene.low[c]
+            } else {
+                scene.high[c]
+            }
+        });
+        for (c, value) in view.project(p).into_iter().take(2).enumerate() {
+            low[c] = low[c].min(value);
+            high[c] = high[c].max(value);
+        }
+    }
+    let largest = (high[0] - low[0])
+        .max(high[1] - low[1])
+        .max(f64::MIN_POSITIVE);
+    let margin = MARGIN * largest;
+    let (ew, eh) = (
+        high[0] - low[0] + 2.0 * margin,
+        high[1] - low[1] + 2.0 * margin,
+    );
+
+    let left = sizes.gap.round();
+    let mut right = 130.0 * width / 1200.0;
+    let mut height = 0.0;
+    let mut bar_ticks = Ticks::default();
+    for _ in 0..2 {
+        let plot = width - left - right;
+        height = (plot * eh / ew)
+            .clamp(FLATTEST * width, TALLEST * width)
+            .round();
+        bar_ticks = scene.bar.ticks(height, &sizes);
+        right = ColourBar::room(&bar_ticks, &sizes).round();
+    }
+    let top = scene.header.height(&sizes).round();
+    let area = Area {
+        left,
+        top,
+        right: width - right,
+        bottom: top + height,
+    };
+    let per_metre = (area.width() / ew).min(height / eh);
+
+    let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+    let fine = if scene.cells.len() > MANY { 1 } else { 2 };
+    let mut raster = Raster::new(area.width() as usize, height as usize, fine);
+    let light = view.light();
+    for cell in &scene.cells {
+        let place = |p: [f64; 3], of: [f64; 2]| -> [f64; 3] {
+            let [x, y, near] = view.project(p);
+            [(x - of[0]) * per_metre, (of[1] - y) * per_metre, -near]
+        };
+        for (c, light) in light.into_iter().enumerate() {
+            let (c1, c2) = ((c + 1) % 3, (c + 2) % 3);
+            let along = |c: usize, sign: f64| {
+                let mut edge = [0.0; 3];
+                edge[c] = sign * cell.half[c];
+                edge
+            };
+            let outward = along(c, view.eye[c].signum());
+            let mut face = Face {
+                middle: place(std::array::from_fn(|k| cell.middle[k] + outward[k]), middle),
+                a: place(along(c1, 1.0), [0.0; 2]),
+                b: place(along(c2, 1.0), [0.0; 2]),
+                seam: 2.0 * cell.half[0].max(cell.half[1]).max(cell.half[2]),
+            };
+            face.middle[0] += 0.5 * area.width();
+            face.middle[1] += 0.5 * height;
+            raster.face(&face, shaded(cell.colour, light));
+        }
+    }
+
+    let arm = 3.0 * sizes.tick_text;
+    let below = 2.0 * arm + sizes.tick_text + 2.0 * sizes.gap;
+    let mut bitmap = Bitmap::white(scene.width, (area.bottom + below).ceil() as usize);
+    raster.lay_on(&mut bitmap, left as usize, top as usize);
+    draw_directions(&mut bitmap, &view, area, arm, &sizes);
+    draw_length(&mut bitmap, area, per_metre, &sizes);
+    scene.bar.draw(&mut bitmap, area, &bar_ticks, &sizes);
+    scene
+        .header
+        .draw(&mut bitmap, 2.0 * left, width - sizes.gap, &sizes);
+    bitmap
+}
+
+/// The directions of the axes, in the lower left corner.
+fn draw_directions(bitmap: &mut Bitmap, view: &View, area: Area, arm: f64, sizes: &Sizes) {
+    let reach = arm + 0.8 * sizes.tick_text;
+    let from = (
+        area.left + sizes.gap + reach,
+        area.bottom + sizes.gap + reach,
+    );
+    let mut axes: Vec<_> = (0..3)
+        .map(|c| (c, [view.right[c], view.up[c], view.eye[c]]))
+        .collect();
+    // the one that points most towards the eye last, over the others
+    axes.sort_by(|(_, a), (_, b)| a[2].total_cmp(&b[2]));
+    for (c, [x, y, _]) in axes {
+        let (name, colour) = AXES[c];
+        let to = (from.0 + arm * x, from.1 - arm * y);
+        bitmap.stroke(&[vec![from, to]], 2.0 * sizes.line, colour);
+        let length = x.hypot(y);
+        if length > 0.1 {
+            let far = arm + 0.6 * sizes.tick_text / length;
+            let place = (from.0 + far * x, from.1 - far * y);
+            let style = Style::new(sizes.tick_text, Align::Middle).colour(colour);
+            text::draw(bitmap, name, place, style);
+        }
+    }
+}
+
+/// A bar of a round length, below the middle; in parallel projection it holds for every line across the view.
+fn draw_length(bitmap: &mut Bitmap, area: Area, per_metre: f64, sizes: &Sizes) {
+    let length = round_below(0.25 * area.width() / per_metre);
+    let half = 0.5 * length * per_metre;
+    let x = 0.5 * (area.left + area.right);
+    let y = area.bottom + 3.0 * sizes.gap;
+    bitmap.rule((x - half, y), (x + half, y), 2.0 * sizes.line, INK);
+    for end in [x - half, x + half] {
+        let tick = 0.7 * sizes.tick;
+        bitmap.rule((end, y - tick), (end, y + tick), 2.0 * sizes.line, INK);
+    }
+    let style = Style::new(sizes.tick_text, Align::Middle);
+    let place = (x, y + sizes.tick + 0.8 * sizes.tick_text);
+    text::draw(bitmap, &round_quantity(length), place, style);
+}
+
+/// A round number with its unit and without noughts at its end: `20 mm`.
+fn round_quantity(length: f64) -> String {
+    let text = quantity(length, "m");
+    match text.split_once(' ') {
+        Some((number, unit)) if number.contains('.') => {
+            let number = number.trim_end_matches('0').trim_end_matches('.');
+            format!("{number} {unit}")
+        }
+        _ => text,
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn normalised(v: [f64; 3]) -> [f64; 3] {
+    let length = dot(v, v).sqrt();
+    v.map(|c| c / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_screen_is_right_handed_from_every_side() {
+        for direction in [
+            [0.5, -1.0, 0.6],
+            [0.0, 0.0, 3.0],
+            [0.0, 0.0, -1.0],
+            [-2.0, 0.1, 0.0],
+        ] {
+            let view = View::new(direction);
+            let axes = [view.right, view.up, view.eye];
+            for (k, axis) in axes.iter().enumerate() {
+                for (l, other) in axes.iter().enumerate() {
+                    let expected = if k == l { 1.0 } else { 0.0 };
+                    assert!((dot(*axis, *other) - expected).abs() < 1e-12);
+                }
+            }
+            let turned = cross(view.right, view.up);
+            assert!(dot(turned, view.eye) > 0.999 && dot(view.eye, direction) > 0.0);
+            assert!(view.up[2] >= 0.0);
+        }
+        let front = View::new([0.0, -1.0, 0.0]);
+        assert_eq!(front.project([1.0, 2.0, 3.0]), [1.0, 3.0, -2.0]);
+    }
+
+    #[test]
+    fn lengths_are_written_without_noughts() {
+        for (length, text) in [
+            (0.02, "20 mm"),
+            (5e-7, "500 nm"),
+            (2.0, "2 m"),
+            (1e-4, "100 µm"),
+        ] {
+            assert_eq!(round_quantity(length), text);
+        }
+    }
+}

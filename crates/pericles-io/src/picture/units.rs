@@ -1,0 +1,155 @@
+//! Sizes a reader can grasp: SI prefixes, or a power of ten where a prefix would be wrong.
+
+/// Symbols that take a prefix, alone or as the first of a product or quotient.
+const PREFIXED: [&str; 9] = ["m", "s", "N", "J", "Pa", "W", "Hz", "g", "K"];
+
+/// Prefixes from 10⁻¹² to 10¹².
+const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
+
+/// How numbers of one kind are shown: divided by `factor`, and in `unit`.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Shown {
+    pub(super) factor: f64,
+    pub(super) unit: String,
+}
+
+impl Shown {
+    /// The way that suits numbers up to `largest` in size.
+    pub(super) fn for_size(largest: f64, unit: &str) -> Self {
+        if !largest.is_finite() || largest <= 0.0 {
+            return Self::plain(unit);
+        }
+        let thousands = (largest.log10() + 1e-9).div_euclid(3.0) as i32;
+        let symbol = unit.split(['/', '·', ' ']).next().unwrap_or_default();
+        if PREFIXED.contains(&symbol) {
+            // Nobody says kiloseconds.
+            let most = if symbol == "s" { 0 } else { 4 };
+            let thousands = thousands.clamp(-4, most);
+            let prefix = PREFIXES[(thousands + 4) as usize];
+            // 10⁻⁶ as the nearest number, which (10³)⁻² is not: 46e-6 / 1e-6 must print as 46.
+            return Self {
+                factor: power_of_ten(3 * thousands),
+                unit: format!("{prefix}{unit}"),
+            };
+        }
+        // Numbers of up to five digits, and down to 0.001, are read as they are.
+        let power = largest.log10().floor() as i32;
+        if (-3..5).contains(&power) {
+            return Self::plain(unit);
+        }
+        let ten = format!("10{}", superscript(3 * thousands));
+        Self {
+            factor: power_of_ten(3 * thousands),
+            unit: format!("{ten} {unit}").trim_end().to_owned(),
+        }
+    }
+
+    /// As given.
+    pub(super) fn plain(unit: &str) -> Self {
+        Self {
+            factor: 1.0,
+            unit: unit.to_owned(),
+        }
+    }
+
+    /// `name [unit]`, or the bare name of a pure number.
+    pub(super) fn label(&self, name: &str) -> String {
+        match (name.is_empty(), self.unit.is_empty()) {
+            (_, true) => name.to_owned(),
+            (true, false) => format!("[{}]", self.unit),
+            (false, false) => format!("{name} [{}]", self.unit),
+        }
+    }
+}
+
+/// One quantity with three digits: `46.0 µs`.
+pub(super) fn quantity(value: f64, unit: &str) -> String {
+    // Rounded first: 999.96 ns is 1.00 µs.
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    let shown = Shown::for_size(rounded.abs(), unit);
+    let scaled = rounded / shown.factor;
+    let digits = if scaled == 0.0 || !scaled.is_finite() {
+        0
+    } else {
+        (2 - (scaled.abs().log10() + 1e-9).floor() as i32).clamp(0, 9) as usize
+    };
+    format!("{scaled:.digits$} {}", shown.unit)
+        .trim_end()
+        .to_owned()
+}
+
+/// 10ⁿ, the nearest number to it.
+pub(super) fn power_of_ten(power: i32) -> f64 {
+    format!("1e{power}").parse().unwrap_or(f64::NAN)
+}
+
+/// A whole number as superscript digits.
+pub(super) fn superscript(number: i32) -> String {
+    number
+        .to_string()
+        .chars()
+        .map(|character| match character {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '0' => '⁰',
+            digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_take_the_unit_of_their_size() {
+        for (size, factor, unit) in [
+            (0.1, 1e-3, "mm"),
+            (1.0, 1.0, "m"),
+            (0.999, 1e-3, "mm"),
+            (25e-6, 1e-6, "µm"),
+            (1e-3, 1e-3, "mm"),
+            (1000.0, 1e3, "km"),
+            (3e-20, 1e-12, "pm"),
+        ] {
+            let shown = Shown::for_size(size, "m");
+            assert_eq!((shown.factor, &*shown.unit), (factor, unit), "{size}");
+        }
+    }
+
+    #[test]
+    fn only_units_that_can_take_a_prefix_get_one() {
+        let label = |size, unit| Shown::for_size(size, unit).label("q");
+        assert_eq!(label(2e7, "J/m³"), "q [MJ/m³]");
+        assert_eq!(label(2e7, "m²"), "q [10⁶ m²]");
+        assert_eq!(label(2e7, ""), "q [10⁶]");
+        assert_eq!(label(5e-5, ""), "q [10⁻⁶]");
+        assert_eq!(label(0.7, ""), "q");
+        assert_eq!(label(4e4, "kg/m³"), "q [kg/m³]");
+        assert_eq!(label(3e5, "s"), "q [s]");
+        assert_eq!(label(0.0, "m/s"), "q [m/s]");
+        assert_eq!(label(f64::NAN, "m/s"), "q [m/s]");
+    }
+
+    #[test]
+    fn a_quantity_has_three_digits() {
+        for (value, text) in [
+            (46e-6, "46.0 µs"),
+            (0.0, "0 s"),
+            (999.96e-9, "1.00 µs"),
+            (5e-7, "500 ns"),
+            (12.345, "12.3 s"),
+            (86_400.0, "86400 s"),
+            (-2e-3, "-2.00 ms"),
+        ] {
+            assert_eq!(quantity(value, "s"), text);
+        }
+    }
+
+    #[test]
+    fn exponents_are_raised() {
+        assert_eq!(superscript(-1234567890), "⁻¹²³⁴⁵⁶⁷⁸⁹⁰");
+    }
+}
