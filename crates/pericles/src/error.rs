@@ -12,6 +12,14 @@ pub enum PericlesError {
         /// The number given.
         value: f64,
     },
+    /// A coordinate that is no number.
+    #[error("the coordinate {value} of point {point} is not a finite number")]
+    NotFinite {
+        /// The point's number.
+        point: usize,
+        /// The coordinate given.
+        value: f64,
+    },
     /// A body's side is no whole number of cells.
     #[error(
         "a side of {length} m is not a whole number of cells of {spacing} m; the nearest that are: {below} m and {above} m"

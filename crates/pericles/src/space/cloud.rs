@@ -13,7 +13,7 @@ pub struct Lattice {
     pub spacing: f64,
     /// Nodes of the bounding box along each axis; 1 along missing axes.
     pub shape: [usize; 3],
-    /// Node of each point: x + shape[0] (y + shape[1] z), ascending.
+    /// Node of each point: `x + shape[0] * (y + shape[1] * z)`, ascending.
     pub node: Vec<u32>,
 }
 
@@ -78,10 +78,10 @@ impl PointCloud {
         for &volume in &volumes {
             positive("the volume of a point", volume)?;
         }
-        if let Some(&bad) = positions.iter().find(|x| !x.is_finite()) {
-            return Err(PericlesError::NotPositive {
-                quantity: "the distance of a point from the origin",
-                value: bad,
+        if let Some(entry) = positions.iter().position(|x| !x.is_finite()) {
+            return Err(PericlesError::NotFinite {
+                point: entry % n,
+                value: positions[entry],
             });
         }
         let mean = volumes.iter().sum::<f64>() / n as f64;
