@@ -181,7 +181,7 @@ pub(super) struct Header {
 
 impl Header {
     pub(super) fn height(&self, sizes: &Sizes) -> f64 {
-        sizes.gap + self.first_line(sizes) + self.second_line(sizes) + 0.5 * sizes.gap
+        sizes.gap + self.first_line(sizes) + self.second_line(sizes) + sizes.gap
     }
 
     fn first_line(&self, sizes: &Sizes) -> f64 {
