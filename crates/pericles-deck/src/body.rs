@@ -1,0 +1,249 @@
+//! `[body]`: the shape, its grid and its state of stress.
+
+use pericles::material::StressState;
+use pericles::space::{Grid, Region, Shape};
+
+use crate::quantity::Quantity;
+use crate::reader::Table;
+use crate::region::{self, Frame};
+
+/// The body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Shape, spacing, section and holes.
+    pub grid: Grid,
+    /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
+    pub state: StressState,
+}
+
+/// What other tables need of a body, as far as it could be read.
+pub(crate) struct BodyRead {
+    pub(crate) body: Option<Body>,
+    pub(crate) frame: Frame,
+    pub(crate) state: Option<StressState>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Bar,
+    Plate,
+    Disc,
+    Block,
+    Cylinder,
+    Ball,
+}
+
+const KINDS: [(&str, Kind); 6] = [
+    ("bar", Kind::Bar),
+    ("plate", Kind::Plate),
+    ("disc", Kind::Disc),
+    ("block", Kind::Block),
+    ("cylinder", Kind::Cylinder),
+    ("ball", Kind::Ball),
+];
+
+impl Kind {
+    fn dimension(self) -> usize {
+        match self {
+            Self::Bar => 1,
+            Self::Plate | Self::Disc => 2,
+            Self::Block | Self::Cylinder | Self::Ball => 3,
+        }
+    }
+}
+
+pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
+    let mut read = BodyRead {
+        body: None,
+        frame: Frame {
+            dimension: None,
+            spacing: None,
+        },
+        state: None,
+    };
+    let Some(table) = table else { return read };
+    let kind = table
+        .required("shape")
+        .and_then(|item| item.choice("shape", &KINDS));
+    read.frame.spacing = table
+        .required("spacing")
+        .and_then(|item| item.positive(Quantity::Length));
+    let Some(kind) = kind else {
+        // Without the shape nobody knows which other keys belong here.
+        return read;
+    };
+    read.frame.dimension = Some(kind.dimension());
+    let outline = shape(&table, kind);
+    let section = section(&table, kind.dimension());
+    read.state = state(&table, kind.dimension());
+    let holes: Vec<Option<Region>> = table
+        .tables("hole")
+        .into_iter()
+        .map(|hole| region::read(hole, read.frame))
+        .collect();
+    table.finish();
+    read.body = assemble(&read, outline, section, holes);
+    read
+}
+
+fn assemble(
+    read: &BodyRead,
+    outline: Option<Outline>,
+    section: Option<f64>,
+    holes: Vec<Option<Region>>,
+) -> Option<Body> {
+    let outline = outline?;
+    let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
+    holes.extend(outline.bore);
+    Some(Body {
+        grid: Grid {
+            shape: outline.shape,
+            spacing: read.frame.spacing?,
+            section: section?,
+            holes,
+        },
+        state: read.state?,
+    })
+}
+
+/// A shape and, for tubes and rings, the region left out in its middle.
+struct Outline {
+    shape: Shape,
+    bore: Option<Region>,
+}
+
+fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
+    let solid = |shape| Outline { shape, bore: None };
+    let dimension = kind.dimension();
+    let radius = || {
+        table
+            .required("radius")
+            .and_then(|item| item.positive(Quantity::Length))
+    };
+    match kind {
+        Kind::Bar | Kind::Plate | Kind::Block => {
+            let size = size(table, kind);
+            let origin = place(table, "origin", dimension);
+            Some(solid(Shape::Box {
+                origin: origin?,
+                size: size?,
+            }))
+        }
+        Kind::Ball => {
+            let (centre, radius) = (place(table, "centre", dimension), radius());
+            Some(solid(Shape::Ball {
+                centre: centre?,
+                radius: radius?,
+            }))
+        }
+        Kind::Disc => {
+            let (centre, radius) = (place(table, "centre", dimension), radius());
+            let inner = inner_radius(table, radius);
+            let (centre, radius) = (centre?, radius?);
+            Some(Outline {
+                shape: Shape::Disc { centre, radius },
+                bore: inner?.map(|radius| Region::Ball { centre, radius }),
+            })
+        }
+        Kind::Cylinder => {
+            let base = place(table, "base", dimension);
+            let axis = region::axis(table);
+            let radius = radius();
+            let inner = inner_radius(table, radius);
+            let height = table
+                .required("height")
+                .and_then(|item| item.positive(Quantity::Length));
+            let (base, axis, radius) = (base?, axis?, radius?);
+            Some(Outline {
+                shape: Shape::Cylinder {
+                    base,
+                    axis,
+                    radius,
+                    height: height?,
+                },
+                bore: inner?.map(|radius| Region::Cylinder {
+                    centre: base,
+                    axis,
+                    radius,
+                }),
+            })
+        }
+    }
+}
+
+/// The sides: `size`, or `length` for a bar.
+fn size(table: &Table<'_>, kind: Kind) -> Option<Vec<f64>> {
+    let dimension = kind.dimension();
+    let item = if kind == Kind::Bar {
+        table.exactly_one(&["length", "size"])?.1
+    } else {
+        table.required("size")?
+    };
+    let items = item.components(Some(dimension), &Quantity::Length.expected())?;
+    let sides: Vec<Option<f64>> = items
+        .iter()
+        .map(|side| side.positive(Quantity::Length))
+        .collect();
+    sides.into_iter().collect()
+}
+
+/// A point, by default the origin.
+fn place(table: &Table<'_>, key: &'static str, dimension: usize) -> Option<[f64; 3]> {
+    match table.optional(key) {
+        Some(item) => item.vector(Quantity::Length, Some(dimension)),
+        None => {
+            let zero = vec![0.0; dimension];
+            table.record(key, zero);
+            Some([0.0; 3])
+        }
+    }
+}
+
+fn inner_radius(table: &Table<'_>, outer: Option<f64>) -> Option<Option<f64>> {
+    table.maybe("inner_radius", |item| {
+        item.within(
+            Quantity::Length,
+            "a positive number smaller than `radius`",
+            |inner| inner > 0.0 && outer.is_none_or(|outer| inner < outer),
+        )
+    })
+}
+
+/// Area of a bar, thickness of a plate, 1 in three dimensions.
+fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
+    if dimension != 1 {
+        table.forbid("area", "only a bar has an area");
+    }
+    if dimension != 2 {
+        table.forbid(
+            "thickness",
+            "only bodies of two dimensions (plate, disc) have a thickness",
+        );
+    }
+    match dimension {
+        1 => table.or("area", 1.0, |item| item.positive(Quantity::Area)),
+        2 => table.or("thickness", 1.0, |item| item.positive(Quantity::Length)),
+        _ => Some(1.0),
+    }
+}
+
+fn state(table: &Table<'_>, dimension: usize) -> Option<StressState> {
+    const PLANES: [(&str, StressState); 2] = [
+        ("stress", StressState::PlaneStress),
+        ("strain", StressState::PlaneStrain),
+    ];
+    if dimension == 2 {
+        return table
+            .required("plane")
+            .and_then(|item| item.choice("state of the plane", &PLANES));
+    }
+    table.forbid(
+        "plane",
+        "only bodies of two dimensions (plate, disc) are in plane stress or plane strain",
+    );
+    Some(if dimension == 1 {
+        StressState::Uniaxial
+    } else {
+        StressState::Spatial
+    })
+}

@@ -1,0 +1,427 @@
+//! From a deck to a model that can be run.
+
+mod area;
+mod step;
+
+use std::sync::Arc;
+
+use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
+use pericles::family::BondList;
+use pericles::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
+use pericles::observe::{Probe as PointProbe, TrackedCrack};
+use pericles::operator::{BondForce, DamageMeasure, ForceOperator};
+use pericles::space::{Point, PointCloud, PointSet};
+use pericles::time::{HighestFrequency, Integrator, State, VelocityVerlet};
+use pericles::{PericlesError, PointScalar, Simulation, System};
+
+use crate::caution::Caution;
+use crate::conditions::{LoadAmplitude, ProbePlace};
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::finding::{Finding, Subject, Warning};
+use crate::reader::Path;
+use crate::set::ALL;
+use crate::time::Scheme;
+
+/// Sets of points by name.
+pub type Sets = Vec<(String, PointSet)>;
+
+/// A body ready to be run: what a deck describes.
+pub struct Model {
+    /// The points.
+    pub cloud: Arc<PointCloud>,
+    /// The sets by name, "all" first.
+    pub sets: Sets,
+    /// The constants of the bonds.
+    pub constants: BondConstants,
+    /// Bonds that pre-cracks cut.
+    pub precut_bonds: u64,
+    /// The pre-cracks that cut something, for following their tips.
+    pub cracks: Vec<TrackedCrack>,
+    /// The equation of motion with loads and prescribed motions.
+    pub system: System,
+    /// The state at the start.
+    pub state: State,
+    /// The scheme.
+    pub integrator: Box<dyn Integrator>,
+    /// The highest frequency at the start; none if nothing resists motion, and the deck gives the step.
+    pub frequency: Option<HighestFrequency>,
+    /// The time step, s.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Where the motion is read.
+    pub probes: Vec<PointProbe>,
+    /// What is odd.
+    pub warnings: Vec<Warning>,
+}
+
+impl Model {
+    /// The largest stable step of the scheme, without a safety factor, s.
+    pub fn stable_step(&self) -> Option<f64> {
+        let limit = self.integrator.stability_limit()?;
+        Some(self.frequency?.stable_step(limit, 1.0))
+    }
+
+    /// The run; observers are still to be added.
+    pub fn simulation(self) -> Simulation {
+        Simulation::new(
+            self.system,
+            self.integrator,
+            self.state,
+            self.dt,
+            self.steps,
+        )
+    }
+}
+
+impl Deck {
+    /// Makes points, bonds, operator and conditions, and finds the time step.
+    ///
+    /// With dt = "auto" the run ends at `time.end` exactly, in the fewest steps that are stable; with a given step it ends at the first step at or
+    /// after it.
+    ///
+    /// # Errors
+    /// What the library refuses, at the entry of the deck that caused it; sets without points; a step that is not stable.
+    pub fn build(&self) -> Result<Model, DeckError> {
+        let cloud = Arc::new(self.points()?);
+        let sets = self.select(&cloud)?;
+        let material = &self.material.bonds;
+        let constants = material
+            .constants(&cloud, self.body.state)
+            .map_err(|error| self.at_material(error))?;
+        let mut warnings = Vec::new();
+        let (bonds, cracks, precut_bonds) = self.bonds(&cloud, &mut warnings)?;
+        let no_fail = self.no_fail(&sets)?;
+        let operator = operator(
+            &cloud,
+            bonds,
+            material,
+            &constants,
+            &no_fail,
+            self.material.damage,
+        );
+        let density = PointScalar::Uniform(material.density);
+        let mut system = System::new(Arc::clone(&cloud), operator, density)
+            .map_err(|error| self.at("material.density", error))?;
+        let state = self.initial_state(&cloud, &sets)?;
+        self.add_loads(&mut system, &cloud, &sets)?;
+        self.add_motions(&mut system, &state, &sets)?;
+        let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
+        let integrator: Box<dyn Integrator> = match self.time.scheme {
+            Scheme::VelocityVerlet => Box::new(VelocityVerlet),
+        };
+        let steps = self.steps(&system, &state, &*integrator, &mut warnings)?;
+        Ok(Model {
+            cloud,
+            sets,
+            constants,
+            precut_bonds,
+            cracks,
+            system,
+            state,
+            integrator,
+            frequency: steps.frequency,
+            dt: steps.dt,
+            steps: steps.count,
+            probes,
+            warnings,
+        })
+    }
+
+    fn points(&self) -> Result<PointCloud, DeckError> {
+        self.body.grid.points().map_err(|error| {
+            let side = match &error {
+                PericlesError::NotWholeCells { length, .. } => self.side(*length),
+                PericlesError::TooManyPoints { .. } => "body.spacing".into(),
+                _ => "body".into(),
+            };
+            self.at_path(&side, error.into())
+        })
+    }
+
+    /// The entry that gives a side of this length.
+    fn side(&self, length: f64) -> Path {
+        let given =
+            |path: &Path| self.record.value(path).and_then(|value| value.as_f64()) == Some(length);
+        let size = Path::from("body.size");
+        let candidates = [
+            size.index(0),
+            size.index(1),
+            size.index(2),
+            "body.length".into(),
+            "body.height".into(),
+        ];
+        candidates.into_iter().find(given).unwrap_or(size)
+    }
+
+    fn select(&self, cloud: &PointCloud) -> Result<Sets, DeckError> {
+        let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
+        let mut problems = Vec::new();
+        for set in &self.sets {
+            let points = cloud.select(&set.region);
+            if points.is_empty() {
+                let fault = Fault::EmptySet {
+                    set: set.name.clone(),
+                };
+                problems.push(self.finding(&Path::from("sets").key(&set.name), fault));
+            }
+            sets.push((set.name.clone(), points));
+        }
+        if problems.is_empty() {
+            Ok(sets)
+        } else {
+            Err(DeckError::refused(problems))
+        }
+    }
+
+    fn no_fail(&self, sets: &Sets) -> Result<PointSet, DeckError> {
+        let mut points = PointSet::new();
+        for name in &self.material.no_fail {
+            points.extend(self.members(sets, name, &"material.no_fail".into())?);
+        }
+        points.sort_unstable();
+        points.dedup();
+        Ok(points)
+    }
+
+    fn bonds(
+        &self,
+        cloud: &PointCloud,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(BondList, Vec<TrackedCrack>, u64), DeckError> {
+        let material = &self.material.bonds;
+        let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction)
+            .map_err(|error| self.at_material(error))?;
+        let mut tracked = Vec::new();
+        let mut total = 0;
+        for (k, crack) in self.cracks.iter().enumerate() {
+            let path = Path::from("crack").index(k);
+            let cut = bonds
+                .cut(cloud, &crack.surface, crack.ends)
+                .map_err(|error| self.at_path(&path, error.into()))?;
+            total += cut.bonds;
+            if cut.bonds == 0 {
+                warnings.push(self.finding(&path, Caution::CrackCutsNothing));
+                continue;
+            }
+            tracked.push(TrackedCrack {
+                crack: crack.surface.clone(),
+                points: cut.points,
+            });
+        }
+        Ok((bonds, tracked, total))
+    }
+
+    /// Entries for the same point replace each other in the order of the deck.
+    fn initial_state(&self, cloud: &PointCloud, sets: &Sets) -> Result<State, DeckError> {
+        let n = cloud.len();
+        let mut state = State::at_rest(cloud.dimension() * n);
+        for (k, initial) in self.initial.iter().enumerate() {
+            let points = self.members(sets, &initial.set, &Path::from("initial").index(k))?;
+            let fields = [
+                (&initial.displacement, &mut state.u),
+                (&initial.velocity, &mut state.v),
+            ];
+            for (vector, field) in fields {
+                let Some(vector) = vector else { continue };
+                for c in 0..cloud.dimension() {
+                    for &i in points {
+                        field[c * n + i as usize] = vector[c];
+                    }
+                }
+            }
+        }
+        Ok(state)
+    }
+
+    fn add_loads(
+        &self,
+        system: &mut System,
+        cloud: &PointCloud,
+        sets: &Sets,
+    ) -> Result<(), DeckError> {
+        for (k, load) in self.loads.iter().enumerate() {
+            let path = Path::from("load").index(k);
+            let points = self.members(sets, &load.set, &path)?.clone();
+            let load = match &load.amplitude {
+                LoadAmplitude::BodyForce(density) => BodyLoad {
+                    points,
+                    density: *density,
+                    function: load.function,
+                },
+                LoadAmplitude::Traction { traction, area } => {
+                    let area = match area {
+                        Some(area) => *area,
+                        None => self
+                            .loaded_area(cloud, &load.set, &points, traction)
+                            .map_err(|reason| {
+                                self.at_path(&path.key("traction"), Fault::UnknownArea { reason })
+                            })?,
+                    };
+                    BodyLoad::traction(cloud, points, *traction, area, load.function)
+                }
+            };
+            system.add_load(load);
+        }
+        Ok(())
+    }
+
+    fn loaded_area(
+        &self,
+        cloud: &PointCloud,
+        set: &str,
+        points: &[u32],
+        traction: &[f64; 3],
+    ) -> Result<f64, &'static str> {
+        let region = self.sets.iter().find(|named| named.name == set);
+        let axis = area::normal_axis(region.map(|named| &named.region), traction)?;
+        Ok(area::seen_along(cloud, points, axis))
+    }
+
+    fn add_motions(
+        &self,
+        system: &mut System,
+        state: &State,
+        sets: &Sets,
+    ) -> Result<(), DeckError> {
+        let mut names: Vec<String> = Vec::new();
+        for (k, motion) in self.prescribe.iter().enumerate() {
+            // Two motions of one set (along different axes) need two names in tables.
+            let uses = names.iter().filter(|name| **name == motion.set).count();
+            names.push(motion.set.clone());
+            let name = match uses {
+                0 => motion.set.clone(),
+                _ => format!("{}_{}", motion.set, uses + 1),
+            };
+            let path = Path::from("prescribe").index(k);
+            let prescribed = PrescribedMotion::new(
+                name,
+                self.members(sets, &motion.set, &path)?.clone(),
+                motion.kind,
+                motion.amplitude,
+                motion.function,
+                &state.u,
+                system.points(),
+            );
+            system
+                .add_motion(prescribed)
+                .map_err(|error| self.at_path(&path, error.into()))?;
+        }
+        Ok(())
+    }
+
+    fn point_probes(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Vec<PointProbe>, DeckError> {
+        let mut probes = Vec::new();
+        for (k, probe) in self.probes.iter().enumerate() {
+            let path = Path::from("probe").index(k);
+            let points = match &probe.place {
+                ProbePlace::Set(set) => self.members(sets, set, &path)?.clone(),
+                ProbePlace::At(place) => {
+                    let (nearest, distance) = nearest(cloud, *place);
+                    // Inside a cell no place is farther from its centre than half a diagonal.
+                    let diagonal = (cloud.dimension() as f64).sqrt() * cloud.spacing();
+                    if distance > 0.5 * diagonal * (1.0 + 1e-9) {
+                        let name = probe.name.clone();
+                        let caution = Caution::ProbeOutside { name, distance };
+                        warnings.push(self.finding(&path.key("at"), caution));
+                    }
+                    vec![nearest]
+                }
+            };
+            probes.push(PointProbe {
+                name: probe.name.clone(),
+                points,
+            });
+        }
+        Ok(probes)
+    }
+
+    /// The points of a set. A deck read from a text names only sets it defines; one changed by a program may not.
+    fn members<'s>(
+        &self,
+        sets: &'s Sets,
+        name: &str,
+        path: &Path,
+    ) -> Result<&'s PointSet, DeckError> {
+        let found = sets.iter().find(|(known, _)| known == name);
+        found.map(|(_, points)| points).ok_or_else(|| {
+            let allowed = sets.iter().map(|(known, _)| known.clone()).collect();
+            self.at_path(
+                path,
+                Fault::UnknownWord {
+                    what: "set",
+                    value: name.into(),
+                    nearest: None,
+                    allowed,
+                },
+            )
+        })
+    }
+
+    fn at_material(&self, error: PericlesError) -> DeckError {
+        let path = match &error {
+            PericlesError::BadInfluence { .. } => "material.influence",
+            PericlesError::HorizonTooSmall { .. } => "material.horizon",
+            _ => "material",
+        };
+        self.at(path, error)
+    }
+
+    fn at(&self, path: &str, error: PericlesError) -> DeckError {
+        self.at_path(&path.into(), error.into())
+    }
+
+    fn at_path(&self, path: &Path, fault: Fault) -> DeckError {
+        DeckError::refused(vec![self.finding(path, fault)])
+    }
+
+    fn finding<S: Subject>(&self, path: &Path, subject: S) -> Finding<S> {
+        let place = self.record.place(path);
+        Finding::new(subject, self.record.sources.locate(place))
+    }
+}
+
+/// The point nearest to a place, and its distance.
+fn nearest(cloud: &PointCloud, place: Point) -> (u32, f64) {
+    let nearest = cloud.nearest(place);
+    let found = cloud.point(nearest);
+    let square: f64 = (0..3).map(|c| (found[c] - place[c]).powi(2)).sum();
+    (nearest as u32, square.sqrt())
+}
+
+fn operator(
+    cloud: &Arc<PointCloud>,
+    bonds: BondList,
+    material: &BondMaterial,
+    constants: &BondConstants,
+    no_fail: &[u32],
+    damage: DamageMeasure,
+) -> Box<dyn ForceOperator> {
+    macro_rules! bond_force {
+        ($law:ty, $dimension:literal) => {
+            Box::new(BondForce::<$law, $dimension>::new(
+                Arc::clone(cloud),
+                bonds,
+                material,
+                constants,
+                no_fail,
+                damage,
+            ))
+        };
+    }
+    match (material.law, cloud.dimension()) {
+        (PairLaw::Linear, 1) => bond_force!(LinearBond, 1),
+        (PairLaw::Linear, 2) => bond_force!(LinearBond, 2),
+        (PairLaw::Linear, _) => bond_force!(LinearBond, 3),
+        (PairLaw::BondStretch, 1) => bond_force!(BondStretch, 1),
+        (PairLaw::BondStretch, 2) => bond_force!(BondStretch, 2),
+        (PairLaw::BondStretch, _) => bond_force!(BondStretch, 3),
+    }
+}

@@ -1,0 +1,105 @@
+//! The time step of a run.
+
+use pericles::PericlesError;
+use pericles::System;
+use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
+
+use crate::caution::Caution;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::finding::Warning;
+use crate::time::TimeStep;
+
+/// The steps of a run.
+pub(super) struct Steps {
+    pub(super) dt: f64,
+    pub(super) count: u64,
+    pub(super) frequency: Option<HighestFrequency>,
+}
+
+impl Deck {
+    /// Finds the step, or judges the one that is given.
+    pub(super) fn steps(
+        &self,
+        system: &System,
+        state: &State,
+        integrator: &dyn Integrator,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Steps, DeckError> {
+        let end = self.time.end;
+        let frequency = highest_frequency(system, &state.u);
+        let limit = integrator.stability_limit();
+        match self.time.step {
+            TimeStep::Auto { safety } => {
+                let refuse = |error| self.at("time.dt", error);
+                let frequency = frequency.map_err(refuse)?;
+                // A scheme without a limit has no step of its own: accuracy alone must set it.
+                let limit = limit.ok_or(PericlesError::NoStiffness).map_err(refuse)?;
+                let stable = frequency.stable_step(limit, safety);
+                let count = self.count(end, stable)?;
+                Ok(Steps {
+                    dt: end / count as f64,
+                    count,
+                    frequency: Some(frequency),
+                })
+            }
+            TimeStep::Fixed(dt) => {
+                if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
+                    self.judge(dt, limit, frequency, integrator.name(), warnings)?;
+                }
+                Ok(Steps {
+                    dt,
+                    count: self.count(end, dt)?,
+                    frequency: frequency.ok(),
+                })
+            }
+        }
+    }
+
+    /// Refuses a given step that is known to be unstable; one that may be is only warned of.
+    fn judge(
+        &self,
+        dt: f64,
+        limit: f64,
+        frequency: &HighestFrequency,
+        scheme: &'static str,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(), DeckError> {
+        let stable = frequency.stable_step(limit, 1.0);
+        if dt <= stable {
+            return Ok(());
+        }
+        let caution = match (frequency.converged, self.time.allow_unstable) {
+            (true, false) => {
+                let error = PericlesError::UnstableStep {
+                    dt,
+                    omega: frequency.estimate,
+                    limit: stable,
+                    scheme,
+                };
+                return Err(self.at("time.dt", error));
+            }
+            (true, true) => Caution::UnstableStep { dt, limit: stable },
+            (false, _) => Caution::UncertainStep { dt, limit: stable },
+        };
+        warnings.push(self.finding(&"time.dt".into(), caution));
+        Ok(())
+    }
+
+    /// The number of steps of length `dt` to `end`.
+    fn count(&self, end: f64, dt: f64) -> Result<u64, DeckError> {
+        /// Numbers of steps beyond it are no longer exact in a double.
+        const MOST: f64 = 9e15;
+        let ratio = end / dt;
+        if ratio > MOST {
+            let fault = Fault::OutOfRange {
+                value: format!("{dt:e} s"),
+                allowed: format!("allowed: at most {MOST:e} steps; this step needs {ratio:e}"),
+            };
+            return Err(self.at_path(&"time.dt".into(), fault));
+        }
+        // A whole number up to round-off is that number.
+        Ok((ratio * (1.0 - 1e-9)).ceil().max(1.0) as u64)
+    }
+}

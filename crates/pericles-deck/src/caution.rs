@@ -1,0 +1,64 @@
+//! What is odd about a deck though a run may be meant.
+
+use miette::Severity;
+
+use crate::finding::Subject;
+
+/// Kinds of odd.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Caution {
+    /// A pre-crack without effect.
+    #[error("this crack cuts no bond")]
+    CrackCutsNothing,
+    /// A probe away from the body.
+    #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
+    ProbeOutside {
+        /// The probe.
+        name: String,
+        /// The distance, m.
+        distance: f64,
+    },
+    /// A step beyond the stable limit, accepted by `allow_unstable`.
+    #[error("the time step {dt:e} s exceeds the stable {limit:e} s")]
+    UnstableStep {
+        /// The step, s.
+        dt: f64,
+        /// The limit, s.
+        limit: f64,
+    },
+    /// A step that may exceed the stable limit.
+    #[error(
+        "the time step {dt:e} s exceeds {limit:e} s, up to which it is surely stable; the exact limit could not be found"
+    )]
+    UncertainStep {
+        /// The step, s.
+        dt: f64,
+        /// The step that is surely stable, s.
+        limit: f64,
+    },
+}
+
+impl Subject for Caution {
+    const SEVERITY: Severity = Severity::Warning;
+
+    fn advice(&self) -> Option<String> {
+        let advice = match self {
+            Self::CrackCutsNothing => {
+                "it must pass between points of the body that lie within a horizon of each other"
+            }
+            Self::ProbeOutside { .. } => "the nearest point is read instead",
+            Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
+            Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+        };
+        Some(advice.into())
+    }
+
+    fn label(&self) -> &'static str {
+        match self {
+            Self::CrackCutsNothing => "no effect",
+            Self::ProbeOutside { .. } => "outside the body",
+            Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+        }
+    }
+}

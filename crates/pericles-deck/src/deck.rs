@@ -1,0 +1,155 @@
+//! The deck as a whole.
+
+use std::path::Path as FilePath;
+
+use serde_json::Value as Json;
+
+use crate::body::{self, Body};
+use crate::conditions::{self, Initial, Load, Prescribe, Probe};
+use crate::crack::{self, PreCrack};
+use crate::document;
+use crate::error::DeckError;
+use crate::material::{self, Material};
+use crate::output::{self, Checkpoint, Output};
+use crate::overrides;
+use crate::reader::{Ledger, Record, Table};
+use crate::set::{self, NamedSet};
+use crate::source::Sources;
+use crate::time::{self, Time};
+
+/// Everything a deck says, in SI units.
+#[derive(Debug, Clone)]
+pub struct Deck {
+    /// A title for people.
+    pub title: Option<String>,
+    /// `[body]`
+    pub body: Body,
+    /// `[material]`
+    pub material: Material,
+    /// `[sets]`, without the set "all" of all points.
+    pub sets: Vec<NamedSet>,
+    /// `[[crack]]`
+    pub cracks: Vec<PreCrack>,
+    /// `[[initial]]`
+    pub initial: Vec<Initial>,
+    /// `[[prescribe]]`
+    pub prescribe: Vec<Prescribe>,
+    /// `[[load]]`
+    pub loads: Vec<Load>,
+    /// `[[probe]]`
+    pub probes: Vec<Probe>,
+    /// `[time]`
+    pub time: Time,
+    /// `[output]`
+    pub output: Output,
+    /// `[checkpoint]`
+    pub checkpoint: Checkpoint,
+    pub(crate) record: Record,
+}
+
+impl Deck {
+    /// Reads a deck from a file and applies overrides `key=value` to it, in their order.
+    ///
+    /// # Errors
+    /// A file that cannot be read; everything that is wrong in it.
+    pub fn read(path: impl AsRef<FilePath>, overrides: &[String]) -> Result<Self, DeckError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|reason| DeckError::Unreadable {
+            path: path.into(),
+            reason,
+        })?;
+        Self::parse(&text, &path.display().to_string(), overrides)
+    }
+
+    /// Reads a deck from a text; `file_name` is what messages call it.
+    ///
+    /// # Errors
+    /// Everything that is wrong in it.
+    pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
+        let mut sources = Sources::new(file_name, text);
+        let mut root = document::parse(&sources)?;
+        for text in overrides {
+            overrides::apply(&mut root, text, &mut sources)?;
+        }
+        let ledger = Ledger::new(sources);
+        let deck = ledger.root(&root).and_then(Self::from_tables);
+        let (problems, record) = ledger.close();
+        match deck {
+            Some(deck) if problems.is_empty() => Ok(Self { record, ..deck }),
+            _ => Err(DeckError::refused(problems)),
+        }
+    }
+
+    /// The deck as it was read: every key with its value in SI units, and what was left out with its default.
+    pub fn to_json(&self) -> &Json {
+        &self.record.json
+    }
+
+    /// The text it was read from, without overrides.
+    pub fn source(&self) -> &str {
+        self.record.sources.text(0)
+    }
+
+    /// The overrides that were applied.
+    pub fn overrides(&self) -> impl Iterator<Item = &str> {
+        (1..self.record.sources.count()).map(|k| self.record.sources.text(k))
+    }
+}
+
+impl Deck {
+    /// Reads all tables before it gives up, so that all problems are found.
+    fn from_tables(root: Table<'_>) -> Option<Self> {
+        let title = root.maybe("title", |item| item.text());
+        let body = body::read(root.required("body").and_then(|item| item.table()));
+        let frame = body.frame;
+        let (sets, names) = set::read(root.table_or_empty("sets"), frame);
+        let material = root
+            .required("material")
+            .and_then(|item| material::read(item.table()?, &body, &names));
+        let cracks = each(&root, "crack", |table| crack::read(table, frame));
+        let initial = each(&root, "initial", |table| {
+            conditions::initial(table, frame.dimension, &names)
+        });
+        let prescribe = each(&root, "prescribe", |table| {
+            conditions::prescribe(table, frame.dimension, &names)
+        });
+        let loads = each(&root, "load", |table| {
+            conditions::load(table, frame.dimension, &names)
+        });
+        let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
+        let time = root
+            .required("time")
+            .and_then(|item| time::read(item.table()?));
+        let output = root
+            .table_or_empty("output")
+            .and_then(|table| output::read(table, frame.dimension));
+        let checkpoint = root
+            .table_or_empty("checkpoint")
+            .and_then(output::checkpoint);
+        root.finish();
+        Some(Self {
+            title: title?,
+            body: body.body?,
+            material: material?,
+            sets: sets?,
+            cracks: cracks?,
+            initial: initial?,
+            prescribe: prescribe?,
+            loads: loads?,
+            probes: probes?,
+            time: time?,
+            output: output?,
+            checkpoint: checkpoint?,
+            record: Record::default(),
+        })
+    }
+}
+
+fn each<'a, T>(
+    root: &Table<'a>,
+    key: &'static str,
+    read: impl Fn(Table<'a>) -> Option<T>,
+) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = root.tables(key).into_iter().map(read).collect();
+    read.into_iter().collect()
+}

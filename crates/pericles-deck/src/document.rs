@@ -1,0 +1,145 @@
+//! The TOML document as an owned tree in which every key and value knows its place.
+
+use toml::de::{DeTable, DeValue};
+
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::finding::Problem;
+use crate::source::{Place, Sources};
+
+/// A value with its place.
+#[derive(Debug, Clone)]
+pub(crate) struct Node {
+    pub(crate) place: Place,
+    pub(crate) value: Value,
+}
+
+/// What a value is.
+#[derive(Debug, Clone)]
+pub(crate) enum Value {
+    Text(String),
+    Integer(i64),
+    Float(f64),
+    Boolean(bool),
+    Date,
+    Array(Vec<Node>),
+    Table(Vec<Entry>),
+}
+
+/// A key with its value, in the order of the text.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) key_place: Place,
+    pub(crate) node: Node,
+}
+
+impl Value {
+    /// What it is, in words.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Text(_) => "a string",
+            Self::Integer(_) | Self::Float(_) => "a number",
+            Self::Boolean(_) => "true or false",
+            Self::Date => "a date",
+            Self::Array(_) => "a list",
+            Self::Table(_) => "a table",
+        }
+    }
+}
+
+/// Reads a document; the first error of its syntax refuses it, for what follows one is mostly its consequence.
+pub(crate) fn parse(sources: &Sources) -> Result<Node, DeckError> {
+    let text = sources.text(0);
+    match DeTable::parse(text) {
+        Ok(document) => {
+            let mut entries = table(document.get_ref(), 0, 0);
+            sort(&mut entries);
+            Ok(Node {
+                place: Place::default(),
+                value: Value::Table(entries),
+            })
+        }
+        Err(error) => {
+            let span = error.span().unwrap_or(0..0);
+            let place = Place {
+                source: 0,
+                start: span.start,
+                end: span.end,
+            };
+            let fault = Fault::Syntax {
+                message: error.message().to_owned(),
+            };
+            Err(DeckError::refused(vec![Problem::new(
+                fault,
+                sources.locate(place),
+            )]))
+        }
+    }
+}
+
+/// A single value, standing `offset` bytes after the start of its source; none if the text is no TOML value.
+pub(crate) fn parse_value(text: &str, source: usize, offset: usize) -> Option<Node> {
+    let value = DeValue::parse(text).ok()?;
+    Some(node(value.get_ref(), value.span(), source, offset))
+}
+
+fn table(entries: &DeTable<'_>, source: usize, offset: usize) -> Vec<Entry> {
+    entries
+        .iter()
+        .map(|(key, value)| Entry {
+            key: key.get_ref().to_string(),
+            key_place: place(key.span(), source, offset),
+            node: node(value.get_ref(), value.span(), source, offset),
+        })
+        .collect()
+}
+
+fn node(value: &DeValue<'_>, span: std::ops::Range<usize>, source: usize, offset: usize) -> Node {
+    let value = match value {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(integer) => Value::Integer(integer),
+            // Beyond 64 bits: only its size matters, and the reader refuses what is not finite.
+            Err(_) => Value::Float(integer.as_str().parse().unwrap_or(f64::INFINITY)),
+        },
+        DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(boolean) => Value::Boolean(*boolean),
+        DeValue::Datetime(_) => Value::Date,
+        DeValue::Array(items) => Value::Array(
+            items
+                .iter()
+                .map(|item| node(item.get_ref(), item.span(), source, offset))
+                .collect(),
+        ),
+        DeValue::Table(entries) => Value::Table(table(entries, source, offset)),
+    };
+    Node {
+        place: place(span, source, offset),
+        value,
+    }
+}
+
+fn place(span: std::ops::Range<usize>, source: usize, offset: usize) -> Place {
+    Place {
+        source,
+        start: span.start + offset,
+        end: span.end + offset,
+    }
+}
+
+/// Puts entries into the order of the text: the parser returns them by name.
+fn sort(entries: &mut [Entry]) {
+    entries.sort_by_key(|entry| entry.key_place.start);
+    for entry in entries {
+        sort_node(&mut entry.node);
+    }
+}
+
+fn sort_node(node: &mut Node) {
+    match &mut node.value {
+        Value::Table(entries) => sort(entries),
+        Value::Array(items) => items.iter_mut().for_each(sort_node),
+        _ => {}
+    }
+}

@@ -1,0 +1,271 @@
+//! Kinds of wrong in a deck, and what is allowed instead.
+
+use miette::Severity;
+use pericles::PericlesError;
+
+use crate::finding::Subject;
+
+/// Kinds of wrong.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The text is no TOML.
+    #[error("not valid TOML: {message}")]
+    Syntax {
+        /// What the parser found.
+        message: String,
+    },
+    /// A key that does not belong here.
+    #[error("unknown key `{key}` in {table}")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The table it stands in.
+        table: String,
+        /// The key that may have been meant.
+        nearest: Option<String>,
+        /// All keys that belong here.
+        allowed: Vec<String>,
+    },
+    /// A key that is missing.
+    #[error("{table} lacks `{key}`")]
+    MissingKey {
+        /// The key.
+        key: String,
+        /// Other names of the key.
+        synonyms: Vec<String>,
+        /// The table it should stand in.
+        table: String,
+    },
+    /// None of several keys of which one is needed.
+    #[error("{table} lacks one of {}", names(allowed))]
+    MissingChoice {
+        /// The table.
+        table: String,
+        /// The keys.
+        allowed: Vec<String>,
+    },
+    /// Several keys of which only one may be given.
+    #[error("{} are given together in {table}", names(given))]
+    Exclusive {
+        /// The keys found.
+        given: Vec<String>,
+        /// The table.
+        table: String,
+        /// The keys to choose from.
+        allowed: Vec<String>,
+    },
+    /// A key that has no meaning here.
+    #[error("`{key}` has no place in {table}")]
+    Misplaced {
+        /// The key.
+        key: String,
+        /// The table.
+        table: String,
+        /// When it has.
+        allowed: String,
+    },
+    /// A value of another kind.
+    #[error("{found} (`{value}`) where {expected} is needed")]
+    WrongKind {
+        /// The value as written.
+        value: String,
+        /// What it is.
+        found: &'static str,
+        /// What is needed.
+        expected: String,
+    },
+    /// A string that holds no number, or a number that is not finite.
+    #[error("`{value}` is not a number")]
+    NotANumber {
+        /// The value as written.
+        value: String,
+        /// What is needed.
+        expected: String,
+    },
+    /// A unit that does not exist.
+    #[error("unknown unit `{unit}` in `{value}`")]
+    UnknownUnit {
+        /// The value as written.
+        value: String,
+        /// The unit.
+        unit: String,
+        /// The unit that may have been meant.
+        nearest: Option<String>,
+        /// What is needed.
+        expected: String,
+    },
+    /// A unit of another dimension.
+    #[error("`{value}` is not {expected}")]
+    WrongUnit {
+        /// The value as written.
+        value: String,
+        /// What is needed.
+        expected: String,
+        /// With an example.
+        allowed: String,
+    },
+    /// A number out of its range.
+    #[error("`{value}` is out of range")]
+    OutOfRange {
+        /// The value as written.
+        value: String,
+        /// The range.
+        allowed: String,
+    },
+    /// A word that is not among those allowed.
+    #[error("unknown {what} `{value}`")]
+    UnknownWord {
+        /// What the word names.
+        what: &'static str,
+        /// The value as written.
+        value: String,
+        /// The word that may have been meant.
+        nearest: Option<String>,
+        /// All words allowed.
+        allowed: Vec<String>,
+    },
+    /// A list of the wrong length.
+    #[error("`{value}` has {found} {}", if *found == 1 { "entry" } else { "entries" })]
+    WrongLength {
+        /// The value as written.
+        value: String,
+        /// Its length.
+        found: usize,
+        /// The length needed.
+        allowed: String,
+    },
+    /// A name that cannot be used.
+    #[error("the name `{name}` cannot be used: {reason}")]
+    BadName {
+        /// The name.
+        name: String,
+        /// Why.
+        reason: &'static str,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A prescribed motion without a prescribed component.
+    #[error("every component is free: nothing is prescribed")]
+    NothingPrescribed,
+    /// An override that cannot be applied.
+    #[error("the override `{text}` cannot be applied: {reason}")]
+    BadOverride {
+        /// The override.
+        text: String,
+        /// Why.
+        reason: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A set without points.
+    #[error("the set `{set}` selects no point")]
+    EmptySet {
+        /// The set.
+        set: String,
+    },
+    /// A load whose area cannot be guessed.
+    #[error("the area that the traction acts on cannot be told: {reason}")]
+    UnknownArea {
+        /// Why.
+        reason: &'static str,
+    },
+    /// The library refuses the value.
+    #[error(transparent)]
+    Model(#[from] PericlesError),
+}
+
+impl Subject for Fault {
+    const SEVERITY: Severity = Severity::Error;
+
+    fn advice(&self) -> Option<String> {
+        let meant = |nearest: &Option<String>| match nearest {
+            Some(word) => format!("did you mean `{word}`? "),
+            None => String::new(),
+        };
+        Some(match self {
+            Self::Syntax { .. } => "a deck is TOML: `key = value`, `[table]`, strings in quotes".into(),
+            Self::UnknownKey {
+                nearest, allowed, ..
+            } => format!("{}allowed: {}", meant(nearest), names(allowed)),
+            Self::MissingKey { key, synonyms, .. } if synonyms.is_empty() => format!("`{key}` must be given"),
+            Self::MissingKey { key, synonyms, .. } => {
+                format!("`{key}` must be given (also called {})", names(synonyms))
+            }
+            Self::MissingChoice { .. } => "exactly one of them must be given".into(),
+            Self::Exclusive { allowed, .. } => format!("allowed: only one of {}", names(allowed)),
+            Self::Misplaced { allowed, .. }
+            | Self::OutOfRange { allowed, .. }
+            | Self::BadOverride { allowed, .. } => allowed.clone(),
+            Self::WrongKind { expected, .. } => format!("allowed: {expected}"),
+            Self::NotANumber { expected, .. } => format!("expected {expected}"),
+            Self::UnknownUnit {
+                nearest, expected, ..
+            } => format!("{}expected {expected}", meant(nearest)),
+            Self::WrongUnit { allowed, .. } => format!("expected {allowed}"),
+            Self::UnknownWord {
+                nearest, allowed, ..
+            } => format!("{}allowed: {}", meant(nearest), quoted(allowed)),
+            Self::WrongLength { allowed, .. } => allowed.clone(),
+            Self::BadName { allowed, .. } => (*allowed).into(),
+            Self::NothingPrescribed => {
+                "give a number for at least one component, or leave the whole table out".into()
+            }
+            Self::EmptySet { .. } => {
+                "a set needs at least one cell centre; make the region larger (a layer is at least half a spacing deep)".into()
+            }
+            Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
+            Self::Model(_) => return None,
+        })
+    }
+
+    fn label(&self) -> &'static str {
+        match self {
+            Self::Syntax { .. } => "here",
+            Self::UnknownKey {
+                nearest: Some(_), ..
+            }
+            | Self::UnknownWord {
+                nearest: Some(_), ..
+            } => "misspelt?",
+            Self::UnknownKey { .. } | Self::UnknownWord { .. } => "not known",
+            Self::MissingKey { .. } | Self::MissingChoice { .. } => "incomplete",
+            Self::Exclusive { .. } => "one too many",
+            Self::Misplaced { .. } => "not here",
+            Self::WrongKind { .. } => "wrong kind of value",
+            Self::NotANumber { .. } => "no number",
+            Self::UnknownUnit { .. } => "unknown unit",
+            Self::WrongUnit { .. } => "wrong unit",
+            Self::OutOfRange { .. } => "out of range",
+            Self::WrongLength { .. } => "wrong length",
+            Self::BadName { .. } => "not usable",
+            Self::NothingPrescribed => "all free",
+            Self::BadOverride { .. } => "cannot be applied",
+            Self::EmptySet { .. } => "no points here",
+            Self::UnknownArea { .. } => "which area?",
+            Self::Model(_) => "refused",
+        }
+    }
+}
+
+/// `a`, `b` and `c`
+fn names(words: &[String]) -> String {
+    joined(words, '`')
+}
+
+/// "a", "b" and "c"
+fn quoted(words: &[String]) -> String {
+    joined(words, '"')
+}
+
+fn joined(words: &[String], mark: char) -> String {
+    let words: Vec<String> = words
+        .iter()
+        .map(|word| format!("{mark}{word}{mark}"))
+        .collect();
+    match words.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => "none".into(),
+    }
+}

@@ -1,0 +1,173 @@
+//! Pericles decks: TOML in, a checked model out.
+//!
+//! A deck is one TOML file. [`Deck::read`] turns it into plain data in SI units, [`Deck::build`] turns that into points, bonds, an operator, loads and a
+//! time step, and [`Model::simulation`] into a run. Reading is strict: unknown keys, wrong units, vectors of the wrong
+//! length or names of sets that do not exist are errors which point at the file, line and column and say what is allowed; one reading finds all of
+//! them. What the library refuses while the model is built points into the deck as well.
+//!
+//! ```
+//! use pericles_deck::Deck;
+//!
+//! let text = r#"
+//!     [body]
+//!     shape = "bar"
+//!     length = "1 m"
+//!     spacing = "1 cm"
+//!     area = "4 cm2"
+//!     [material]
+//!     density = "7850 kg/m3"
+//!     youngs_modulus = "210 GPa"
+//!     horizon_ratio = 3
+//!     [time]
+//!     end = "1 ms"
+//! "#;
+//! let deck = Deck::parse(text, "bar.toml", &[]).unwrap();
+//! assert_eq!(deck.body.grid.section, 4e-4);
+//! let model = deck.build().unwrap();
+//! assert_eq!(model.cloud.len(), 100);
+//!
+//! // The same deck with another horizon and a slip of the pen.
+//! let changes = ["material.m=4".to_owned(), "time.ende=1".to_owned()];
+//! let error = Deck::parse(text, "bar.toml", &changes).unwrap_err();
+//! let message = error.to_string();
+//! assert!(message.starts_with("--set:1:6: unknown key `ende` in [time]; did you mean `end`?"));
+//! ```
+//!
+//! # Numbers
+//! A number is plain and in SI units (`72e9`), or a string with a unit (`"72 GPa"`, `"0.25 mm"`, `"135 J/m2"`, `"7.85 g/cm3"`, `"50 %"`). Units are products (`*`, `·`)
+//! and quotients (`/`, from left to right) of m, g, s, min, h, N, Pa, bar, J, W, Hz and %, with the prefixes f p n u µ m c d k M G T
+//! and whole powers (`m2`, `m^2`, `m²`). `"0.25 mm"` is the same number as `0.25e-3`, to the last bit. Vectors have one entry per dimension of the body; in one dimension the brackets may be
+//! left out.
+//!
+//! # Format
+//! Names in brackets are synonyms; values shown after `default` are taken if the key is left out.
+//! ```toml
+//! title = "Branching crack"              # for people; optional
+//!
+//! [body]
+//! shape = "plate"                        # bar (1D) | plate, disc (2D) | block, cylinder, ball (3D)
+//! size = ["100 mm", "40 mm"]             # bar (or length = "…"), plate, block; whole numbers of cells
+//! origin = ["0 mm", "0 mm"]              # their lower corner; default 0
+//! # disc, ball: centre [center], default 0; radius          disc: inner_radius, optional
+//! # cylinder: base (centre of the lower base), default 0; axis, default "z"; radius; inner_radius, optional; height
+//! spacing = "0.25 mm"                    # [dx] size of the cells
+//! plane = "strain"                       # 2D only, and needed there: stress | strain
+//! thickness = "1 mm"                     # 2D only; default 1 m
+//! # area = "1 mm2"                       # 1D only; default 1 m²
+//! [[body.hole]]                          # a region without material; any number
+//! ball = { centre = ["20 mm", "20 mm"], radius = "5 mm" }
+//!
+//! [material]
+//! name = "soda-lime glass"               # for people; optional
+//! model = "bond-stretch"                 # default; or linear
+//! density = "2440 kg/m3"                 # [rho]
+//! youngs_modulus = "72 GPa"              # [E], or bulk_modulus [K], or shear_modulus [G]: exactly one
+//! poisson_ratio = 0.25                   # [nu] optional; checked against the only one that bonds can have
+//! horizon = "0.75 mm"                    # or horizon_ratio [m] = 3, in spacings: exactly one
+//! volume_correction = "extended"         # default; or linear, none
+//! modulus = "continuum"                  # default; or lattice: bond constant from the grid's own sums
+//! influence = { function = "constant", acts_on = "stretch" }   # the defaults; acts_on = stretch | displacement
+//! # function = "constant" | "conical" | "inverse" | "power" (exponent) | "gaussian" (length; cutoff, default the horizon)
+//! #   | "tabulated" (table = [[r, value], …]; r = "length" (default) | "spacing" | "horizon", the unit of the first column)
+//! fracture_energy = "135 J/m2"           # [Gc, G0], or critical_stretch [s0]; neither: bonds never break
+//! no_fail = ["top", "left"]              # sets whose bonds never break; default none
+//! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
+//!
+//! [sets.top]                             # named sets of points: exactly one region each; "all" is always there
+//! layer = { side = "+y", depth = "0.25 mm" }
+//! [sets.left]
+//! layer = { side = "-x", cells = 2 }
+//!
+//! [[crack]]                              # cuts bonds before the run
+//! segment = [["0 mm", "20 mm"], ["50 mm", "20 mm"]]   # 2D
+//! # 1D: section = "5 mm"    3D: polygon = [[x, y, z], …], or disc = { centre, normal, radius }
+//! ends = "closed"                        # default; or open: bonds through the very border are kept
+//!
+//! [[initial]]                            # later entries replace earlier ones
+//! set = "all"                            # default
+//! velocity = ["0 m/s", "1 m/s"]          # displacement, velocity, or both
+//!
+//! [[prescribe]]
+//! set = "left"
+//! velocity = [0, "free"]                 # or displacement; "free" where nothing is prescribed
+//! function = { kind = "constant" }       # default; or ramp (start, default 0; duration), pulse (the same)
+//!
+//! [[load]]
+//! set = "top"
+//! traction = [0, "12 MPa"]               # force per area, spread over the set's volume; or body_force, per volume
+//! area = "100 mm2"                       # optional: else the set as seen along the normal of its layer, or along the load
+//! function = { kind = "ramp", duration = "1 us" }
+//!
+//! [[probe]]                              # displacement and velocity in the history
+//! name = "middle"
+//! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
+//!
+//! [time]
+//! end = "46 us"
+//! dt = "auto"                            # default: the largest stable step times `safety`; or a time
+//! safety = 0.95                          # default; only with "auto"
+//! scheme = "velocity-verlet"             # default
+//! allow_unstable = false                 # default; true: a step known to be unstable is only warned of
+//!
+//! [output]                               # schedules: interval = time | every = steps | count = number over the run
+//! fields = { count = 20 }                # default; or "never"
+//! history = { count = 200 }              # default; or "never". Reactions follow it too
+//! cracks = { threshold = 0.35 }          # default threshold of damage; schedule by default that of the history; or "never"
+//! precision = "double"                   # default; or single: numbers in field files
+//! [[output.picture]]                     # any number
+//! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density
+//! scale = 1                              # default: factor of the displacement
+//! range = [0, 1]                         # of the colour bar; default: that of the field
+//! count = 4                              # default
+//!
+//! [checkpoint]
+//! wall = "10 min"                        # default: time on the clock; or every = steps, or interval = simulated time
+//! ```
+//!
+//! Regions, in sets and holes: `all = true`, `box = { min, max }` (either may be left out, entries may be `"open"`), `ball = { centre, radius }`,
+//! `cylinder = { centre, axis, radius }` (3D), `half_space = { point, normal }` (the side the normal points away from),
+//! `layer = { side, depth }` (side −x, +x, …, +z of the body's bounding box; `cells` counts spacings instead), `polygon = { corners = [[x, y], …] }`,
+//! `union = [ … ]`, `intersection = [ … ]`, `complement = { … }`.
+//!
+//! # Overrides
+//! `key=value` changes the document before it is read. The key is a dotted path with indices from zero (`crack.0.ends`, `load.0.traction`); the value is TOML
+//! if it parses as such, else a string, so that `time.dt=25 ns` needs no quotes. A key replaces the same key under another name and those
+//! of which only one may be given: `material.m=4` replaces `horizon`. Errors point into the override.
+
+mod body;
+mod build;
+mod caution;
+mod conditions;
+mod crack;
+mod deck;
+mod document;
+mod error;
+mod fault;
+mod finding;
+mod material;
+mod nearest;
+mod output;
+mod overrides;
+mod quantity;
+mod reader;
+mod region;
+mod set;
+mod source;
+mod time;
+mod units;
+mod vocabulary;
+
+pub use body::Body;
+pub use build::{Model, Sets};
+pub use caution::Caution;
+pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace};
+pub use crack::PreCrack;
+pub use deck::Deck;
+pub use error::DeckError;
+pub use fault::Fault;
+pub use finding::{Finding, Problem, Subject, Warning};
+pub use material::Material;
+pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
+pub use set::{ALL, NamedSet};
+pub use source::Location;
+pub use time::{Scheme, Time, TimeStep};

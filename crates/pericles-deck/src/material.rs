@@ -1,0 +1,265 @@
+//! `[material]`: constants, horizon, influence function and breaking.
+
+use pericles::family::VolumeCorrection;
+use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
+use pericles::material::{
+    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+};
+use pericles::operator::DamageMeasure;
+
+use crate::body::BodyRead;
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::set::SetNames;
+use crate::vocabulary::{HORIZONS, MODULI, STRENGTHS};
+
+/// The material with what goes with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// A name for people.
+    pub name: Option<String>,
+    /// Law, constants, horizon and breaking.
+    pub bonds: BondMaterial,
+    /// Sets whose bonds never break.
+    pub no_fail: Vec<String>,
+    /// How damage is measured.
+    pub damage: DamageMeasure,
+}
+
+pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
+    let dimension = body.frame.dimension;
+    let name = table.maybe("name", |item| item.text());
+    let law = table.choice_or_first(
+        "model",
+        "model",
+        &[
+            ("bond-stretch", PairLaw::BondStretch),
+            ("linear", PairLaw::Linear),
+        ],
+    );
+    let density = table
+        .required("density")
+        .and_then(|item| item.positive(Quantity::Density));
+    let modulus = modulus(&table, body.state);
+    let horizon = horizon(&table, body.frame.spacing);
+    let volume_correction = table.choice_or_first(
+        "volume_correction",
+        "volume correction",
+        &[
+            ("extended", VolumeCorrection::Extended),
+            ("linear", VolumeCorrection::Linear),
+            ("none", VolumeCorrection::None),
+        ],
+    );
+    poisson_ratio(&table, body.state);
+    let influence = influence(&table, dimension, body.frame.spacing, horizon);
+    let fracture = fracture(&table);
+    let no_fail = table
+        .optional("no_fail")
+        .map_or(Some(Vec::new()), |item| sets.references(&item));
+    let damage = damage(&table);
+    table.finish();
+    Some(Material {
+        name: name?,
+        bonds: BondMaterial {
+            law: law?,
+            density: density?,
+            modulus: modulus?,
+            horizon: horizon?,
+            influence: influence?,
+            volume_correction: volume_correction?,
+            fracture: fracture?,
+        },
+        no_fail: no_fail?,
+        damage: damage?,
+    })
+}
+
+fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
+    let value = table.exactly_one(MODULI).and_then(|(kind, item)| {
+        let number = item.positive(Quantity::Modulus)?;
+        let value = match kind {
+            "youngs_modulus" => ElasticModulus::Young(number),
+            "bulk_modulus" => ElasticModulus::Bulk(number),
+            _ => ElasticModulus::Shear(number),
+        };
+        if let Some(state) = state {
+            item.accept(value.young(state))?;
+        }
+        Some(value)
+    });
+    let calibration = table.choice_or_first(
+        "modulus",
+        "calibration",
+        &[
+            ("continuum", Calibration::Continuum),
+            ("lattice", Calibration::Lattice),
+        ],
+    );
+    Some(Modulus {
+        value: value?,
+        calibration: calibration?,
+    })
+}
+
+fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
+    let Some(item) = table.optional("poisson_ratio") else {
+        return;
+    };
+    if let (Some(ratio), Some(state)) = (item.quantity(Quantity::Number), state) {
+        item.accept(state.check_poisson_ratio(ratio));
+    }
+}
+
+/// The horizon in metres, given as a length or as a multiple of the spacing.
+fn horizon(table: &Table<'_>, spacing: Option<f64>) -> Option<f64> {
+    let (kind, item) = table.exactly_one(HORIZONS)?;
+    match kind {
+        "horizon" => item.within(
+            Quantity::Length,
+            "a length of at least one spacing (usual: 3 spacings)",
+            // Horizons are mostly whole multiples of the spacing, up to round-off.
+            |horizon| horizon > 0.0 && spacing.is_none_or(|dx| horizon >= dx * (1.0 - 1e-9)),
+        ),
+        _ => {
+            let ratio = item.within(
+                Quantity::Number,
+                "a number of at least 1 (usual: 3)",
+                |ratio| ratio >= 1.0,
+            )?;
+            Some(ratio * spacing?)
+        }
+    }
+}
+
+fn fracture(table: &Table<'_>) -> Option<Fracture> {
+    match table.at_most_one(STRENGTHS)? {
+        None => Some(Fracture::Unbreakable),
+        Some(("fracture_energy", item)) => {
+            Some(Fracture::Energy(item.positive(Quantity::SurfaceEnergy)?))
+        }
+        Some((_, item)) => Some(Fracture::CriticalStretch(item.positive(Quantity::Number)?)),
+    }
+}
+
+fn damage(table: &Table<'_>) -> Option<DamageMeasure> {
+    let table = table.table_or_empty("damage")?;
+    let count = table.choice_or_first(
+        "measure",
+        "measure of damage",
+        &[("volume", false), ("count", true)],
+    );
+    let count_precut = table.or("count_precut", false, |item| item.boolean());
+    table.finish();
+    Some(DamageMeasure {
+        count: count?,
+        count_precut: count_precut?,
+    })
+}
+
+fn influence(
+    table: &Table<'_>,
+    dimension: Option<usize>,
+    spacing: Option<f64>,
+    horizon: Option<f64>,
+) -> Option<Influence> {
+    let table = table.table_or_empty("influence")?;
+    let function = function(&table, spacing, horizon);
+    let acts_on = table.choice_or_first(
+        "acts_on",
+        "argument",
+        &[
+            ("stretch", ActsOn::Stretch),
+            ("displacement", ActsOn::Displacement),
+        ],
+    );
+    // Without the function nobody knows which other keys belong here.
+    let influence = Influence {
+        function: function?,
+        acts_on: acts_on?,
+    };
+    if let (Some(dimension), Some(horizon)) = (dimension, horizon) {
+        table.accept(influence.check(dimension, horizon));
+    }
+    table.finish();
+    Some(influence)
+}
+
+#[derive(Clone, Copy)]
+enum Form {
+    Constant,
+    Conical,
+    Inverse,
+    Power,
+    Gaussian,
+    Tabulated,
+}
+
+fn function(
+    table: &Table<'_>,
+    spacing: Option<f64>,
+    horizon: Option<f64>,
+) -> Option<InfluenceFunction> {
+    const FORMS: [(&str, Form); 6] = [
+        ("constant", Form::Constant),
+        ("conical", Form::Conical),
+        ("inverse", Form::Inverse),
+        ("power", Form::Power),
+        ("gaussian", Form::Gaussian),
+        ("tabulated", Form::Tabulated),
+    ];
+    match table.choice_or_first("function", "influence function", &FORMS)? {
+        Form::Constant => Some(InfluenceFunction::Constant),
+        Form::Conical => Some(InfluenceFunction::Conical),
+        Form::Inverse => Some(InfluenceFunction::Inverse),
+        Form::Power => Some(InfluenceFunction::Power {
+            exponent: table.required("exponent")?.quantity(Quantity::Number)?,
+        }),
+        Form::Gaussian => {
+            let length = table
+                .required("length")
+                .and_then(|item| item.positive(Quantity::Length));
+            let cutoff = table.maybe("cutoff", |item| item.positive(Quantity::Length));
+            Some(InfluenceFunction::Gaussian {
+                length: length?,
+                cutoff: cutoff?,
+            })
+        }
+        Form::Tabulated => tabulated(table, spacing, horizon),
+    }
+}
+
+/// A table whose first column is a length, or counts spacings or horizons.
+fn tabulated(
+    table: &Table<'_>,
+    spacing: Option<f64>,
+    horizon: Option<f64>,
+) -> Option<InfluenceFunction> {
+    const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
+    let unit = table.choice_or_first("r", "unit of the first column", &UNITS);
+    let rows = table
+        .required("table")
+        .and_then(|item| item.list("a list of pairs [r, value]"));
+    let unit = unit?;
+    let quantity = if unit == 0 {
+        Quantity::Length
+    } else {
+        Quantity::Number
+    };
+    let pairs: Vec<Option<(f64, f64)>> = rows?.iter().map(|row| pair(row, quantity)).collect();
+    let scale = [Some(1.0), spacing, horizon][unit];
+    let pairs: Vec<(f64, f64)> = pairs.into_iter().collect::<Option<_>>()?;
+    let scale = scale?;
+    Some(InfluenceFunction::Tabulated {
+        table: pairs.iter().map(|(r, value)| (r * scale, *value)).collect(),
+    })
+}
+
+fn pair(row: &Item<'_>, quantity: Quantity) -> Option<(f64, f64)> {
+    let items = row.exactly(2, "a pair [r, value]")?;
+    let (r, value) = (
+        items[0].quantity(quantity),
+        items[1].quantity(Quantity::Number),
+    );
+    Some((r?, value?))
+}

@@ -1,0 +1,247 @@
+//! `[output]` and `[checkpoint]`: what is written, and when.
+
+use pericles::observe::{Field, Schedule};
+
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
+
+/// What a run writes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// When field files are written.
+    pub fields: Schedule,
+    /// When a row is added to the tables of energies, probes and reactions.
+    pub history: Schedule,
+    /// The table of crack tips.
+    pub cracks: CrackOutput,
+    /// Precision of numbers in field files.
+    pub precision: Precision,
+    /// Pictures.
+    pub pictures: Vec<Picture>,
+}
+
+/// The table of crack tips.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrackOutput {
+    /// When a row is added.
+    pub schedule: Schedule,
+    /// The damage beyond which a point counts as cracked.
+    pub threshold: f64,
+}
+
+/// Precision of numbers in field files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// 32 bits.
+    Single,
+    /// 64 bits.
+    Double,
+}
+
+/// A picture of a field on the points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// The field.
+    pub field: Field,
+    /// Which component of a vector; its magnitude if none.
+    pub component: Option<usize>,
+    /// Factor of the displacement of the points.
+    pub scale: f64,
+    /// Values at the ends of the colour bar; those of the field if none.
+    pub range: Option<[f64; 2]>,
+    /// When it is drawn.
+    pub schedule: Schedule,
+}
+
+/// When a checkpoint is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Checkpoint {
+    /// Every so much time on the clock, s.
+    Wall(f64),
+    /// Every so many steps.
+    Every(u64),
+    /// Every so much simulated time, s.
+    Interval(f64),
+}
+
+impl Default for Checkpoint {
+    fn default() -> Self {
+        Self::Wall(600.0)
+    }
+}
+
+pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output> {
+    let fields = scheduled(&table, "fields", 20);
+    let history = scheduled(&table, "history", 200);
+    let cracks = cracks(&table, history);
+    let precision = table.choice_or_first(
+        "precision",
+        "precision",
+        &[("double", Precision::Double), ("single", Precision::Single)],
+    );
+    let pictures: Vec<Option<Picture>> = table
+        .tables("picture")
+        .into_iter()
+        .map(|table| picture(table, dimension))
+        .collect();
+    table.finish();
+    Some(Output {
+        fields: fields?,
+        history: history?,
+        cracks: cracks?,
+        precision: precision?,
+        pictures: pictures.into_iter().collect::<Option<_>>()?,
+    })
+}
+
+pub(crate) fn checkpoint(table: Table<'_>) -> Option<Checkpoint> {
+    let checkpoint = match table.at_most_one(CHECKPOINTS) {
+        None => None,
+        Some(None) => {
+            let Checkpoint::Wall(seconds) = Checkpoint::default() else {
+                return None;
+            };
+            table.record("wall", seconds);
+            Some(Checkpoint::Wall(seconds))
+        }
+        Some(Some(("wall", item))) => item.positive(Quantity::Time).map(Checkpoint::Wall),
+        Some(Some(("every", item))) => item.count().map(Checkpoint::Every),
+        Some(Some((_, item))) => item.positive(Quantity::Time).map(Checkpoint::Interval),
+    };
+    table.finish();
+    checkpoint
+}
+
+/// The word for a schedule that is never due.
+const NEVER: &str = "never";
+
+/// A table that holds a schedule and nothing else, or the word "never".
+fn scheduled(table: &Table<'_>, key: &'static str, count: u64) -> Option<Schedule> {
+    if is_never(table, key) {
+        return Some(Schedule::Never);
+    }
+    let table = table.table_or_empty(key)?;
+    let schedule = schedule(&table, Schedule::Count(count));
+    table.finish();
+    schedule
+}
+
+fn is_never(table: &Table<'_>, key: &'static str) -> bool {
+    let never = table
+        .optional(key)
+        .filter(|item| item.word() == Some(NEVER));
+    if let Some(item) = &never {
+        item.record(NEVER);
+    }
+    never.is_some()
+}
+
+fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
+    match table.at_most_one(SCHEDULES)? {
+        None => {
+            match default {
+                Schedule::Never => {}
+                Schedule::Interval(interval) => table.record("interval", interval),
+                Schedule::Every(steps) => table.record("every", steps),
+                Schedule::Count(count) => table.record("count", count),
+            }
+            Some(default)
+        }
+        Some(("interval", item)) => item.positive(Quantity::Time).map(Schedule::Interval),
+        Some(("every", item)) => item.count().map(Schedule::Every),
+        Some((_, item)) => item.count().map(Schedule::Count),
+    }
+}
+
+/// By default as often as the history.
+fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<CrackOutput> {
+    /// Damage of a point on a straight crack is close to a half; this finds cracks without their surroundings.
+    const THRESHOLD: f64 = 0.35;
+    if is_never(table, "cracks") {
+        return Some(CrackOutput {
+            schedule: Schedule::Never,
+            threshold: THRESHOLD,
+        });
+    }
+    let table = table.table_or_empty("cracks")?;
+    let schedule = schedule(&table, history.unwrap_or(Schedule::Count(200)));
+    let threshold = table.or("threshold", THRESHOLD, |item| {
+        item.within(
+            Quantity::Number,
+            "a damage between 0 and 1, both excluded",
+            |threshold| threshold > 0.0 && threshold < 1.0,
+        )
+    });
+    table.finish();
+    Some(CrackOutput {
+        schedule: schedule?,
+        threshold: threshold?,
+    })
+}
+
+fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
+    let field = table
+        .required("field")
+        .and_then(|item| field(&item, dimension));
+    let scale = table.or("scale", 1.0, |item| {
+        item.within(Quantity::Number, "a number of at least 0", |scale| {
+            scale >= 0.0
+        })
+    });
+    let quantity = field.map_or(Quantity::Number, |(field, _)| quantity(field));
+    let range = table.maybe("range", |item| range(&item, quantity));
+    let schedule = schedule(&table, Schedule::Count(4));
+    table.finish();
+    let (field, component) = field?;
+    Some(Picture {
+        field,
+        component,
+        scale: scale?,
+        range: range?,
+        schedule: schedule?,
+    })
+}
+
+fn quantity(field: Field) -> Quantity {
+    match field {
+        Field::Displacement => Quantity::Length,
+        Field::Velocity => Quantity::Velocity,
+        Field::ForceDensity => Quantity::ForceDensity,
+        Field::Damage => Quantity::Number,
+        Field::StrainEnergyDensity => Quantity::EnergyDensity,
+    }
+}
+
+/// A field by its name in files; vectors by magnitude or with the name of an axis the body has.
+fn field(item: &Item<'_>, dimension: Option<usize>) -> Option<(Field, Option<usize>)> {
+    let whole = Field::ALL.iter().map(|&field| (field, None));
+    let parts = Field::ALL
+        .iter()
+        .filter(|field| field.is_vector())
+        .flat_map(|&field| (0..dimension.unwrap_or(3)).map(move |c| (field, Some(c))));
+    let named: Vec<(String, (Field, Option<usize>))> = whole
+        .chain(parts)
+        .map(|(field, component)| {
+            let axis = component.map_or("", |c| ["_x", "_y", "_z"][c]);
+            (format!("{}{axis}", field.name()), (field, component))
+        })
+        .collect();
+    let text = item.text()?;
+    let found = named.iter().find(|(name, _)| *name == text);
+    if found.is_none() {
+        item.unknown_word("field", &text, named.iter().map(|(name, _)| name.as_str()));
+    }
+    found.map(|(_, field)| *field)
+}
+
+fn range(item: &Item<'_>, quantity: Quantity) -> Option<[f64; 2]> {
+    let ends = item.exactly(2, "two numbers [lowest, highest]")?;
+    let (low, high) = (ends[0].quantity(quantity), ends[1].quantity(quantity));
+    let (low, high) = (low?, high?);
+    if low < high {
+        return Some([low, high]);
+    }
+    item.out_of_range("two numbers [lowest, highest], the first smaller");
+    None
+}

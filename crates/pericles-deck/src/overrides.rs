@@ -1,0 +1,149 @@
+//! `--set key=value`: changes to a deck before it is read.
+//!
+//! The key is a dotted path with indices from zero, such as `time.dt`, `crack.0.ends` or `load.0.traction`; the value is TOML if it
+//! parses as such, else a string. A key replaces the same key under another name, and the alternatives of which only one may be given:
+//! `material.K=…` replaces a deck's `youngs_modulus`. Tables that are missing are made.
+
+use crate::document::{self, Entry, Node, Value};
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::finding::Problem;
+use crate::source::{Place, Sources};
+use crate::vocabulary::{canonical, replaces};
+
+/// Under this name overrides appear in messages.
+const SOURCE: &str = "--set";
+
+/// Far more than any deck is deep.
+const DEEPEST: usize = 16;
+
+/// Applies one override to the document.
+pub(crate) fn apply(root: &mut Node, text: &str, sources: &mut Sources) -> Result<(), DeckError> {
+    let source = sources.add(SOURCE, text);
+    set(root, text, source).map_err(|refusal| {
+        let fault = Fault::BadOverride {
+            text: text.into(),
+            reason: refusal.reason,
+            allowed: refusal.allowed,
+        };
+        let place = Place {
+            source,
+            start: refusal.start,
+            end: refusal.end,
+        };
+        DeckError::refused(vec![Problem::new(fault, sources.locate(place))])
+    })
+}
+
+struct Refusal {
+    reason: String,
+    allowed: String,
+    start: usize,
+    end: usize,
+}
+
+fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
+    let whole = |reason: &str| Refusal {
+        reason: reason.into(),
+        allowed: "allowed: key=value with a dotted key, such as time.dt=auto or crack.0.ends=open"
+            .into(),
+        start: 0,
+        end: text.len(),
+    };
+    let Some((path, written)) = text.split_once('=') else {
+        return Err(whole("it has no `=`"));
+    };
+    let steps = steps(path);
+    if steps.iter().any(|(step, _)| step.is_empty()) {
+        return Err(whole("its key has an empty part"));
+    }
+    if steps.len() > DEEPEST {
+        return Err(whole("its key has too many parts"));
+    }
+    let new = value(written, source, path.len() + 1);
+    let mut node = root;
+    for (k, (step, start)) in steps.iter().enumerate() {
+        let place = Place {
+            source,
+            start: *start,
+            end: start + step.len(),
+        };
+        let last = k + 1 == steps.len();
+        node = match &mut node.value {
+            Value::Table(entries) => descend(entries, step, place, last),
+            Value::Array(items) => {
+                let count = items.len();
+                let item = step.parse::<usize>().ok().and_then(|k| items.get_mut(k));
+                item.ok_or_else(|| Refusal {
+                    reason: format!("`{step}` is not the number of an entry"),
+                    allowed: match count {
+                        0 => "the list is empty".into(),
+                        1 => "allowed: 0, for the list has one entry".into(),
+                        _ => format!("allowed: 0 to {}", count - 1),
+                    },
+                    start: place.start,
+                    end: place.end,
+                })?
+            }
+            other => {
+                return Err(Refusal {
+                    reason: format!("`{step}` is looked for in {}", other.kind()),
+                    allowed: "only tables and lists have parts".into(),
+                    start: place.start,
+                    end: place.end,
+                });
+            }
+        };
+    }
+    *node = new;
+    Ok(())
+}
+
+/// The parts of a dotted key with their places.
+fn steps(path: &str) -> Vec<(&str, usize)> {
+    let mut start = 0;
+    path.split('.')
+        .map(|part| {
+            let leading = part.len() - part.trim_start().len();
+            let at = start + leading;
+            start += part.len() + 1;
+            (part.trim(), at)
+        })
+        .collect()
+}
+
+fn value(written: &str, source: usize, offset: usize) -> Node {
+    let leading = written.len() - written.trim_start().len();
+    let trimmed = written.trim();
+    let start = offset + leading;
+    document::parse_value(trimmed, source, start).unwrap_or_else(|| Node {
+        place: Place {
+            source,
+            start,
+            end: start + trimmed.len(),
+        },
+        value: Value::Text(trimmed.into()),
+    })
+}
+
+/// The value under a key, which is made if it is not there.
+fn descend<'n>(entries: &'n mut Vec<Entry>, step: &str, place: Place, last: bool) -> &'n mut Node {
+    let known = entries
+        .iter()
+        .position(|entry| canonical(&entry.key) == canonical(step));
+    if last {
+        entries.retain(|entry| !replaces(step, &entry.key));
+    } else if let Some(known) = known {
+        return &mut entries[known].node;
+    }
+    let at = entries.len();
+    entries.push(Entry {
+        key: step.into(),
+        key_place: place,
+        node: Node {
+            place,
+            value: Value::Table(Vec::new()),
+        },
+    });
+    &mut entries[at].node
+}

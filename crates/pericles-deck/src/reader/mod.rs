@@ -1,0 +1,148 @@
+//! A thin typed reader over the located document.
+//!
+//! [`Table`] hands out the values of its keys and remembers which it was asked for; [`Table::finish`] reports the rest. [`Item`] turns one
+//! value into a number, a word, a vector …. Both return `None` after noting a [`Problem`] in the [`Ledger`], so that one pass over a deck
+//! finds everything wrong with it. The ledger also keeps where each value stood and what it became in SI units.
+
+mod item;
+mod path;
+mod table;
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value as Json};
+
+pub(crate) use item::Item;
+pub(crate) use path::{Path, Step};
+pub(crate) use table::Table;
+
+use crate::document::Node;
+use crate::fault::Fault;
+use crate::finding::Problem;
+use crate::source::{Place, Sources};
+
+/// What is noted while a deck is read.
+pub(crate) struct Ledger {
+    sources: Sources,
+    problems: RefCell<Vec<Problem>>,
+    places: RefCell<BTreeMap<Path, Place>>,
+    json: RefCell<Json>,
+}
+
+impl Ledger {
+    pub(crate) fn new(sources: Sources) -> Self {
+        Self {
+            sources,
+            problems: RefCell::default(),
+            places: RefCell::default(),
+            json: RefCell::new(Json::Object(Map::new())),
+        }
+    }
+
+    /// The root table.
+    pub(crate) fn root<'a>(&'a self, root: &'a Node) -> Option<Table<'a>> {
+        Item::new(self, Path::default(), root).table()
+    }
+
+    pub(crate) fn report(&self, place: Place, fault: Fault) {
+        let at = self.sources.locate(place);
+        self.problems.borrow_mut().push(Problem::new(fault, at));
+    }
+
+    /// Reports with the text at the place.
+    fn report_value(&self, place: Place, fault: impl FnOnce(String) -> Fault) {
+        let value = self.excerpt(place);
+        self.report(place, fault(value));
+    }
+
+    /// The text at a place, shortened if it is long.
+    fn excerpt(&self, place: Place) -> String {
+        const LONGEST: usize = 60;
+        let at = self.sources.locate(place);
+        let text = at.excerpt();
+        let text = text
+            .strip_prefix('"')
+            .and_then(|inner| inner.strip_suffix('"'))
+            .unwrap_or(text);
+        if text.chars().count() <= LONGEST {
+            return text.into();
+        }
+        text.chars().take(LONGEST).chain("…".chars()).collect()
+    }
+
+    fn note_place(&self, path: &Path, place: Place) {
+        self.places.borrow_mut().insert(path.clone(), place);
+    }
+
+    /// Enters a value into the record.
+    pub(crate) fn record(&self, path: &Path, value: Json) {
+        let mut slot = &mut *self.json.borrow_mut();
+        for step in path.steps() {
+            slot = match step {
+                Step::Key(key) => {
+                    if !slot.is_object() {
+                        *slot = Json::Object(Map::new());
+                    }
+                    let Json::Object(members) = slot else { return };
+                    members.entry(key.clone()).or_insert(Json::Null)
+                }
+                Step::Index(index) => {
+                    if !slot.is_array() {
+                        *slot = Json::Array(Vec::new());
+                    }
+                    let Json::Array(items) = slot else { return };
+                    if items.len() <= *index {
+                        items.resize(index + 1, Json::Null);
+                    }
+                    &mut items[*index]
+                }
+            };
+        }
+        *slot = value;
+    }
+
+    /// Closes the ledger: the problems found, and the record.
+    pub(crate) fn close(self) -> (Vec<Problem>, Record) {
+        let record = Record {
+            sources: self.sources,
+            places: self.places.into_inner(),
+            json: self.json.into_inner(),
+        };
+        (self.problems.into_inner(), record)
+    }
+}
+
+/// What a deck remembers of its text.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Record {
+    pub(crate) sources: Sources,
+    places: BTreeMap<Path, Place>,
+    pub(crate) json: Json,
+}
+
+impl Record {
+    /// Where a value stood; where the table stood in which it could have been, if it was left out.
+    pub(crate) fn place(&self, path: &Path) -> Place {
+        let mut path = path.clone();
+        loop {
+            if let Some(place) = self.places.get(&path) {
+                return *place;
+            }
+            match path.parent() {
+                Some(parent) => path = parent,
+                None => return Place::default(),
+            }
+        }
+    }
+
+    /// What a value became.
+    pub(crate) fn value(&self, path: &Path) -> Option<&Json> {
+        path.steps()
+            .iter()
+            .try_fold(&self.json, |value, step| match step {
+                Step::Key(key) => value.get(key),
+                Step::Index(index) => value.get(index),
+            })
+    }
+}

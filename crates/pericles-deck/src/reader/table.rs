@@ -1,0 +1,272 @@
+//! A table whose keys are taken one by one.
+
+use std::cell::RefCell;
+
+use serde_json::Value as Json;
+
+use super::{Item, Ledger, Path};
+use crate::document::Entry;
+use crate::fault::Fault;
+use crate::nearest::nearest;
+use crate::source::Place;
+use crate::vocabulary::synonyms;
+
+/// A table being read.
+pub(crate) struct Table<'a> {
+    ledger: &'a Ledger,
+    path: Path,
+    place: Place,
+    entries: &'a [Entry],
+    /// Keys asked for, by their first names.
+    allowed: RefCell<Vec<&'static str>>,
+    /// Keys that are no error any more.
+    settled: RefCell<Vec<&'a str>>,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(ledger: &'a Ledger, path: Path, place: Place, entries: &'a [Entry]) -> Self {
+        Self {
+            ledger,
+            path,
+            place,
+            entries,
+            allowed: RefCell::default(),
+            settled: RefCell::default(),
+        }
+    }
+
+    /// Records the value of a key that was left out.
+    pub(crate) fn record(&self, key: &str, value: impl Into<Json>) {
+        self.ledger.record(&self.path.key(key), value.into());
+    }
+
+    /// Passes on what the library accepts and reports what it refuses.
+    pub(crate) fn accept<T>(&self, result: pericles::Result<T>) -> Option<T> {
+        result.map_err(|error| self.report(error.into())).ok()
+    }
+
+    /// Reports something wrong with the table as a whole.
+    pub(crate) fn report(&self, fault: Fault) {
+        self.ledger.report(self.place, fault);
+    }
+
+    /// Reports something wrong with one of the keys.
+    pub(crate) fn report_at(&self, place: Place, fault: Fault) {
+        self.ledger.report(place, fault);
+    }
+
+    /// Whether a key is present, under any of its names.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.entries
+            .iter()
+            .any(|entry| entry.key == key || synonyms(key).contains(&entry.key.as_str()))
+    }
+
+    /// The value of a key that may be left out.
+    pub(crate) fn optional(&self, key: &'static str) -> Option<Item<'a>> {
+        let mut allowed = self.allowed.borrow_mut();
+        if !allowed.contains(&key) {
+            allowed.push(key);
+        }
+        drop(allowed);
+        let mut found: Option<&Entry> = None;
+        for name in std::iter::once(key).chain(synonyms(key).iter().copied()) {
+            let Some(entry) = self.entries.iter().find(|entry| entry.key == name) else {
+                continue;
+            };
+            self.settled.borrow_mut().push(&entry.key);
+            match found {
+                None => found = Some(entry),
+                Some(first) => {
+                    let mut pair = [first, entry];
+                    pair.sort_by_key(|entry| entry.key_place.start);
+                    self.ledger.report(
+                        pair[1].key_place,
+                        Fault::Exclusive {
+                            given: pair.iter().map(|entry| entry.key.clone()).collect(),
+                            table: self.path.to_string(),
+                            allowed: pair.iter().map(|entry| entry.key.clone()).collect(),
+                        },
+                    );
+                }
+            }
+        }
+        found.map(|entry| Item::new(self.ledger, self.path.key(key), &entry.node))
+    }
+
+    /// The value of a key that must be given.
+    pub(crate) fn required(&self, key: &'static str) -> Option<Item<'a>> {
+        let item = self.optional(key);
+        if item.is_none() {
+            self.report(Fault::MissingKey {
+                key: key.into(),
+                synonyms: owned(synonyms(key)),
+                table: self.path.to_string(),
+            });
+        }
+        item
+    }
+
+    /// At most one of several keys, with which one it is. Reports if there are more; the outer option is none then.
+    pub(crate) fn at_most_one(
+        &self,
+        keys: &'static [&'static str],
+    ) -> Option<Option<(&'static str, Item<'a>)>> {
+        let mut found: Vec<(&'static str, Item<'a>)> = keys
+            .iter()
+            .filter_map(|key| Some((*key, self.optional(key)?)))
+            .collect();
+        if found.len() > 1 {
+            let place = found
+                .iter()
+                .map(|(_, item)| item.place())
+                .max_by_key(|place| (place.source, place.start))
+                .unwrap_or(self.place);
+            self.ledger.report(
+                place,
+                Fault::Exclusive {
+                    given: found.iter().map(|(key, _)| (*key).to_owned()).collect(),
+                    table: self.path.to_string(),
+                    allowed: owned(keys),
+                },
+            );
+            return None;
+        }
+        Some(found.pop())
+    }
+
+    /// Exactly one of several keys.
+    pub(crate) fn exactly_one(
+        &self,
+        keys: &'static [&'static str],
+    ) -> Option<(&'static str, Item<'a>)> {
+        let found = self.at_most_one(keys)?;
+        if found.is_none() {
+            self.lacks_one_of(keys);
+        }
+        found
+    }
+
+    /// Reports that none of several keys is given.
+    pub(crate) fn lacks_one_of(&self, keys: &[&str]) {
+        self.report(Fault::MissingChoice {
+            table: self.path.to_string(),
+            allowed: owned(keys),
+        });
+    }
+
+    /// A value that may be left out; the outer option is none if it is there and wrong.
+    pub(crate) fn maybe<T>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce(Item<'a>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match self.optional(key) {
+            Some(item) => read(item).map(Some),
+            None => Some(None),
+        }
+    }
+
+    /// A table within this one; an empty one if it is left out, so that its defaults are recorded.
+    pub(crate) fn table_or_empty(&self, key: &'static str) -> Option<Table<'a>> {
+        match self.optional(key) {
+            Some(item) => item.table(),
+            None => Some(Table::new(self.ledger, self.path.key(key), self.place, &[])),
+        }
+    }
+
+    /// A value with a default, which is recorded.
+    pub(crate) fn or<T: Clone + Into<Json>>(
+        &self,
+        key: &'static str,
+        default: T,
+        read: impl FnOnce(Item<'a>) -> Option<T>,
+    ) -> Option<T> {
+        match self.optional(key) {
+            Some(item) => read(item),
+            None => {
+                self.record(key, default.clone());
+                Some(default)
+            }
+        }
+    }
+
+    /// A word from a list with a default, which is the first.
+    pub(crate) fn choice_or_first<T: Copy>(
+        &self,
+        key: &'static str,
+        what: &'static str,
+        words: &[(&'static str, T)],
+    ) -> Option<T> {
+        match self.optional(key) {
+            Some(item) => item.choice(what, words),
+            None => {
+                let (word, value) = words.first()?;
+                self.record(key, *word);
+                Some(*value)
+            }
+        }
+    }
+
+    /// The tables of an array of tables; none of them if the key is left out.
+    pub(crate) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
+        self.optional(key)
+            .map(|item| item.tables())
+            .unwrap_or_default()
+    }
+
+    /// Refuses a key that has no meaning in this table, with the reason.
+    pub(crate) fn forbid(&self, key: &'static str, allowed: &str) {
+        for entry in self
+            .entries
+            .iter()
+            .filter(|entry| entry.key == key || synonyms(key).contains(&entry.key.as_str()))
+        {
+            self.settled.borrow_mut().push(&entry.key);
+            self.ledger.report(
+                entry.key_place,
+                Fault::Misplaced {
+                    key: entry.key.clone(),
+                    table: self.path.to_string(),
+                    allowed: allowed.into(),
+                },
+            );
+        }
+    }
+
+    /// All keys with their values, for tables whose keys are names.
+    pub(crate) fn named(&self) -> impl Iterator<Item = (&'a str, Place, Item<'a>)> + '_ {
+        self.entries.iter().map(|entry| {
+            self.settled.borrow_mut().push(&entry.key);
+            let item = Item::new(self.ledger, self.path.key(&entry.key), &entry.node);
+            (entry.key.as_str(), entry.key_place, item)
+        })
+    }
+
+    /// Reports keys that nobody asked for.
+    pub(crate) fn finish(self) {
+        let settled = self.settled.borrow();
+        let allowed = self.allowed.borrow();
+        for entry in self.entries {
+            if settled.contains(&entry.key.as_str()) {
+                continue;
+            }
+            let words = allowed
+                .iter()
+                .flat_map(|key| std::iter::once(*key).chain(synonyms(key).iter().copied()));
+            self.ledger.report(
+                entry.key_place,
+                Fault::UnknownKey {
+                    key: entry.key.clone(),
+                    table: self.path.to_string(),
+                    nearest: nearest(&entry.key, words).map(String::from),
+                    allowed: owned(&allowed),
+                },
+            );
+        }
+    }
+}
+
+fn owned(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}

@@ -1,0 +1,274 @@
+//! Regions of space, in sets and holes.
+
+use pericles::PericlesError;
+use pericles::space::{Face, Point, Region};
+
+use crate::fault::Fault;
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::vocabulary::DEPTHS;
+
+/// The kinds of region.
+const KINDS: &[&str] = &[
+    "all",
+    "box",
+    "ball",
+    "cylinder",
+    "half_space",
+    "layer",
+    "polygon",
+    "union",
+    "intersection",
+    "complement",
+];
+
+/// What a region is measured against.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame {
+    /// Dimension of the body; unknown if the body could not be read.
+    pub(crate) dimension: Option<usize>,
+    /// Spacing, m.
+    pub(crate) spacing: Option<f64>,
+}
+
+/// A table with exactly one key, the kind of region.
+pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<Region> {
+    let found = table.exactly_one(KINDS);
+    table.finish();
+    let (kind, item) = found?;
+    match kind {
+        "all" => everything(&item),
+        "box" => axis_parallel_box(item.table()?, frame),
+        "ball" => ball(item.table()?, frame),
+        "cylinder" => cylinder(&item, frame),
+        "half_space" => half_space(item.table()?, frame),
+        "layer" => layer(item.table()?, frame),
+        "polygon" => polygon(&item, frame),
+        "union" => Some(Region::Union(several(&item, frame)?)),
+        "intersection" => Some(Region::Intersection(several(&item, frame)?)),
+        _ => Some(Region::Complement(Box::new(read(item.table()?, frame)?))),
+    }
+}
+
+fn everything(item: &Item<'_>) -> Option<Region> {
+    if item.boolean()? {
+        return Some(Region::All);
+    }
+    item.out_of_range("true; leave the table out for no region");
+    None
+}
+
+fn several(item: &Item<'_>, frame: Frame) -> Option<Vec<Region>> {
+    let parts = item.list("a list of regions")?;
+    if parts.is_empty() {
+        item.report(Fault::WrongLength {
+            value: "[]".into(),
+            found: 0,
+            allowed: "allowed: at least one region".into(),
+        });
+        return None;
+    }
+    let read: Vec<Option<Region>> = parts
+        .iter()
+        .map(|part| part.table().and_then(|table| read(table, frame)))
+        .collect();
+    read.into_iter().collect()
+}
+
+fn axis_parallel_box(table: Table<'_>, frame: Frame) -> Option<Region> {
+    let bound = |item: Option<Item<'_>>, open: f64| match item {
+        None => Some([open; 3]),
+        Some(item) => bounds(&item, frame, open),
+    };
+    let upper = table.optional("max");
+    let (min, max) = (
+        bound(table.optional("min"), f64::NEG_INFINITY),
+        bound(upper.clone(), f64::INFINITY),
+    );
+    table.finish();
+    let (min, max) = (min?, max?);
+    if let Some(item) = upper
+        && (0..3).any(|c| min[c] > max[c])
+    {
+        item.out_of_range("an upper corner `max` that lies nowhere below the lower corner `min`");
+        return None;
+    }
+    Some(Region::Box { min, max })
+}
+
+/// A corner whose entries may be open.
+fn bounds(item: &Item<'_>, frame: Frame, open: f64) -> Option<Point> {
+    let items = item.components(
+        frame.dimension,
+        &format!("{}, or \"open\"", Quantity::Length.expected()),
+    )?;
+    let mut corner = Some([open; 3]);
+    for (c, entry) in items.iter().enumerate() {
+        let value = match entry.word() {
+            Some("open") => {
+                entry.record("open");
+                Some(open)
+            }
+            Some("inf" | "+inf") => {
+                entry.record("inf");
+                Some(f64::INFINITY)
+            }
+            Some("-inf") => {
+                entry.record("-inf");
+                Some(f64::NEG_INFINITY)
+            }
+            _ => entry.quantity(Quantity::Length),
+        };
+        match (value, &mut corner) {
+            (Some(value), Some(corner)) => corner[c] = value,
+            _ => corner = None,
+        }
+    }
+    corner
+}
+
+fn ball(table: Table<'_>, frame: Frame) -> Option<Region> {
+    let centre = point(&table, "centre", frame);
+    let radius = table
+        .required("radius")
+        .and_then(|item| item.positive(Quantity::Length));
+    table.finish();
+    Some(Region::Ball {
+        centre: centre?,
+        radius: radius?,
+    })
+}
+
+fn cylinder(item: &Item<'_>, frame: Frame) -> Option<Region> {
+    let table = item.table()?;
+    if let Some(dimension) = frame.dimension
+        && dimension != 3
+    {
+        item.report(
+            PericlesError::WrongDimension {
+                what: "a cylinder as a region",
+                needed: "3 (a ball is a disc in two dimensions)",
+                dimension,
+            }
+            .into(),
+        );
+        return None;
+    }
+    let centre = point(&table, "centre", frame);
+    let axis = axis(&table);
+    let radius = table
+        .required("radius")
+        .and_then(|item| item.positive(Quantity::Length));
+    table.finish();
+    Some(Region::Cylinder {
+        centre: centre?,
+        axis: axis?,
+        radius: radius?,
+    })
+}
+
+/// The axis of a cylinder, z if it is not given.
+pub(crate) fn axis(table: &Table<'_>) -> Option<usize> {
+    table.choice_or_first("axis", "axis", &[("z", 2), ("x", 0), ("y", 1)])
+}
+
+fn half_space(table: Table<'_>, frame: Frame) -> Option<Region> {
+    let point = point(&table, "point", frame);
+    let normal = table
+        .required("normal")
+        .and_then(|item| direction(&item, frame.dimension));
+    table.finish();
+    Some(Region::HalfSpace {
+        point: point?,
+        normal: normal?,
+    })
+}
+
+/// A vector other than zero.
+pub(crate) fn direction(item: &Item<'_>, dimension: Option<usize>) -> Option<Point> {
+    let vector = item.vector(Quantity::Number, dimension)?;
+    if vector == [0.0; 3] {
+        item.out_of_range("a vector other than zero, of any length");
+        return None;
+    }
+    Some(vector)
+}
+
+fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
+    const SIDES: [(&str, usize); 6] = [
+        ("-x", 1),
+        ("+x", 1),
+        ("-y", 2),
+        ("+y", 2),
+        ("-z", 3),
+        ("+z", 3),
+    ];
+    // Only the sides that the body has are on offer.
+    let sides: Vec<(&'static str, &'static str)> = SIDES
+        .iter()
+        .filter(|(_, needs)| *needs <= frame.dimension.unwrap_or(3))
+        .map(|(side, _)| (*side, *side))
+        .collect();
+    let side = table
+        .required("side")
+        .and_then(|item| item.choice("side", &sides));
+    let depth = table
+        .exactly_one(DEPTHS)
+        .and_then(|(kind, item)| match kind {
+            "depth" => item.positive(Quantity::Length),
+            _ => Some(item.positive(Quantity::Number)? * frame.spacing?),
+        });
+    table.finish();
+    Some(Region::Layer {
+        face: Face::named(side?)?,
+        depth: depth?,
+    })
+}
+
+fn polygon(item: &Item<'_>, frame: Frame) -> Option<Region> {
+    let table = item.table()?;
+    if frame.dimension == Some(1) {
+        item.report(
+            PericlesError::WrongDimension {
+                what: "a polygon as a region",
+                needed: "2 or 3 (a box or a ball is an interval in one dimension)",
+                dimension: 1,
+            }
+            .into(),
+        );
+        return None;
+    }
+    let corners = table
+        .required("corners")
+        .and_then(|item| corners(&item, Some(2)));
+    table.finish();
+    let flat = corners?
+        .iter()
+        .map(|corner| [corner[0], corner[1]])
+        .collect();
+    Some(Region::Polygon { corners: flat })
+}
+
+/// At least three points.
+pub(crate) fn corners(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Point>> {
+    let items = item.list("a list of corners, each a list of coordinates")?;
+    if items.len() < 3 {
+        item.report(Fault::WrongLength {
+            value: "the list of corners".into(),
+            found: items.len(),
+            allowed: "allowed: at least 3 corners".into(),
+        });
+        return None;
+    }
+    let read: Vec<Option<Point>> = items
+        .iter()
+        .map(|corner| corner.vector(Quantity::Length, dimension))
+        .collect();
+    read.into_iter().collect()
+}
+
+fn point(table: &Table<'_>, key: &'static str, frame: Frame) -> Option<Point> {
+    table
+        .required(key)?
+        .vector(Quantity::Length, frame.dimension)
+}

@@ -1,0 +1,155 @@
+//! Where in which text a value stands.
+
+use std::sync::Arc;
+
+use miette::{LabeledSpan, NamedSource, SourceSpan};
+
+/// A stretch of one of the texts a deck is read from: number 0 is the deck, the following are the overrides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Place {
+    pub(crate) source: usize,
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
+/// A place as a person looks for it.
+#[derive(Debug, Clone)]
+pub struct Location {
+    text: Arc<NamedSource<String>>,
+    source: usize,
+    start: usize,
+    length: usize,
+    line: usize,
+    column: usize,
+}
+
+impl Location {
+    /// The file's name as it was given, or `--set` for an override.
+    pub fn file(&self) -> &str {
+        self.text.name()
+    }
+
+    /// The line, from 1.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// The column in characters, from 1.
+    pub fn column(&self) -> usize {
+        self.column
+    }
+
+    /// The stretch in bytes.
+    pub fn span(&self) -> SourceSpan {
+        (self.start, self.length).into()
+    }
+
+    /// The text that stands there.
+    pub fn excerpt(&self) -> &str {
+        self.text
+            .inner()
+            .get(self.start..self.start + self.length)
+            .unwrap_or_default()
+    }
+
+    pub(crate) fn text(&self) -> &NamedSource<String> {
+        &self.text
+    }
+
+    pub(crate) fn label(&self, words: &str) -> LabeledSpan {
+        LabeledSpan::new(Some(words.into()), self.start, self.length)
+    }
+
+    /// Sorts by text (overrides after the deck) and place.
+    pub(crate) fn order(&self) -> (usize, usize) {
+        (self.source, self.start)
+    }
+}
+
+impl std::fmt::Display for Location {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}:{}:{}", self.file(), self.line, self.column)
+    }
+}
+
+/// The texts a deck is read from.
+#[derive(Debug, Clone)]
+pub(crate) struct Sources(Vec<Arc<NamedSource<String>>>);
+
+impl Default for Sources {
+    /// One empty text.
+    fn default() -> Self {
+        Self::new("", "")
+    }
+}
+
+impl Sources {
+    pub(crate) fn new(name: &str, text: &str) -> Self {
+        Self(vec![Arc::new(NamedSource::new(name, text.to_owned()))])
+    }
+
+    /// Adds a text; returns its number.
+    pub(crate) fn add(&mut self, name: &str, text: &str) -> usize {
+        self.0
+            .push(Arc::new(NamedSource::new(name, text.to_owned())));
+        self.0.len() - 1
+    }
+
+    pub(crate) fn text(&self, source: usize) -> &str {
+        self.0.get(source).map_or("", |named| named.inner())
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(crate) fn locate(&self, place: Place) -> Location {
+        let source = place.source.min(self.0.len() - 1);
+        let text = Arc::clone(&self.0[source]);
+        let inner = text.inner();
+        let floor = |mut at: usize| {
+            at = at.min(inner.len());
+            while !inner.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let (start, end) = (floor(place.start), floor(place.end));
+        let before = &inner[..start];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Location {
+            source,
+            start,
+            length: end.saturating_sub(start),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            text,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_are_counted_in_characters() {
+        let sources = Sources::new("a.toml", "x = 1\nµ = \"ü\" # z\n");
+        let at = |start, end| {
+            sources.locate(Place {
+                source: 0,
+                start,
+                end,
+            })
+        };
+        // The text of the second line begins at byte 6; µ takes two bytes.
+        let value = at(11, 15);
+        assert_eq!((value.line(), value.column()), (2, 5));
+        assert_eq!(value.excerpt(), "\"ü\"");
+        assert_eq!(value.to_string(), "a.toml:2:5");
+        // Between the bytes of a letter, and beyond the end.
+        assert_eq!(at(7, 8).column(), 1);
+        assert_eq!(at(999, 1000).excerpt(), "");
+        assert_eq!(at(999, 1000).line(), 3);
+    }
+}

@@ -1,0 +1,100 @@
+//! `[time]`: how far, how fine and by which scheme.
+
+use crate::quantity::Quantity;
+use crate::reader::Table;
+
+/// The course of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Time {
+    /// End, s.
+    pub end: f64,
+    /// The step.
+    pub step: TimeStep,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Whether a step beyond the stable limit is accepted.
+    pub allow_unstable: bool,
+}
+
+/// The time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeStep {
+    /// The largest stable step times this factor.
+    Auto {
+        /// Safety factor, in (0, 1].
+        safety: f64,
+    },
+    /// This step, s.
+    Fixed(f64),
+}
+
+/// Schemes of time integration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Scheme {
+    /// Velocity Verlet.
+    VelocityVerlet,
+}
+
+pub(crate) fn read(table: Table<'_>) -> Option<Time> {
+    let end = table
+        .required("end")
+        .and_then(|item| item.positive(Quantity::Time));
+    let step = step(&table);
+    let scheme = table.choice_or_first(
+        "scheme",
+        "scheme",
+        &[("velocity-verlet", Scheme::VelocityVerlet)],
+    );
+    let allow_unstable = table.or("allow_unstable", false, |item| item.boolean());
+    table.finish();
+    Some(Time {
+        end: end?,
+        step: step?,
+        scheme: scheme?,
+        allow_unstable: allow_unstable?,
+    })
+}
+
+fn step(table: &Table<'_>) -> Option<TimeStep> {
+    /// Margin for stiffening under load, which the frequency of the reference state does not see.
+    const SAFETY: f64 = 0.95;
+    const AUTO: &str = "auto";
+    let fixed = match table.optional("dt") {
+        None => {
+            table.record("dt", AUTO);
+            Some(None)
+        }
+        Some(item) => match item.word() {
+            Some(AUTO) => {
+                item.record(AUTO);
+                Some(None)
+            }
+            Some(word) if !word.contains(|c: char| c.is_ascii_digit()) => {
+                item.unknown_word("time step", word, std::iter::once(AUTO));
+                None
+            }
+            _ => item.positive(Quantity::Time).map(Some),
+        },
+    };
+    match fixed {
+        Some(None) => {
+            let safety = table.or("safety", SAFETY, |item| {
+                item.within(
+                    Quantity::Number,
+                    "a number above 0 and at most 1",
+                    |safety| safety > 0.0 && safety <= 1.0,
+                )
+            });
+            Some(TimeStep::Auto { safety: safety? })
+        }
+        Some(Some(dt)) => {
+            table.forbid("safety", "a safety factor belongs to dt = \"auto\"");
+            Some(TimeStep::Fixed(dt))
+        }
+        None => {
+            table.optional("safety");
+            None
+        }
+    }
+}

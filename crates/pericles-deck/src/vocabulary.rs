@@ -1,0 +1,79 @@
+//! Words of the deck that mean the same, and words of which only one may be given.
+
+/// A key with the other names it is known by.
+const SYNONYMS: [(&str, &[&str]); 10] = [
+    ("spacing", &["dx"]),
+    ("centre", &["center"]),
+    ("density", &["rho"]),
+    ("youngs_modulus", &["E"]),
+    ("bulk_modulus", &["K"]),
+    ("shear_modulus", &["G"]),
+    ("poisson_ratio", &["nu"]),
+    ("horizon_ratio", &["m"]),
+    ("fracture_energy", &["Gc", "G0"]),
+    ("critical_stretch", &["s0"]),
+];
+
+/// The elastic modulus.
+pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
+/// The horizon.
+pub(crate) const HORIZONS: &[&str] = &["horizon", "horizon_ratio"];
+/// The strength of bonds.
+pub(crate) const STRENGTHS: &[&str] = &["fracture_energy", "critical_stretch"];
+/// When output is due.
+pub(crate) const SCHEDULES: &[&str] = &["interval", "every", "count"];
+/// When a checkpoint is due.
+pub(crate) const CHECKPOINTS: &[&str] = &["wall", "every", "interval"];
+/// The depth of a layer.
+pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
+/// A load.
+pub(crate) const LOADS: &[&str] = &["body_force", "traction"];
+
+/// The other names of a key.
+pub(crate) fn synonyms(key: &str) -> &'static [&'static str] {
+    SYNONYMS
+        .iter()
+        .find(|(name, _)| *name == key)
+        .map_or(&[], |(_, others)| others)
+}
+
+/// The key that a name stands for.
+pub(crate) fn canonical(name: &str) -> &str {
+    SYNONYMS
+        .iter()
+        .find(|(_, others)| others.contains(&name))
+        .map_or(name, |(key, _)| key)
+}
+
+/// Whether a value under the key `given` takes the place of one under `other` when it comes from an override: the same key under another
+/// name, or the other choice where only one may be given.
+pub(crate) fn replaces(given: &str, other: &str) -> bool {
+    let (given, other) = (canonical(given), canonical(other));
+    let alternatives = [
+        MODULI,
+        HORIZONS,
+        STRENGTHS,
+        SCHEDULES,
+        CHECKPOINTS,
+        DEPTHS,
+        LOADS,
+    ];
+    given == other
+        || alternatives
+            .iter()
+            .any(|group| group.contains(&given) && group.contains(&other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_alternatives() {
+        assert_eq!(canonical("dx"), "spacing");
+        assert_eq!(canonical("unheard_of"), "unheard_of");
+        assert_eq!(synonyms("fracture_energy"), ["Gc", "G0"]);
+        assert!(replaces("E", "youngs_modulus") && replaces("K", "E") && replaces("m", "horizon"));
+        assert!(replaces("wall", "interval") && !replaces("E", "rho"));
+    }
+}

@@ -1,0 +1,384 @@
+//! From decks to models.
+
+use pericles::time::State;
+use pericles_deck::{Deck, DeckError, Model};
+
+fn parse(text: &str) -> Deck {
+    Deck::parse(text, "deck.toml", &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn build(text: &str) -> Model {
+    parse(text)
+        .build()
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refusal(text: &str) -> DeckError {
+    match parse(text).build() {
+        Ok(_) => panic!("this deck is wrong:\n{text}"),
+        Err(error) => error,
+    }
+}
+
+/// A plate of 20 × 8 cells with a notch, pulled apart.
+const PLATE: &str = r#"
+[body]
+shape = "plate"
+size = ["20 mm", "8 mm"]
+spacing = "1 mm"
+plane = "strain"
+thickness = "2 mm"
+[material]
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+volume_correction = "none"
+fracture_energy = "135 J/m2"
+no_fail = ["top", "bottom"]
+[sets]
+top = { layer = { side = "+y", cells = 1 } }
+bottom = { layer = { side = "-y", cells = 1 } }
+left = { layer = { side = "-x", cells = 2 } }
+corner = { box = { max = ["4 mm", "3 mm"] } }
+[[crack]]
+segment = [[0, "4 mm"], ["10 mm", "4 mm"]]
+[[initial]]
+velocity = ["1 m/s", 0]
+[[initial]]
+set = "left"
+displacement = [0, "1 um"]
+velocity = [0, "2 m/s"]
+[[prescribe]]
+set = "left"
+velocity = ["3 m/s", "free"]
+[[prescribe]]
+set = "left"
+displacement = ["free", 0]
+[[load]]
+set = "top"
+traction = [0, "12 MPa"]
+[[load]]
+set = "bottom"
+traction = ["5 MPa", "-12 MPa"]
+function = { kind = "ramp", duration = "1 us" }
+[[load]]
+set = "corner"
+traction = ["1 MPa", 0]
+[[load]]
+set = "corner"
+body_force = ["7 kN/m3", 0]
+[[probe]]
+name = "middle"
+at = ["12.4 mm", "3.6 mm"]
+[[probe]]
+name = "edge"
+set = "top"
+[time]
+end = "2 us"
+"#;
+
+#[test]
+fn points_bonds_and_sets() {
+    let model = build(PLATE);
+    assert_eq!(model.cloud.len(), 160);
+    let volume: f64 = model.cloud.volumes().iter().sum();
+    assert!((volume / (0.02 * 0.008 * 0.002) - 1.0).abs() < 1e-12);
+    let sizes: Vec<(&str, usize)> = model
+        .sets
+        .iter()
+        .map(|(name, points)| (name.as_str(), points.len()))
+        .collect();
+    assert_eq!(
+        sizes,
+        [
+            ("all", 160),
+            ("top", 20),
+            ("bottom", 20),
+            ("left", 16),
+            ("corner", 12)
+        ]
+    );
+    // m = 3 without correction: offsets in the closed disc of radius 3, counted in both directions.
+    let pairs = |columns: i64, rows: i64| -> i64 {
+        let mut sum = 0;
+        for x in -3..=3i64 {
+            for y in -3..=3i64 {
+                if (1..=9).contains(&(x * x + y * y)) {
+                    sum += (columns - x.abs()) * (rows - y.abs());
+                }
+            }
+        }
+        sum
+    };
+    let all = pairs(20, 8) as u64;
+    // `directed_bonds` are those left after pre-cutting.
+    assert_eq!(
+        model.system.operator().directed_bonds(),
+        all - 2 * model.precut_bonds
+    );
+    // Bonds across the notch's height whose crossing lies at x ≤ 10 mm, by brute force.
+    let mut cut = 0;
+    for i in 0..160usize {
+        for j in 0..i {
+            let (p, q) = (model.cloud.point(i), model.cloud.point(j));
+            let (dx, dy) = ((q[0] - p[0]) * 1e3, (q[1] - p[1]) * 1e3);
+            let (above, below) = (p[1] * 1e3 - 4.0, q[1] * 1e3 - 4.0);
+            if dx * dx + dy * dy < 9.0001 && above * below < 0.0 {
+                let crossing = p[0] * 1e3 + dx * above / (above - below);
+                cut += u64::from(crossing <= 10.0 + 1e-6);
+            }
+        }
+    }
+    assert_eq!(model.precut_bonds, cut);
+    assert_eq!(model.cracks.len(), 1);
+    assert!(model.warnings.is_empty());
+    // Plane strain: c = 48 E / (5 π h δ³) and s₀² = 5 π G₀ / (12 E δ).
+    let (young, delta, pi) = (72e9, 3e-3f64, std::f64::consts::PI);
+    let c = 48.0 * young / (5.0 * pi * 0.002 * delta.powi(3));
+    let s0 = (5.0 * pi * 135.0 / (12.0 * young * delta)).sqrt();
+    assert!((model.constants.micromodulus / c - 1.0).abs() < 1e-12);
+    assert!((model.constants.critical_stretch / s0 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn conditions() {
+    let model = build(PLATE);
+    let loads = model.system.loads();
+    let resultant = |k: usize, t: f64| {
+        let force = loads[k].resultant(t, &model.cloud);
+        [force[0], force[1]]
+    };
+    let close = |found: [f64; 2], wanted: [f64; 2]| {
+        for c in 0..2 {
+            assert!(
+                (found[c] - wanted[c]).abs() < 1e-9 * 500.0,
+                "{found:?} {wanted:?}"
+            );
+        }
+    };
+    // The top face: 20 mm × 2 mm.
+    close(resultant(0, 0.0), [0.0, 480.0]);
+    // A layer takes its face whatever the direction of the load; half way up the ramp.
+    close(resultant(1, 0.5e-6), [100.0, -240.0]);
+    // No layer: the side of the set normal to the load, 3 mm × 2 mm.
+    close(resultant(2, 0.0), [6.0, 0.0]);
+    close(resultant(3, 0.0), [7e3 * 12.0 * 2e-9, 0.0]);
+
+    let motions = model.system.motions();
+    assert_eq!(motions[0].name, "left");
+    assert_eq!(motions[1].name, "left_2");
+    assert_eq!(motions[0].amplitude, [Some(3.0), None, None]);
+    assert_eq!(motions[1].amplitude, [None, Some(0.0), None]);
+
+    // Later initial values replace earlier ones, component-major.
+    let State { u, v, .. } = &model.state;
+    let n = model.cloud.len();
+    for i in 0..n {
+        let left = model.cloud.point(i)[0] < 2e-3;
+        let expected = if left {
+            (0.0, 2.0, 1e-6)
+        } else {
+            (1.0, 0.0, 0.0)
+        };
+        assert_eq!((v[i], v[n + i], u[n + i]), expected);
+    }
+
+    let middle = model.cloud.point(model.probes[0].points[0] as usize);
+    assert!((middle[0] - 12.5e-3).abs() < 1e-9 && (middle[1] - 3.5e-3).abs() < 1e-9);
+    assert_eq!(model.probes[1].points.len(), 20);
+}
+
+#[test]
+fn automatic_steps_are_stable_and_end_on_time() {
+    let model = build(PLATE);
+    let stable = model.stable_step().unwrap();
+    assert!((model.dt * model.steps as f64 / 2e-6 - 1.0).abs() < 1e-12);
+    assert!(model.dt <= 0.95 * stable * (1.0 + 1e-8));
+    // One step fewer would not do.
+    assert!(2e-6 / (model.steps - 1) as f64 > 0.95 * stable);
+    let fixed = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"30 ns\""));
+    assert_eq!((fixed.dt, fixed.steps), (30e-9, 67));
+    let whole = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"40 ns\""));
+    assert_eq!(whole.steps, 50);
+}
+
+#[test]
+fn the_run_can_be_made_and_moves() {
+    let mut run = build(PLATE).simulation();
+    run.run(|_| pericles::Control::Continue).unwrap();
+    assert!((run.state().t / 2e-6 - 1.0).abs() < 1e-12);
+    assert!(run.state().u.iter().any(|u| *u != 0.0));
+}
+
+#[test]
+fn every_dimension_and_law() {
+    let rest = "[material]\ndensity=1\nE=1\nm=2\nmodel='LAW'\n[time]\nend=1\n";
+    for body in [
+        "shape='bar'\nlength=1\narea=0.1",
+        "shape='disc'\nradius=0.5\nplane='stress'",
+        "shape='cylinder'\nradius=0.3\ninner_radius=0.15\nheight=0.5",
+        "shape='ball'\nradius=0.4",
+    ] {
+        for law in ["linear", "bond-stretch"] {
+            let text = format!("[body]\nspacing=0.1\n{body}\n{rest}").replace("LAW", law);
+            let model = build(&text);
+            assert!(model.cloud.len() > 5, "{body}");
+            let n = model.system.points() * model.system.dimension();
+            let mut force = vec![0.0; n];
+            model.system.operator().add_force(
+                0.0,
+                &vec![0.01; n],
+                pericles::operator::On::All,
+                &mut force,
+            );
+            // A translation exerts no force.
+            assert!(force.iter().all(|f| f.abs() < 1e-9), "{body} {law}");
+        }
+    }
+}
+
+#[test]
+fn what_the_library_refuses_is_located() {
+    for (replace, by, line, marked, words) in [
+        (
+            "\"8 mm\"]",
+            "\"8.4 mm\"]",
+            4,
+            "\"8.4 mm\"",
+            "not a whole number of cells",
+        ),
+        (
+            "\"20 mm\",",
+            "\"20.5 mm\",",
+            4,
+            "\"20.5 mm\"",
+            "not a whole number of cells",
+        ),
+        (
+            "spacing = \"1 mm\"",
+            "spacing = \"1 nm\"",
+            5,
+            "\"1 nm\"",
+            "at most",
+        ),
+        (
+            "thickness = \"2 mm\"",
+            "hole = [{ all = true }]",
+            2,
+            "[body]",
+            "no points",
+        ),
+        (
+            "end = \"2 us\"",
+            "end = \"2 us\"\ndt = \"1 us\"",
+            55,
+            "\"1 us\"",
+            "unstable",
+        ),
+        (
+            "end = \"2 us\"",
+            "end = 1e300",
+            53,
+            "[time]",
+            "at most 9e15 steps",
+        ),
+        (
+            "cells = 2",
+            "depth = \"0.1 mm\"",
+            18,
+            "{ layer",
+            "`left` selects no point",
+        ),
+        (
+            "displacement = [\"free\", 0]",
+            "displacement = [0, 0]",
+            31,
+            "[[prescribe]]",
+            "prescribed twice",
+        ),
+        (
+            "traction = [\"1 MPa\", 0]",
+            "traction = [\"1 MPa\", 1]",
+            43,
+            "[\"1 MPa\", 1]",
+            "give `area`",
+        ),
+        (
+            "volume_correction = \"none\"",
+            "influence = { function = \"tabulated\", r = \"horizon\", table = [[0, 3], [1, -1]] }",
+            12,
+            "{ function",
+            "negative values",
+        ),
+    ] {
+        assert_eq!(PLATE.matches(replace).count(), 1, "{replace}");
+        let error = refusal(&PLATE.replace(replace, by));
+        let message = error.to_string();
+        let [problem] = error.problems() else {
+            panic!("{message}")
+        };
+        assert_eq!(problem.location().line(), line, "{message}");
+        assert!(
+            problem.location().excerpt().starts_with(marked),
+            "{message}"
+        );
+        assert!(message.contains(words), "{message}");
+        assert!(
+            message.starts_with(&format!("deck.toml:{line}:")),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn what_is_odd_is_warned_of() {
+    let cautions = |replace: &str, by: &str| {
+        let model = build(&PLATE.replace(replace, by));
+        let [warning] = &model.warnings[..] else {
+            panic!("one warning for {by}")
+        };
+        (warning.location().line(), warning.line())
+    };
+    let away = "[[0, \"20 mm\"], [\"10 mm\", \"20 mm\"]]";
+    let (line, text) = cautions("[[0, \"4 mm\"], [\"10 mm\", \"4 mm\"]]", away);
+    assert_eq!(line, 20);
+    assert!(text.starts_with("deck.toml:20:1: this crack cuts no bond"));
+    let (line, text) = cautions("[\"12.4 mm\",", "[\"22.4 mm\",");
+    assert_eq!(line, 49);
+    assert!(text.contains("`middle`"), "{text}");
+    let (line, text) = cautions(
+        "end = \"2 us\"",
+        "end = \"2 us\"\ndt = \"1 us\"\nallow_unstable = true",
+    );
+    assert_eq!(line, 55);
+    assert!(text.contains("allow_unstable"), "{text}");
+}
+
+#[test]
+fn a_body_without_stiffness_needs_a_given_step() {
+    let lone = "[body]\nshape='bar'\nlength=2\nspacing=1\n[[crack]]\nsection=1\n\
+                [material]\ndensity=1\nE=1\nm=1\n[time]\nend=1\n";
+    let error = refusal(lone);
+    assert!(error.to_string().contains("give dt"), "{error}");
+    let model = build(&format!("{lone}dt=0.1\n"));
+    assert_eq!(model.steps, 10);
+    assert!(model.frequency.is_none() && model.stable_step().is_none());
+}
+
+#[test]
+fn models_of_changed_decks() {
+    let mut deck = parse(PLATE);
+    deck.cracks.clear();
+    deck.body.grid.spacing = 0.5e-3;
+    let model = deck.build().unwrap();
+    assert_eq!(model.cloud.len(), 640);
+    assert_eq!(model.precut_bonds, 0);
+    deck.sets.pop();
+    let Err(error) = deck.build() else {
+        panic!("the set `corner` is gone")
+    };
+    assert!(
+        error.to_string().contains("unknown set `corner`"),
+        "{error}"
+    );
+}

@@ -1,0 +1,479 @@
+//! A deck with everything, and what it must become.
+
+use pericles::boundary::{MotionKind, TimeFunction};
+use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
+use pericles::material::{
+    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+};
+use pericles::observe::{Field, Schedule};
+use pericles::space::{Face, Grid, Region, Shape};
+use pericles_deck::*;
+use serde_json::json;
+
+const COMPLETE: &str = include_str!("complete.toml");
+const OPEN: f64 = f64::INFINITY;
+
+fn parse(text: &str) -> Deck {
+    Deck::parse(text, "deck.toml", &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn every_entry_arrives() {
+    let deck = parse(COMPLETE);
+    assert_eq!(deck.title.as_deref(), Some("Everything a plate can have"));
+    let triangle = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let corner = Region::Intersection(vec![
+        Region::Box {
+            min: [-OPEN, 0.03, -OPEN],
+            max: [-0.04, OPEN, OPEN],
+        },
+        Region::Complement(Box::new(Region::HalfSpace {
+            point: [0.0; 3],
+            normal: [1.0, 1.0, 0.0],
+        })),
+        Region::Union(vec![Region::Polygon { corners: triangle }, Region::All]),
+    ]);
+    let ball = Region::Ball {
+        centre: [0.02, 0.02, 0.0],
+        radius: 0.005,
+    };
+    let grid = Grid {
+        shape: Shape::Box {
+            origin: [-0.05, 0.0, 0.0],
+            size: vec![0.1, 0.04],
+        },
+        spacing: 0.25e-3,
+        section: 1e-3,
+        holes: vec![ball, corner],
+    };
+    let state = StressState::PlaneStrain;
+    assert_eq!(deck.body, Body { grid, state });
+
+    let dx = 0.25e-3;
+    let bonds = BondMaterial {
+        law: PairLaw::BondStretch,
+        density: 2440.0,
+        modulus: Modulus {
+            value: ElasticModulus::Young(72e9),
+            calibration: Calibration::Lattice,
+        },
+        horizon: 3.0 * dx,
+        influence: Influence {
+            function: InfluenceFunction::Tabulated {
+                table: vec![(0.0, 1.0), (1.5 * dx, 0.75), (3.0 * dx, 0.5)],
+            },
+            acts_on: ActsOn::Displacement,
+        },
+        volume_correction: VolumeCorrection::Linear,
+        fracture: Fracture::Energy(135.0),
+    };
+    assert_eq!(deck.material.name.as_deref(), Some("soda-lime glass"));
+    assert_eq!(deck.material.bonds, bonds);
+    assert_eq!(deck.material.no_fail, ["top", "bottom"]);
+    assert!(deck.material.damage.count && deck.material.damage.count_precut);
+
+    let layer = |upper| Region::Layer {
+        face: Face { axis: 1, upper },
+        depth: dx,
+    };
+    let left = Region::Box {
+        min: [-OPEN; 3],
+        max: [-0.049, OPEN, OPEN],
+    };
+    let sets: Vec<(&str, &Region)> = deck
+        .sets
+        .iter()
+        .map(|set| (set.name.as_str(), &set.region))
+        .collect();
+    assert_eq!(
+        sets,
+        [
+            ("top", &layer(true)),
+            ("bottom", &layer(false)),
+            ("left edge", &left)
+        ]
+    );
+
+    let segment = |from, to| Crack::Segment { from, to };
+    assert_eq!(deck.cracks[0].surface, segment([-0.05, 0.02], [0.0, 0.02]));
+    assert_eq!(deck.cracks[0].ends, EndRule::Closed);
+    assert_eq!(deck.cracks[1].surface, segment([0.01; 2], [0.02; 2]));
+    assert_eq!(deck.cracks[1].ends, EndRule::Open);
+}
+
+#[test]
+fn conditions_time_and_output_arrive() {
+    let deck = parse(COMPLETE);
+    assert_eq!(
+        deck.initial,
+        [
+            Initial {
+                set: "all".into(),
+                displacement: None,
+                velocity: Some([0.0, 1.0, 0.0]),
+            },
+            Initial {
+                set: "top".into(),
+                displacement: Some([1e-6, 0.0, 0.0]),
+                velocity: Some([0.0, 20.0, 0.0]),
+            }
+        ]
+    );
+    assert_eq!(
+        deck.prescribe,
+        [
+            Prescribe {
+                set: "left edge".into(),
+                kind: MotionKind::Velocity,
+                amplitude: [Some(0.0), None, None],
+                function: TimeFunction::Constant,
+            },
+            Prescribe {
+                set: "bottom".into(),
+                kind: MotionKind::Displacement,
+                amplitude: [None, Some(-1e-4), None],
+                function: TimeFunction::Pulse {
+                    start: 1e-6,
+                    duration: 2e-6,
+                },
+            }
+        ]
+    );
+    assert_eq!(
+        deck.loads,
+        [
+            Load {
+                set: "top".into(),
+                amplitude: LoadAmplitude::BodyForce([0.0, 48e9, 0.0]),
+                function: TimeFunction::Ramp {
+                    start: 0.0,
+                    duration: 1e-6,
+                },
+            },
+            Load {
+                set: "bottom".into(),
+                amplitude: LoadAmplitude::Traction {
+                    traction: [0.0, -12e6, 0.0],
+                    area: Some(1e-4),
+                },
+                function: TimeFunction::Constant,
+            }
+        ]
+    );
+    assert_eq!(
+        deck.probes,
+        [
+            Probe {
+                name: "middle".into(),
+                place: ProbePlace::At([0.0, 0.02, 0.0]),
+            },
+            Probe {
+                name: "top".into(),
+                place: ProbePlace::Set("top".into()),
+            }
+        ]
+    );
+    assert_eq!(
+        deck.time,
+        Time {
+            end: 46e-6,
+            step: TimeStep::Fixed(25e-9),
+            scheme: Scheme::VelocityVerlet,
+            allow_unstable: true,
+        }
+    );
+    let damage = Picture {
+        field: Field::Damage,
+        component: None,
+        scale: 1.0,
+        range: Some([0.0, 1.0]),
+        schedule: Schedule::Count(2),
+    };
+    let uplift = Picture {
+        field: Field::Displacement,
+        component: Some(1),
+        scale: 10.0,
+        range: Some([-1e-3, 1e-3]),
+        schedule: Schedule::Interval(1e-6),
+    };
+    assert_eq!(
+        deck.output,
+        Output {
+            fields: Schedule::Interval(0.5e-6),
+            history: Schedule::Every(20),
+            cracks: CrackOutput {
+                schedule: Schedule::Count(92),
+                threshold: 0.4,
+            },
+            precision: Precision::Single,
+            pictures: vec![damage, uplift],
+        }
+    );
+    assert_eq!(deck.checkpoint, Checkpoint::Every(500));
+}
+
+/// The least a deck must say.
+const LEAST: &str = r#"
+[body]
+shape = "bar"
+length = "1 m"
+spacing = "1 cm"
+[material]
+density = 7850
+youngs_modulus = "210 GPa"
+horizon = "3 cm"
+[time]
+end = "1 ms"
+"#;
+
+#[test]
+fn defaults_are_filled_in_and_recorded() {
+    let deck = parse(LEAST);
+    assert_eq!(deck.body.state, StressState::Uniaxial);
+    assert_eq!(deck.body.grid.section, 1.0);
+    assert_eq!(deck.material.bonds.fracture, Fracture::Unbreakable);
+    assert_eq!(
+        deck.material.bonds.volume_correction,
+        VolumeCorrection::Extended
+    );
+    assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
+    assert_eq!(deck.output.fields, Schedule::Count(20));
+    assert_eq!(deck.output.cracks.schedule, deck.output.history);
+    assert_eq!(deck.checkpoint, Checkpoint::Wall(600.0));
+    assert_eq!(deck.source(), LEAST);
+    let expected = json!({
+        "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0 },
+        "material": {
+            "model": "bond-stretch", "density": 7850.0, "youngs_modulus": 210e9, "modulus": "continuum",
+            "horizon": 0.03, "volume_correction": "extended",
+            "influence": { "function": "constant", "acts_on": "stretch" },
+            "damage": { "measure": "volume", "count_precut": false },
+        },
+        "time": { "end": 1e-3, "dt": "auto", "safety": 0.95, "scheme": "velocity-verlet", "allow_unstable": false },
+        "output": {
+            "fields": { "count": 20 }, "history": { "count": 200 },
+            "cracks": { "count": 200, "threshold": 0.35 }, "precision": "double",
+        },
+        "checkpoint": { "wall": 600.0 },
+    });
+    assert_eq!(*deck.to_json(), expected);
+}
+
+#[test]
+fn the_record_is_a_deck_that_says_the_same() {
+    for text in [COMPLETE, LEAST] {
+        let first = parse(text);
+        let again = parse(&toml::to_string(first.to_json()).unwrap());
+        assert_eq!(again.to_json(), first.to_json());
+        assert_eq!(again.body, first.body);
+        assert_eq!(again.material, first.material);
+        assert_eq!(again.prescribe, first.prescribe);
+        assert_eq!(again.output, first.output);
+    }
+}
+
+#[test]
+fn shapes() {
+    let body = |text: &str| {
+        let rest = "\n[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n";
+        parse(&format!("[body]\nspacing = 0.1\n{text}{rest}")).body
+    };
+    let bar = body("shape='bar'\nsize=[2]\narea='1 cm2'\norigin=3");
+    assert_eq!(bar.grid.section, 1e-4);
+    assert_eq!(
+        bar.grid.shape,
+        Shape::Box {
+            origin: [3.0, 0.0, 0.0],
+            size: vec![2.0]
+        }
+    );
+    let ring = body("shape='disc'\ncenter=[1,2]\nradius=3\ninner_radius=2\nplane='stress'");
+    assert_eq!(ring.state, StressState::PlaneStress);
+    let centre = [1.0, 2.0, 0.0];
+    assert_eq!(
+        ring.grid.shape,
+        Shape::Disc {
+            centre,
+            radius: 3.0
+        }
+    );
+    assert_eq!(
+        ring.grid.holes,
+        [Region::Ball {
+            centre,
+            radius: 2.0
+        }]
+    );
+    let tube = body("shape='cylinder'\naxis='x'\nradius=3\ninner_radius=2\nheight=5");
+    assert_eq!(tube.state, StressState::Spatial);
+    let base = [0.0; 3];
+    assert_eq!(
+        tube.grid.shape,
+        Shape::Cylinder {
+            base,
+            axis: 0,
+            radius: 3.0,
+            height: 5.0
+        }
+    );
+    assert_eq!(
+        tube.grid.holes,
+        [Region::Cylinder {
+            centre: base,
+            axis: 0,
+            radius: 2.0
+        }]
+    );
+    let ball = body("shape='ball'\nradius=3");
+    assert_eq!(
+        ball.grid.shape,
+        Shape::Ball {
+            centre: base,
+            radius: 3.0
+        }
+    );
+    assert_eq!(body("shape='block'\nsize=[1,2,3]").grid.dimension(), 3);
+}
+
+#[test]
+fn cracks_of_each_dimension() {
+    let cracks = |body: &str, crack: &str| {
+        let rest = "[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n[[crack]]\n";
+        let deck = parse(&format!("[body]\nspacing=0.1\n{body}\n{rest}{crack}"));
+        deck.cracks[0].surface.clone()
+    };
+    assert_eq!(
+        cracks("shape='bar'\nlength=1", "section='50 cm'"),
+        Crack::Section { x: 0.5 }
+    );
+    let block = "shape='block'\nsize=[1,1,1]";
+    assert_eq!(
+        cracks(
+            block,
+            "disc={centre=[0.5,0.5,0.5],normal=[0,0,1],radius='10 cm'}"
+        ),
+        Crack::Disc {
+            centre: [0.5; 3],
+            normal: [0.0, 0.0, 1.0],
+            radius: 0.1
+        }
+    );
+    let corners = vec![[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]];
+    assert_eq!(
+        cracks(block, "polygon=[[0,0,0.5],[1,0,0.5],[0,1,0.5]]"),
+        Crack::Polygon { corners }
+    );
+}
+
+fn with(overrides: &[&str]) -> Result<Deck, DeckError> {
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).into()).collect();
+    Deck::parse(COMPLETE, "deck.toml", &overrides)
+}
+
+#[test]
+fn overrides_change_what_is_read() {
+    let deck = with(&[
+        "time.dt = auto",
+        "body.spacing=0.5 mm",
+        "crack.1.ends=closed",
+        "load.1.traction=[0, '-24 MPa']",
+        "prescribe.1.function.start=2e-6",
+        "material.K=48 GPa",
+        "material.horizon=2 mm",
+        "output.history.interval=1 us",
+        "title=Another one",
+        "checkpoint={ wall = '1 min' }",
+    ])
+    .unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
+    assert_eq!(deck.body.grid.spacing, 0.5e-3);
+    assert_eq!(deck.cracks[1].ends, EndRule::Closed);
+    let LoadAmplitude::Traction { traction, .. } = deck.loads[1].amplitude else {
+        panic!("a traction is overridden by a traction")
+    };
+    assert_eq!(traction, [0.0, -24e6, 0.0]);
+    assert_eq!(
+        deck.prescribe[1].function,
+        TimeFunction::Pulse {
+            start: 2e-6,
+            duration: 2e-6
+        }
+    );
+    assert_eq!(
+        deck.material.bonds.modulus.value,
+        ElasticModulus::Bulk(48e9)
+    );
+    assert_eq!(deck.material.bonds.horizon, 2e-3);
+    assert_eq!(deck.output.history, Schedule::Interval(1e-6));
+    assert_eq!(deck.title.as_deref(), Some("Another one"));
+    assert_eq!(deck.checkpoint, Checkpoint::Wall(60.0));
+    assert_eq!(deck.source(), COMPLETE);
+    assert_eq!(deck.overrides().count(), 10);
+    assert_eq!(deck.overrides().next(), Some("time.dt = auto"));
+}
+
+#[test]
+fn overrides_make_tables_and_point_at_themselves() {
+    let deck = with(&["sets.right.layer.side=+x", "sets.right.layer.cells=2"]).unwrap();
+    assert_eq!(
+        deck.sets[3].region,
+        Region::Layer {
+            face: Face::named("+x").unwrap(),
+            depth: 0.5e-3
+        }
+    );
+    for (text, column, words) in [
+        ("time.end=-1 s", 10, "`-1 s` is out of range"),
+        ("crack.0.ends=clsoed", 14, "did you mean `closed`?"),
+        ("time.dtt=1", 6, "did you mean `dt`?"),
+        ("crack.7.ends=open", 7, "0 to 1"),
+        ("crack.first.ends=open", 7, "0 to 1"),
+        ("time.end.x=1", 10, "a string"),
+        ("time.dt", 1, "no `=`"),
+        ("time..dt=1", 1, "empty part"),
+        ("material.E=[1]", 12, "a list"),
+        ("load.0.body_force=[0, '1 Gm']", 23, "a force per volume"),
+    ] {
+        let error = with(&[text]).unwrap_err();
+        let problem = &error.problems()[0];
+        assert_eq!(problem.location().file(), "--set", "{error}");
+        assert_eq!(problem.location().column(), column, "{text}: {error}");
+        assert!(error.to_string().contains(words), "{text}: {error}");
+    }
+}
+
+#[test]
+fn files_are_read_and_missing_ones_named() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/complete.toml");
+    assert_eq!(Deck::read(path, &[]).unwrap().loads.len(), 2);
+    let error = Deck::read("no/such/deck.toml", &[]).unwrap_err();
+    assert!(matches!(error, DeckError::Unreadable { .. }));
+    assert!(error.to_string().contains("no/such/deck.toml"));
+}
+
+/// The deck on the page of the crate.
+fn documented() -> String {
+    include_str!("../src/lib.rs")
+        .lines()
+        .map(|line| line.trim_start_matches("//!").trim_start_matches(' '))
+        .skip_while(|line| *line != "```toml")
+        .skip(1)
+        .take_while(|line| *line != "```")
+        .map(|line| format!("{line}\n"))
+        .collect()
+}
+
+#[test]
+fn the_documented_deck_is_right_and_its_defaults_are_the_defaults() {
+    let text = documented();
+    let deck = parse(&text);
+    // What is called a default may be left out without a change.
+    let least: String = text
+        .lines()
+        .filter(|line| !line.contains("# default") && !line.contains("# the defaults"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    assert!(least.lines().count() + 10 < text.lines().count());
+    assert_eq!(parse(&least).to_json(), deck.to_json());
+}

@@ -1,0 +1,316 @@
+//! Wrong decks: every one names the line, the column, what stands there and what is allowed.
+
+use miette::Diagnostic;
+use pericles_deck::{Deck, DeckError, Fault};
+use proptest::prelude::*;
+
+const COMPLETE: &str = include_str!("complete.toml");
+
+/// A right deck, from which wrong ones are made by replacing some text.
+const RIGHT: &str = r#"title = "plate"
+
+[body]
+shape = "plate"
+size = ["100 mm", "40 mm"]
+spacing = "0.25 mm"
+plane = "strain"
+
+[material]
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon = "0.75 mm"
+fracture_energy = "135 J/m2"
+
+[sets.top]
+layer = { side = "+y", depth = "0.25 mm" }
+
+[[crack]]
+segment = [["0 mm", "20 mm"], ["50 mm", "20 mm"]]
+
+[[prescribe]]
+set = "top"
+velocity = [0, "free"]
+
+[[load]]
+set = "top"
+traction = [0, "12 MPa"]
+
+[[probe]]
+name = "middle"
+at = ["50 mm", "20 mm"]
+
+[time]
+end = "46 us"
+dt = "auto"
+
+[output]
+fields = { interval = "0.5 us" }
+"#;
+
+struct Wrong {
+    replace: &'static str,
+    by: &'static str,
+    /// Line and column of the problem.
+    at: (usize, usize),
+    /// What the marked text begins with.
+    marked: &'static str,
+    /// What the message must hold.
+    says: &'static [&'static str],
+}
+
+const fn wrong(
+    replace: &'static str,
+    by: &'static str,
+    at: (usize, usize),
+    marked: &'static str,
+    says: &'static [&'static str],
+) -> Wrong {
+    Wrong {
+        replace,
+        by,
+        at,
+        marked,
+        says,
+    }
+}
+
+#[rustfmt::skip]
+const WRONG: &[Wrong] = &[
+    // Keys.
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane` and `hole`"]),
+    wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
+    wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
+    wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "also called `dx`"]),
+    wrong("[body]\n", "[bdy]\n", (1, 1), "", &["the deck lacks `body`"]),
+    wrong("density =", "rho = 1\ndensity =", (11, 1), "density", &["`rho` and `density` are given together in [material]", "only one"]),
+    wrong("horizon =", "horizon_ratio = 3\nhorizon =", (13, 11), "\"0.75 mm\"", &["`horizon` and `horizon_ratio` are given together"]),
+    wrong("horizon = \"0.75 mm\"\n", "", (9, 1), "[material]", &["[material] lacks one of `horizon` and `horizon_ratio`"]),
+    wrong("fracture_energy", "bulk_modulus = 1\nfracture_energy", (13, 16), "1", &["`youngs_modulus` and `bulk_modulus`", "`shear_modulus`"]),
+    wrong("spacing =", "area = 1\nspacing =", (6, 1), "area", &["`area` has no place in [body]", "only a bar"]),
+    wrong("dt = \"auto\"", "dt = 1e-9\nsafety = 0.5", (36, 1), "safety", &["`safety` has no place", "dt = \"auto\""]),
+    wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "a section cuts a bar"]),
+    wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` has no place in [load.0]", "`traction`"]),
+    // Kinds.
+    wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
+    wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),
+    wrong("segment = [[", "ends = true\nsegment = [[", (19, 8), "true", &["one of \"closed\", \"open\""]),
+    wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a string (`often`) where a table is needed"]),
+    wrong("title = \"plate\"", "title = 2024-01-01", (1, 9), "2024-01-01", &["a date", "a string in quotes"]),
+    // Quantities.
+    wrong("\"72 GPa\"", "\"72 GJ\"", (11, 18), "\"72 GJ\"", &["`72 GJ` is not a modulus", "a modulus such as \"72 GPa\" or a plain number in Pa"]),
+    wrong("\"72 GPa\"", "\"72 GPA\"", (11, 18), "\"72 GPA\"", &["unknown unit `GPA` in `72 GPA`", "did you mean `GPa`?"]),
+    wrong("\"72 GPa\"", "\"stiff\"", (11, 18), "\"stiff\"", &["`stiff` is not a number", "72 GPa"]),
+    wrong("\"72 GPa\"", "nan", (11, 18), "nan", &["`nan` is not a number"]),
+    wrong("\"72 GPa\"", "-inf", (11, 18), "-inf", &["`-inf` is not a number"]),
+    wrong("\"72 GPa\"", "\"-72 GPa\"", (11, 18), "\"-72 GPa\"", &["`-72 GPa` is out of range", "a positive number"]),
+    wrong("\"46 us\"", "0", (34, 7), "0", &["`0` is out of range", "positive"]),
+    wrong("dt = \"auto\"", "dt = 0.0", (35, 6), "0.0", &["`0.0` is out of range"]),
+    wrong("dt = \"auto\"", "dt = \"automatic\"", (35, 6), "\"automatic\"", &["unknown time step `automatic`", "allowed: \"auto\""]),
+    wrong("dt = \"auto\"", "safety = 1.5", (35, 10), "1.5", &["`1.5` is out of range", "above 0 and at most 1"]),
+    wrong("\"0.75 mm\"", "\"0.1 mm\"", (12, 11), "\"0.1 mm\"", &["at least one spacing"]),
+    wrong("{ interval = \"0.5 us\" }", "{ every = 0 }", (38, 20), "0", &["`0` is out of range", "whole number of at least 1"]),
+    wrong("{ interval = \"0.5 us\" }", "{ every = 1.5 }", (38, 20), "1.5", &["whole number"]),
+    wrong("{ interval = \"0.5 us\" }", "{ interval = 1, every = 2 }", (38, 34), "2", &["`interval` and `every` are given together in [output.fields]", "`count`"]),
+    // Vectors.
+    wrong("\"40 mm\"]\nspacing", "\"40 mm\", 1]\nspacing", (5, 8), "[\"100 mm\"", &["has 3 entries", "2 entries, one for each dimension"]),
+    wrong("at = [\"50 mm\", \"20 mm\"]", "at = [1]", (31, 6), "[1]", &["`[1]` has 1 entry", "2 entries"]),
+    wrong("traction = [0,", "traction = [0, 0,", (27, 12), "[0, 0,", &["3 entries"]),
+    wrong("[0, \"free\"]", "[\"free\", \"free\"]", (23, 12), "[\"free\"", &["every component is free"]),
+    wrong("[0, \"free\"]", "[0, \"fre\"]", (23, 16), "\"fre\"", &["`fre` is not a number", "a velocity"]),
+    // Words and names.
+    wrong("\"plate\"\nsize", "\"plaet\"\nsize", (4, 9), "\"plaet\"", &["unknown shape `plaet`", "did you mean `plate`?", "\"bar\", \"plate\", \"disc\", \"block\", \"cylinder\" and \"ball\""]),
+    wrong("\"strain\"", "\"strian\"", (7, 9), "\"strian\"", &["did you mean `strain`?", "\"stress\" and \"strain\""]),
+    wrong("set = \"top\"\nvelocity", "set = \"topp\"\nvelocity", (22, 7), "\"topp\"", &["unknown set `topp`", "did you mean `top`?", "\"all\" and \"top\""]),
+    wrong("[sets.top]", "[sets.all]", (15, 7), "all", &["`all` cannot be used", "always means all points"]),
+    wrong("\"+y\"", "\"+z\"", (16, 18), "\"+z\"", &["unknown side `+z`", "\"-x\", \"+x\", \"-y\" and \"+y\""]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "layer = { side = \"+y\" }", (16, 9), "{ side", &["lacks one of `depth` and `cells`"]),
+    wrong("layer = {", "all = true\nlayer = {", (17, 9), "{ side", &["`all` and `layer` are given together", "`complement`"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "cylinder = { centre = [0, 0], radius = 1 }", (16, 12), "{ centre", &["needs a body of dimension 3", "dimension 2"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "box = { min = [1, 0], max = [0, 1] }", (16, 29), "[0, 1]", &["nowhere below"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "polygon = { corners = [[0, 0], [1, 1]] }", (16, 23), "[[0, 0]", &["at least 3 corners"]),
+    wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has it"]),
+    wrong("fields =", "picture = [{ field = \"Displacement_z\" }]\nfields =", (38, 22), "\"Displacement_z\"", &["unknown field `Displacement_z`", "\"Displacement_x\""]),
+    wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
+    // What the library refuses.
+    wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),
+    wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "must exceed"]),
+    wrong("[\"50 mm\", \"20 mm\"]]", "[0, 0.02]]", (18, 1), "[[crack]]", &["no usable surface"]),
+    wrong("\"2440 kg/m3\"", "\"2440 kg/m3", (10, 22), "", &["not valid TOML"]),
+    wrong("shape = \"plate\"", "shape = \"plate\"\nshape = \"bar\"", (5, 1), "shape", &["duplicate key"]),
+];
+
+fn refusal(text: &str) -> DeckError {
+    match Deck::parse(text, "plate.toml", &[]) {
+        Ok(_) => panic!("this deck is wrong:\n{text}"),
+        Err(error) => error,
+    }
+}
+
+#[test]
+fn the_right_deck_is_right() {
+    Deck::parse(RIGHT, "plate.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn every_wrong_deck_is_explained() {
+    for case in WRONG {
+        assert_eq!(
+            RIGHT.matches(case.replace).count(),
+            1,
+            "`{}` must be unique",
+            case.replace
+        );
+        let error = refusal(&RIGHT.replace(case.replace, case.by));
+        let message = error.to_string();
+        let found = error.problems().iter().any(|problem| {
+            let at = problem.location();
+            (at.line(), at.column()) == case.at && at.excerpt().starts_with(case.marked)
+        });
+        assert!(found, "`{}`: {message}", case.by);
+        let place = format!("plate.toml:{}:{}:", case.at.0, case.at.1);
+        assert!(message.contains(&place), "{place} {message}");
+        for words in case.says {
+            assert!(
+                message.contains(words),
+                "`{}`: `{words}` is not in: {message}",
+                case.by
+            );
+        }
+    }
+}
+
+#[test]
+fn all_problems_are_found_at_once_and_in_order() {
+    let text = RIGHT
+        .replace("spacing =", "spaceing =")
+        .replace("72 GPa", "72 Gpa")
+        .replace("\"free\"", "\"fre\"")
+        .replace("dt = \"auto\"", "dt = -1\nscheme = \"euler\"");
+    let error = refusal(&text);
+    let lines: Vec<usize> = error
+        .problems()
+        .iter()
+        .map(|problem| problem.location().line())
+        .collect();
+    assert_eq!(lines, [3, 6, 11, 23, 35, 36], "{error}");
+    assert!(error.to_string().starts_with("6 problems"));
+    assert_eq!(error.related().unwrap().count(), 6);
+    assert!(error.labels().is_none());
+}
+
+#[test]
+fn a_single_problem_is_a_diagnostic_with_its_text() {
+    let error = refusal(&RIGHT.replace("\"strain\"", "\"strian\""));
+    let [problem] = error.problems() else {
+        panic!("{error}")
+    };
+    assert!(matches!(problem.subject(), Fault::UnknownWord { .. }));
+    for diagnostic in [&error as &dyn Diagnostic, problem] {
+        let label = diagnostic.labels().unwrap().next().unwrap();
+        assert_eq!(label.len(), "\"strian\"".len());
+        let text = diagnostic
+            .source_code()
+            .unwrap()
+            .read_span(label.inner(), 0, 0)
+            .unwrap();
+        assert_eq!(text.name(), Some("plate.toml"));
+        assert!(
+            std::str::from_utf8(text.data())
+                .unwrap()
+                .contains("\"strian\"")
+        );
+        assert_eq!((text.line(), text.column()), (6, 8));
+    }
+    let help = problem.help().unwrap().to_string();
+    assert_eq!(
+        help,
+        "did you mean `strain`? allowed: \"stress\" and \"strain\""
+    );
+    assert_eq!(problem.to_string(), "unknown state of the plane `strian`");
+}
+
+/// Pieces of decks, from which mutations are made.
+fn piece() -> impl Strategy<Value = String> {
+    prop_oneof![
+        "[\\[\\]{}=.,\"'#\n a-zA-Z0-9µ-]{0,12}",
+        proptest::sample::select(COMPLETE.lines().map(String::from).collect::<Vec<_>>()),
+        proptest::sample::select(vec![
+            "inf",
+            "nan",
+            "-1",
+            "0",
+            "1e400",
+            "\"\"",
+            "\"free\"",
+            "\"open\"",
+            "[]",
+            "{}",
+            "[[]]",
+            "true",
+            "\"1 mm\"",
+            "99999999999999999999",
+            "1979-05-27",
+            "\"disc\"",
+            "\"bar\"",
+            "\"block\"",
+        ])
+        .prop_map(String::from),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn any_mutation_of_a_deck_is_answered(
+        cuts in proptest::collection::vec((0.0..1.0f64, 0usize..40, piece()), 1..4),
+        lines in any::<bool>(),
+    ) {
+        let mut text = COMPLETE.to_owned();
+        for (position, length, piece) in cuts {
+            let boundary = |mut at: usize, text: &str| {
+                at = at.min(text.len());
+                while !text.is_char_boundary(at) {
+                    at -= 1;
+                }
+                at
+            };
+            let mut start = boundary((position * text.len() as f64) as usize, &text);
+            let mut end = boundary(start + length, &text);
+            if lines {
+                // Replace the value of a line: the likeliest to remain TOML.
+                start = text[start..].find("= ").map_or(start, |at| start + at + 2);
+                end = text[start..].find('\n').map_or(text.len(), |at| start + at);
+            }
+            text.replace_range(start..end, &piece);
+        }
+        if let Err(error) = Deck::parse(&text, "mutated.toml", &[]) {
+            prop_assert!(!error.problems().is_empty());
+            for problem in error.problems() {
+                let at = problem.location();
+                prop_assert!(at.line() >= 1 && at.line() <= text.matches('\n').count() + 1);
+                prop_assert!(!problem.to_string().is_empty());
+            }
+        }
+    }
+
+    #[test]
+    fn any_text_and_any_override_is_answered(text in ".{0,80}", path in "[a-z0-9.]{0,20}", value in ".{0,20}") {
+        let _ = Deck::parse(&text, "any.toml", &[]);
+        let _ = Deck::parse(COMPLETE, "any.toml", &[format!("{path}={value}"), text]);
+    }
+
+    #[test]
+    fn any_value_under_a_known_key_is_answered(
+        key in proptest::sample::select(vec![
+            "body", "body.shape", "body.size.0", "body.hole.1.intersection.0.box.min", "material.influence.table.1.0",
+            "material.damage", "sets.top", "crack.0.segment", "crack.1.ends", "initial.0.velocity", "prescribe.0.velocity.1",
+            "load.1.area", "probe.0.at", "time.dt", "output.picture.1.range", "output.fields", "checkpoint",
+        ]),
+        value in piece(),
+    ) {
+        if let Err(error) = Deck::parse(COMPLETE, "deck.toml", &[format!("{key}={value}")]) {
+            prop_assert!(!error.problems().is_empty());
+        }
+    }
+}
