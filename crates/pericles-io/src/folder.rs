@@ -7,11 +7,9 @@
 //!   .lock                         held while a run writes; stays behind, empty and unlocked
 //! ```
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
-
-use fs4::{FileExt, TryLockError};
 
 use crate::IoError;
 use crate::atomic::{folder_of, is_unfinished, remove_unfinished};
@@ -129,7 +127,7 @@ impl OutputFolder {
             .truncate(false)
             .open(&lock)
             .map_err(|source| IoError::writing(&lock, source))?;
-        match FileExt::try_lock(&file) {
+        match file.try_lock() {
             Ok(()) => Ok(Self { path, _lock: file }),
             Err(TryLockError::WouldBlock) => Err(IoError::Locked { path }),
             Err(TryLockError::Error(source)) => Err(IoError::writing(&lock, source)),
