@@ -1,9 +1,10 @@
 //! What can go wrong on the way from the command line to the results, and how it is reported.
 
+use std::fmt::{self, Display};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use miette::Diagnostic;
+use miette::{Diagnostic, MietteHandler, ReportHandler};
 use pericles::{PericlesError, SimulationError};
 use pericles_deck::DeckError;
 use pericles_io::IoError;
@@ -117,17 +118,32 @@ impl CliError {
         }
     }
 
-    /// Reports on the standard error: with the place in the deck marked on a terminal, in plain lines otherwise.
-    pub(crate) fn report(self) {
+    /// Reports on the standard error: with the places in the deck marked on a terminal, in plain lines otherwise.
+    pub(crate) fn report(&self) {
         if std::io::stderr().is_terminal() {
-            console::note(format_args!("{:?}", miette::Report::new(self)));
-            return;
+            return match self {
+                // One by one: the error as a whole would list them all a second time.
+                Self::Deck(error) if !error.problems().is_empty() => error
+                    .problems()
+                    .iter()
+                    .for_each(|problem| console::note(format_args!("{}", Drawn(problem)))),
+                other => console::note(format_args!("{}", Drawn(other))),
+            };
         }
         console::note(format_args!("error: {self}"));
         // The plain text of a refused deck says what is allowed itself.
         if let (Some(help), false) = (self.help(), matches!(self, Self::Deck(_))) {
             console::note(format_args!("help: {help}"));
         }
+    }
+}
+
+/// A diagnostic as it looks on a terminal.
+struct Drawn<'a>(&'a dyn Diagnostic);
+
+impl Display for Drawn<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        MietteHandler::default().debug(self.0, f)
     }
 }
 
