@@ -5,11 +5,25 @@
 
 mod bond_force;
 mod bond_kernels;
+mod grid_block;
+mod grid_breaking;
+mod grid_build;
+mod grid_force;
+mod grid_kernels;
+mod grid_law;
+mod grid_layout;
+mod grid_operator;
+mod grid_padded;
 pub mod lanes;
+#[cfg(target_arch = "x86_64")]
+mod lanes_x86;
+mod stencil;
 
 use std::ops::Range;
 
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use grid_force::GridForce;
+pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
 
 use crate::archive::Saved;
