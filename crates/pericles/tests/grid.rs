@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
+use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, LinearBond, Modulus, PairLaw,
     StressState,
 };
 use pericles::operator::{
-    Accepted, BondForce, DamageMeasure, ForceOperator, GridForce, GridLaw, InstructionSet, On,
+    Accepted, BondBody, BondForce, BondForm, DamageMeasure, ForceOperator, GridForce, GridLaw,
+    InstructionSet, On,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
@@ -151,15 +152,16 @@ fn pair<L: GridLaw, const D: usize>(
     no_fail: &[u32],
     damage: DamageMeasure,
 ) -> (GridForce<L, D>, BondForce<L, D>) {
-    let constants = material.constants(cloud, state(D)).unwrap();
-    let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).unwrap();
-    let cuts: Vec<_> = cracks
-        .iter()
-        .map(|(crack, rule)| bonds.cut(cloud, crack, *rule).unwrap())
-        .collect();
-    let list = BondForce::new(cloud.clone(), bonds, material, &constants, no_fail, damage);
-    let grid =
-        GridForce::new(cloud.clone(), material, &constants, cracks, no_fail, damage).unwrap();
+    let body = BondBody {
+        cloud,
+        material,
+        constants: &material.constants(cloud, state(D)).unwrap(),
+        cracks,
+        no_fail,
+        damage,
+    };
+    let (list, cuts) = body.list().unwrap();
+    let grid: GridForce<L, D> = body.grid().unwrap();
     assert_eq!(grid.cuts(), &cuts[..]);
     (grid, list)
 }
@@ -599,4 +601,54 @@ fn unusable_input_is_refused() {
         make(&cloud, &short, &[]),
         Err(PericlesError::HorizonTooSmall { .. })
     ));
+}
+
+#[test]
+fn the_fastest_form_is_the_grid_where_there_is_one() {
+    let form = |cloud: &Arc<PointCloud>, form| {
+        let dimension = cloud.dimension();
+        let mut material = material(
+            Influence::default(),
+            VolumeCorrection::None,
+            Fracture::Unbreakable,
+        );
+        material.law = PairLaw::Linear;
+        let body = BondBody {
+            cloud,
+            material: &material,
+            constants: &material.constants(cloud, state(dimension)).unwrap(),
+            cracks: &cracks(dimension),
+            no_fail: &[],
+            damage: DamageMeasure::default(),
+        };
+        body.operator(form).unwrap()
+    };
+    for dimension in 1..=3 {
+        let cloud = body(&vec![12.0; dimension], true);
+        let fastest = form(&cloud, BondForm::Fastest);
+        let list = form(&cloud, BondForm::List);
+        assert_eq!((fastest.form, list.form), (BondForm::Grid, BondForm::List));
+        assert_eq!(fastest.cuts, list.cuts);
+        let u = scaled_noise(&cloud, 1e-6);
+        let expected = force(&*list.operator, &u);
+        assert_close(&force(&*fastest.operator, &u), &expected, 1e-12, "form");
+    }
+    // The box of a thin ring is mostly empty.
+    let ring = Grid {
+        shape: Shape::Disc {
+            centre: [0.0; 3],
+            radius: 1.0,
+        },
+        spacing: SPACING,
+        section: 1.0,
+        holes: vec![Region::Ball {
+            centre: [0.0; 3],
+            radius: 0.96,
+        }],
+    };
+    let ring = Arc::new(ring.points().unwrap());
+    assert_eq!(form(&ring, BondForm::Fastest).form, BondForm::List);
+    let scattered = PointCloud::new(1, vec![0.0, 0.01, 0.025], vec![1e-4; 3], 0.01).unwrap();
+    let scattered = Arc::new(scattered);
+    assert_eq!(form(&scattered, BondForm::Fastest).form, BondForm::List);
 }
