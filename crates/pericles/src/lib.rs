@@ -1,6 +1,7 @@
 //! Peridynamics: points, bonds, operators, integrators, observers.
 
 mod archive;
+pub mod bench;
 pub mod boundary;
 mod error;
 pub mod family;
