@@ -49,6 +49,7 @@
 //! ```
 
 mod archive;
+pub mod bench;
 pub mod boundary;
 mod error;
 pub mod family;

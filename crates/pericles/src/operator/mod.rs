@@ -24,7 +24,7 @@ mod grid_operator;
 mod grid_padded;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
-mod lanes_x86;
+pub(crate) mod lanes_x86;
 mod stencil;
 
 use std::ops::Range;
