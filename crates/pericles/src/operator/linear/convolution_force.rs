@@ -1,0 +1,464 @@
+//! The force operator of linear lattice bodies by convolution.
+
+use std::sync::Arc;
+
+use super::box_convolution::{BoxConvolution, Product};
+use super::cost::smooth_length;
+use super::pool::Pool;
+use super::tensor_kernel::{Axis, pairs};
+use super::toeplitz::{Ends, Toeplitz};
+use super::wanted::for_each_wanted;
+use crate::archive::{Archive, Saved};
+use crate::error::{PericlesError, Result};
+use crate::family::{Crack, VolumeCorrection};
+use crate::material::{BondConstants, BondMaterial, PairLaw};
+use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use crate::parallel::{components, components_mut, ordered_sum};
+use crate::space::{Lattice, PointCloud};
+
+/// f_a(x_i) = Σ_b [ Σ_j K_ab(ξ_ij) u_b(x_j) − u_b(x_i) Σ_j K_ab(ξ_ij) ], K(ξ) = c α κ V ξ⊗ξ/|ξ|³: the force density (N/m³) of the
+/// linear, unbreakable bond-based law on a lattice body.
+///
+/// The same operator as `BondForce<LinearBond, D>` to round-off, at a cost of O(N log N) that hardly depends on the horizon. Bodies may have
+/// any shape, holes included; axes may be periodic, with the bounding box of the lattice as the period. Whole bars use a [`Toeplitz`] line.
+///
+/// * All points are computed whatever subset is asked for; only rows without wanted points save some of the way back.
+/// * A rigid translation gives exactly zero.
+/// * Memory: D(D+1)/2 spectra on an octant of the wave numbers, D(D+1)/2 numbers per point, and two complex arrays of D fields on the box,
+///   padded by the horizon along x (and y in 3D).
+pub struct ConvolutionForce<const D: usize> {
+    cloud: Arc<PointCloud>,
+    engine: Engine<D>,
+    /// Σ_j K_ab per point, one array per pair.
+    diagonal: Vec<Vec<f64>>,
+    /// Σ |k|/|ξ| over a full family, where K is not positive semidefinite.
+    signed_bound: Option<f64>,
+    directed_bonds: u64,
+    fields: Pool<Vec<f64>>,
+}
+
+enum Engine<const D: usize> {
+    /// A whole bar.
+    Line(Box<Toeplitz>),
+    Box(Box<BoxConvolution<D>>),
+}
+
+impl<const D: usize> ConvolutionForce<D> {
+    /// The operator of a material on a body whose axes are periodic or not.
+    ///
+    /// # Errors
+    /// What a convolution cannot do, with the reason: points that are no lattice, another law than the linear one, breaking, pre-cracks.
+    pub fn new(
+        cloud: Arc<PointCloud>,
+        material: &BondMaterial,
+        constants: &BondConstants,
+        cracks: &[Crack],
+        periodic: [bool; D],
+    ) -> Result<Self> {
+        if material.law != PairLaw::Linear {
+            return refuse(
+                "only the linear law is one; use the bond list for the bond-stretch law",
+            );
+        }
+        if constants.critical_stretch.is_finite() {
+            return refuse(
+                "bonds that break are none; use the bond list, or leave the critical stretch and fracture energy out",
+            );
+        }
+        if !cracks.is_empty() {
+            return refuse(
+                "pre-cracks cut single bonds, which a convolution cannot; use the bond list",
+            );
+        }
+        let stiffness =
+            |r: f64| constants.micromodulus * material.influence.alpha(r, material.horizon);
+        Self::with_stiffness(
+            cloud,
+            material.horizon,
+            material.volume_correction,
+            stiffness,
+            periodic,
+        )
+    }
+
+    /// An operator whose bonds have the stiffness c α(r) given as a function of their reference length r.
+    ///
+    /// # Errors
+    /// Points that are no lattice, or of another dimension; a horizon below the spacing; a stiffness that is not finite.
+    pub fn with_stiffness(
+        cloud: Arc<PointCloud>,
+        horizon: f64,
+        correction: VolumeCorrection,
+        stiffness_of_length: impl Fn(f64) -> f64,
+        periodic: [bool; D],
+    ) -> Result<Self> {
+        let Some(lattice) = cloud.lattice() else {
+            return refuse("it needs points on a regular grid; use the bond list for this body");
+        };
+        if cloud.dimension() != D {
+            return Err(PericlesError::WrongDimension {
+                what: "a convolution of this kind",
+                needed: ["1", "2", "3"][D - 1],
+                dimension: cloud.dimension(),
+            });
+        }
+        let volume = cloud.volumes()[0];
+        if cloud.volumes().iter().any(|&v| v != volume) {
+            return refuse("it needs points of equal volume; use the bond list for this body");
+        }
+        let dx = lattice.spacing;
+        let reach = correction.reach(horizon, dx);
+        if reach.is_nan() || reach < dx {
+            return Err(PericlesError::HorizonTooSmall {
+                horizon,
+                spacing: dx,
+            });
+        }
+        // k of an offset, and its length and vector; none beyond the horizon. The same arithmetic as the bond list's, so that the same bonds exist.
+        let bond = |offset: [i64; 3]| {
+            let xi = offset.map(|o| o as f64 * dx);
+            let r = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
+            (r > 0.0 && r <= reach).then(|| {
+                let stiffness = stiffness_of_length(r) * correction.factor(r, horizon, dx) * volume;
+                (stiffness, r, xi)
+            })
+        };
+        let raw = (reach / dx).floor() as i64;
+        let (bound, signed) = full_family(raw, D, &bond)?;
+        let tensor_pairs = pairs(D);
+        let n = cloud.len();
+        let whole_bar = D == 1 && n == lattice.shape[0];
+        let directed_bonds;
+        let engine = if whole_bar {
+            let weight = |r: i64| bond([r, 0, 0]).map_or(0.0, |(stiffness, r, _)| stiffness / r);
+            let weights: Vec<f64> = (1..=raw).map(weight).collect();
+            let ends = if periodic[0] {
+                Ends::Periodic
+            } else {
+                Ends::Free
+            };
+            directed_bonds = (1..=raw as u64)
+                .map(|r| match ends {
+                    Ends::Periodic => 2 * n as u64,
+                    _ => 2 * (n as u64).saturating_sub(r),
+                })
+                .sum();
+            Engine::Line(Box::new(Toeplitz::stencil(n, &weights, ends)?))
+        } else {
+            let axes = axes(lattice, raw as usize, periodic);
+            let raw = raw as usize;
+            directed_bonds = count_bonds::<D>(&cloud, lattice, axes, raw, &bond);
+            Engine::Box(Box::new(BoxConvolution::new(
+                lattice,
+                axes,
+                raw,
+                |offset, values: &mut [f64]| {
+                    if let Some((stiffness, r, xi)) = bond(offset) {
+                        for (value, &(a, b)) in values.iter_mut().zip(&tensor_pairs) {
+                            *value = stiffness * xi[a] * xi[b] / (r * r * r);
+                        }
+                    }
+                },
+            )))
+        };
+        let mut operator = Self {
+            engine,
+            diagonal: vec![],
+            signed_bound: signed.then_some(bound),
+            directed_bonds,
+            fields: Pool::new(1, move || vec![0.0; D * n]),
+            cloud,
+        };
+        if let Engine::Box(convolution) = &operator.engine {
+            operator.diagonal = (0..tensor_pairs.len())
+                .map(|p| {
+                    let mut sums = vec![0.0; n];
+                    let all = On::All;
+                    convolution.add(
+                        Product::Pair(p),
+                        &all,
+                        &|_, _| 1.0,
+                        [&mut sums[..]],
+                        &|_, _, value| value,
+                    );
+                    sums
+                })
+                .collect();
+        }
+        Ok(operator)
+    }
+
+    /// The value that displacements are taken relative to: a rigid translation is then exactly zero.
+    fn origin(&self, u: &[f64]) -> [f64; D] {
+        let n = self.cloud.len();
+        std::array::from_fn(|c| u[c * n + n / 2])
+    }
+
+    fn add(&self, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+        let n = self.cloud.len();
+        match &self.engine {
+            Engine::Line(line) => {
+                let mut force = self.fields.take();
+                line.apply_into(u, &mut force);
+                for_each_wanted(on, 0..n, |i| out[i] += force[i]);
+            }
+            Engine::Box(convolution) => {
+                let origin = self.origin(u);
+                let u = components::<D>(u, n);
+                convolution.add::<D>(
+                    Product::Tensor,
+                    on,
+                    &|c, i| u[c][i] - origin[c],
+                    components_mut::<D>(out, n),
+                    &|a, i, value| {
+                        let mut own = 0.0;
+                        for b in 0..D {
+                            own += self.diagonal[pair(D, a, b)][i] * (u[b][i] - origin[b]);
+                        }
+                        value - own
+                    },
+                );
+            }
+        }
+    }
+
+    /// Σ_ab Σ_j K_ab (u_a u_b(x_j) − u_a u_b(x_i)), added to `out`.
+    fn add_squares(&self, u: &[f64], origin: [f64; D], out: &mut [f64]) {
+        let n = self.cloud.len();
+        let u = components::<D>(u, n);
+        match &self.engine {
+            Engine::Line(line) => {
+                let mut square = self.fields.take();
+                for (square, u) in square.iter_mut().zip(u[0]) {
+                    *square = (u - origin[0]).powi(2);
+                }
+                line.apply_into(&square, out);
+            }
+            Engine::Box(convolution) => {
+                for (p, (a, b)) in pairs(D).into_iter().enumerate() {
+                    let times = if a == b { 1.0 } else { 2.0 };
+                    let square = |i: usize| times * (u[a][i] - origin[a]) * (u[b][i] - origin[b]);
+                    convolution.add(
+                        Product::Pair(p),
+                        &On::All,
+                        &|_, i| square(i),
+                        [&mut *out],
+                        &|_, i, value| value - self.diagonal[p][i] * square(i),
+                    );
+                }
+            }
+        }
+    }
+}
+
+fn refuse<T>(reason: &str) -> Result<T> {
+    Err(PericlesError::BadConvolution {
+        reason: reason.into(),
+    })
+}
+
+/// The place of (a, b) among the pairs of components.
+fn pair(dimension: usize, a: usize, b: usize) -> usize {
+    let (a, b) = (a.min(b), a.max(b));
+    if a == b { a } else { dimension + a + b - 1 }
+}
+
+/// Σ |k|/|ξ| over a full family, and whether any k is negative.
+fn full_family(
+    raw: i64,
+    dimension: usize,
+    bond: &impl Fn([i64; 3]) -> Option<(f64, f64, [f64; 3])>,
+) -> Result<(f64, bool)> {
+    let range = |axis: usize| if axis < dimension { -raw..=raw } else { 0..=0 };
+    let (mut sum, mut signed) = (0.0, false);
+    for z in range(2) {
+        for y in range(1) {
+            for x in range(0) {
+                if let Some((stiffness, r, _)) = bond([x, y, z]) {
+                    if !stiffness.is_finite() {
+                        return refuse(
+                            "the stiffness of every bond must be finite; check the influence function",
+                        );
+                    }
+                    signed |= stiffness < 0.0;
+                    sum += stiffness.abs() / r;
+                }
+            }
+        }
+    }
+    Ok((sum, signed))
+}
+
+/// The axes of a lattice with the lengths of their transforms.
+fn axes<const D: usize>(lattice: &Lattice, raw: usize, periodic: [bool; D]) -> [Axis; 3] {
+    std::array::from_fn(|c| {
+        let nodes = lattice.shape[c];
+        if c < D && periodic[c] {
+            Axis {
+                nodes,
+                padded: nodes,
+                reach: raw.min(nodes / 2),
+                periodic: true,
+            }
+        } else {
+            let reach = raw.min(nodes - 1);
+            Axis {
+                nodes,
+                padded: smooth_length(nodes + reach),
+                reach,
+                periodic: false,
+            }
+        }
+    })
+}
+
+/// Entries of all families, by the same convolution with a kernel of ones.
+fn count_bonds<const D: usize>(
+    cloud: &PointCloud,
+    lattice: &Lattice,
+    axes: [Axis; 3],
+    raw: usize,
+    bond: &impl Fn([i64; 3]) -> Option<(f64, f64, [f64; 3])>,
+) -> u64 {
+    let ones = BoxConvolution::<D>::new(lattice, axes, raw, |offset, values: &mut [f64]| {
+        values[0] = f64::from(u8::from(bond(offset).is_some()));
+    });
+    let mut counts = vec![0.0; cloud.len()];
+    let counted = [&mut counts[..]];
+    ones.add(
+        Product::Pair(0),
+        &On::All,
+        &|_, _| 1.0,
+        counted,
+        &|_, _, value| value.round(),
+    );
+    counts.iter().map(|&count| count as u64).sum()
+}
+
+impl<const D: usize> LinearOperator for ConvolutionForce<D> {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        match &self.engine {
+            Engine::Line(line) => line.apply_into(u, out),
+            Engine::Box(_) => {
+                out.fill(0.0);
+                self.add(u, &On::All, out);
+            }
+        }
+    }
+}
+
+impl<const D: usize> ForceOperator for ConvolutionForce<D> {
+    fn points(&self) -> usize {
+        self.cloud.len()
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        self.add(u, &on, out);
+    }
+
+    /// w_i = ¼ Σ_ab [ Σ_j K_ab (u_a u_b(x_j) − u_a u_b(x_i)) ] − ½ f(x_i)·u(x_i), relative to a common origin: accurate to round-off of the largest K u²,
+    /// so that points without strain may show energies of either sign that small.
+    fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
+        let n = self.points();
+        let origin = self.origin(u);
+        let mut force = vec![0.0; D * n];
+        self.apply_into(u, &mut force);
+        let mut squares = vec![0.0; n];
+        self.add_squares(u, origin, &mut squares);
+        for i in 0..n {
+            let work: f64 = (0..D)
+                .map(|c| force[c * n + i] * (u[c * n + i] - origin[c]))
+                .sum();
+            out[i] += 0.25 * squares[i] - 0.5 * work;
+        }
+    }
+
+    /// −½ Σ V f·u.
+    fn energy(&self, _t: f64, u: &[f64]) -> f64 {
+        let n = self.points();
+        let origin = self.origin(u);
+        let mut force = self.fields.take();
+        self.apply_into(u, &mut force);
+        let force = &force[..];
+        let volumes = self.cloud.volumes();
+        let work = ordered_sum(D * n, |k| {
+            volumes[k % n] * force[k] * (u[k] - origin[k / n])
+        });
+        -0.5 * work
+    }
+
+    /// ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|/|ξ|, by Gershgorin's discs of D×D blocks; for kernels with negative values over a full family.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let row = |i: usize| match (&self.engine, self.signed_bound) {
+            (_, Some(bound)) => bound,
+            (Engine::Line(line), None) => -line.diagonal(i),
+            // The trace of Σ_j k ξ⊗ξ/|ξ|³.
+            (Engine::Box(_), None) => (0..D).map(|a| self.diagonal[a][i]).sum(),
+        };
+        let largest =
+            (0..self.points()).fold(0.0f64, |largest, i| largest.max(2.0 * row(i) / density(i)));
+        // A bound must not fall below the truth by the transforms' rounding.
+        (largest * (1.0 + 1e-12)).sqrt()
+    }
+
+    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
+        self.add(accepted.u, &on, out);
+    }
+
+    fn advance_history(&mut self, _t: f64, _u: &[f64], _on: On<'_>) {}
+
+    fn tangent_into(&self, _t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.apply_into(direction, out);
+    }
+
+    fn dissipated(&self) -> f64 {
+        0.0
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        0
+    }
+
+    fn can_break(&self) -> bool {
+        false
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        out.fill(0.0);
+    }
+
+    /// The bonds the convolution stands for; no loop runs over them.
+    fn directed_bonds(&self) -> u64 {
+        self.directed_bonds
+    }
+
+    fn bytes(&self) -> usize {
+        let engine = match &self.engine {
+            Engine::Line(line) => line.bytes(),
+            Engine::Box(convolution) => convolution.bytes(),
+        };
+        let numbers = self.diagonal.iter().map(Vec::len).sum::<usize>() + D * self.points();
+        engine + numbers * size_of::<f64>()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::detect()
+    }
+
+    fn as_linear(&self) -> Option<&dyn LinearOperator> {
+        Some(self)
+    }
+}
+
+/// A linear operator has no memory: nothing is stored.
+impl<const D: usize> Saved for ConvolutionForce<D> {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,175 @@
+//! The tensor kernel of a linear bond-based body on a lattice, and its Fourier transform.
+//!
+//! K_ab(ξ) = k(|ξ|) ξ_a ξ_b / |ξ|³ is even under reflection of every axis, but for K_ab with a ≠ b, which is odd under reflection of axis a and of axis b.
+//! Offsets and wave numbers of one octant therefore hold everything, and all transforms are real.
+
+use realfft::num_complex::Complex;
+
+use super::fourier::LineTransform;
+
+/// Offsets along an axis, wrapped round a transform of some length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Axis {
+    /// Lattice nodes.
+    pub nodes: usize,
+    /// Length of the transform: the nodes if periodic, else enough that nothing wraps.
+    pub padded: usize,
+    /// Largest wrapped offset.
+    pub reach: usize,
+    pub periodic: bool,
+}
+
+impl Axis {
+    /// Wave numbers 0 … π.
+    pub fn modes(&self) -> usize {
+        self.padded / 2 + 1
+    }
+
+    /// Wrapped offsets o ≥ 0 with the true offsets that fall on them, those of the mirrored side left out.
+    fn images(&self, raw: usize) -> Vec<(usize, i64)> {
+        let raw = raw as i64;
+        let from = if self.periodic { -raw } else { 0 };
+        (from..=raw)
+            .map(|o| {
+                let wrapped = if self.periodic {
+                    o.rem_euclid(self.padded as i64)
+                } else {
+                    o
+                };
+                (wrapped as usize, o)
+            })
+            .filter(|&(wrapped, _)| wrapped <= self.reach)
+            .collect()
+    }
+}
+
+/// Pairs of components, in the order (0,0), (1,1) … and then (0,1), (0,2), (1,2).
+pub(super) fn pairs(dimension: usize) -> Vec<(usize, usize)> {
+    let mut pairs: Vec<_> = (0..dimension).map(|a| (a, a)).collect();
+    for a in 0..dimension {
+        for b in a + 1..dimension {
+            pairs.push((a, b));
+        }
+    }
+    pairs
+}
+
+/// The kernel's values on the offsets of one octant.
+pub(super) struct TensorKernel {
+    axes: [Axis; 3],
+    /// One table per pair: x fastest, then y, then z.
+    tables: Vec<Vec<f64>>,
+}
+
+impl TensorKernel {
+    /// `value(offset)` gives K_ab at a true offset, for the pairs in order; `raw` is the largest offset along an axis.
+    pub fn new(
+        axes: [Axis; 3],
+        raw: usize,
+        pairs: usize,
+        value: impl Fn([i64; 3], &mut [f64]),
+    ) -> Self {
+        let shape = axes.map(|axis| axis.reach + 1);
+        let mut tables = vec![vec![0.0; shape.iter().product()]; pairs];
+        let images = axes.map(|axis| axis.images(raw));
+        let mut values = vec![0.0; pairs];
+        for &(z, oz) in &images[2] {
+            for &(y, oy) in &images[1] {
+                for &(x, ox) in &images[0] {
+                    values.fill(0.0);
+                    value([ox, oy, oz], &mut values);
+                    let at = x + shape[0] * (y + shape[1] * z);
+                    for (table, value) in tables.iter_mut().zip(&values) {
+                        table[at] += value;
+                    }
+                }
+            }
+        }
+        Self { axes, tables }
+    }
+
+    /// K̂_ab = Σ K_ab(o) exp(−i θ·o) on the wave numbers of one octant, times `scale`, at index z + Z (x + X y) for X × Y × Z of them: z fastest,
+    /// because products run along z.
+    pub fn spectra(&self, scale: f64) -> Vec<Vec<f64>> {
+        let plans = self.axes.map(|axis| LineTransform::new(axis.padded));
+        let dimension = match self.tables.len() {
+            1 => 1,
+            3 => 2,
+            _ => 3,
+        };
+        let pairs = pairs(dimension);
+        pairs
+            .iter()
+            .zip(&self.tables)
+            .map(|(&(a, b), table)| {
+                let odd = |axis: usize| a != b && (axis == a || axis == b);
+                // i·i from the two odd axes.
+                let sign = if a == b { scale } else { -scale };
+                self.spectrum(&plans, table, odd, sign)
+            })
+            .collect()
+    }
+
+    fn spectrum(
+        &self,
+        plans: &[LineTransform; 3],
+        table: &[f64],
+        odd: impl Fn(usize) -> bool,
+        scale: f64,
+    ) -> Vec<f64> {
+        let mut values = table.to_vec();
+        let mut shape = self.axes.map(|axis| axis.reach + 1);
+        for axis in 0..3 {
+            // Transform the fastest axis, then make it the slowest: after three rounds the order is x, y, z again.
+            let (lines, modes) = (values.len() / shape[0], self.axes[axis].modes());
+            let mut next = vec![0.0; lines * modes];
+            let mut work = OctantLine::new(&plans[axis]);
+            for (l, line) in values.chunks(shape[0]).enumerate() {
+                work.transform(&plans[axis], line, odd(axis));
+                for (k, mode) in work.spectrum.iter().enumerate() {
+                    next[l + lines * k] = if odd(axis) { mode.im } else { mode.re };
+                }
+            }
+            values = next;
+            shape = [shape[1], shape[2], modes];
+        }
+        let [mx, my, mz] = self.axes.map(|axis| axis.modes());
+        let mut out = vec![0.0; values.len()];
+        for z in 0..mz {
+            for y in 0..my {
+                for x in 0..mx {
+                    out[z + mz * (x + mx * y)] = scale * values[x + mx * (y + my * z)];
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Work arrays for the transform of an even or odd function given on one side.
+struct OctantLine {
+    line: Vec<f64>,
+    spectrum: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+}
+
+impl OctantLine {
+    fn new(plan: &LineTransform) -> Self {
+        Self {
+            line: vec![0.0; plan.len()],
+            spectrum: vec![Complex::default(); plan.modes()],
+            scratch: plan.scratch(),
+        }
+    }
+
+    fn transform(&mut self, plan: &LineTransform, side: &[f64], odd: bool) {
+        let length = plan.len();
+        self.line.fill(0.0);
+        for (o, value) in side.iter().enumerate() {
+            self.line[(length - o) % length] = if odd { -value } else { *value };
+        }
+        // Second, so that offset 0 and the one half way round, which are their own mirror images, keep their value (zero if odd).
+        self.line[..side.len()].copy_from_slice(side);
+        plan.forward(&mut self.line, &mut self.spectrum, &mut self.scratch);
+    }
+}
