@@ -13,7 +13,8 @@ use rustfft::{Fft, FftPlanner};
 
 use super::fourier::LineTransform;
 use super::pool::Pool;
-use super::tensor_kernel::{Axis, TensorKernel, pairs};
+use super::tensor_kernel::Axis;
+use super::tensor_spectra::{Product, TensorSpectra};
 use super::wanted::{count_wanted, for_each_wanted};
 use crate::operator::On;
 use crate::space::Lattice;
@@ -21,13 +22,9 @@ use crate::space::Lattice;
 /// Columns taken together when an array is read across its rows: two cache lines.
 const TILE: usize = 8;
 
-/// What is multiplied in the space of wave numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Product {
-    /// v_a = Σ_b K_ab u_b on as many fields as dimensions.
-    Tensor,
-    /// v = K_p u on one field, for pair p.
-    Pair(usize),
+/// Numbers between the starts of consecutive lines of a length: not a power of two, which would put all lines into the same few places of the L1 cache.
+fn stride(length: usize) -> usize {
+    length + 4
 }
 
 /// A complex transform of an axis, none if the axis has one node.
@@ -58,10 +55,12 @@ impl AxisTransform {
         })
     }
 
-    /// Transforms consecutive lines; `back` to the inverse, not divided by the length.
+    /// Transforms lines that start a [`stride`] apart; `back` to the inverse, not divided by the length.
     fn apply(&self, lines: &mut [Complex<f64>], back: bool, scratch: &mut [Complex<f64>]) {
         if let Some(plans) = &self.plans {
-            plans[usize::from(back)].process_with_scratch(lines, scratch);
+            for line in lines.chunks_mut(stride(self.length)) {
+                plans[usize::from(back)].process_with_scratch(&mut line[..self.length], scratch);
+            }
         }
     }
 }
@@ -95,9 +94,7 @@ pub(super) struct BoxConvolution<const D: usize> {
     along_x: LineTransform,
     middle: AxisTransform,
     last: AxisTransform,
-    /// Per pair: last mode fastest, then x, then middle.
-    spectra: Vec<Vec<f64>>,
-    pairs: Vec<(usize, usize)>,
+    spectra: TensorSpectra<D>,
     workspace: Pool<Workspace>,
     scratch: Pool<Scratch>,
 }
@@ -110,24 +107,13 @@ impl<const D: usize> BoxConvolution<D> {
         raw: usize,
         value: impl Fn([i64; 3], &mut [f64]),
     ) -> Self {
-        let pairs = pairs(D);
-        let scale = 1.0 / axes.iter().map(|axis| axis.padded as f64).product::<f64>();
-        let kernel = TensorKernel::new(axes, raw, pairs.len(), value);
-        let mut spectra = kernel.spectra(scale);
-        let [x, mut middle, mut last] = axes;
-        if D == 2 {
-            // y takes the place of z; the order of the modes is then x, y: turn it into y, x.
-            (middle, last) = (axes[2], axes[1]);
-            let (mx, my) = (x.modes(), last.modes());
-            for spectrum in &mut spectra {
-                let old = spectrum.clone();
-                for ky in 0..my {
-                    for kx in 0..mx {
-                        spectrum[ky + my * kx] = old[kx + mx * ky];
-                    }
-                }
-            }
-        }
+        // In 2D y takes the place of z.
+        let [x, middle, last] = if D == 2 {
+            [axes[0], axes[2], axes[1]]
+        } else {
+            axes
+        };
+        let spectra = TensorSpectra::new([x, middle, last], raw, value);
         let rows = lattice.shape[1] * lattice.shape[2];
         let row_start = (0..=rows)
             .map(|row| {
@@ -155,7 +141,7 @@ impl<const D: usize> BoxConvolution<D> {
             .max(along_middle.scratch_len())
             .max(along_last.scratch_len());
         let plane = middle.padded * modes;
-        let lines = TILE * (D * last.padded).max(middle.padded);
+        let lines = TILE * (D * stride(last.padded)).max(stride(middle.padded));
         let row = x.padded;
         let scratch = Pool::new(rayon::current_num_threads(), move || Scratch {
             row: vec![0.0; row],
@@ -172,7 +158,6 @@ impl<const D: usize> BoxConvolution<D> {
             middle: along_middle,
             last: along_last,
             spectra,
-            pairs,
             workspace,
             scratch,
         }
@@ -184,23 +169,22 @@ impl<const D: usize> BoxConvolution<D> {
         let complex =
             D * self.last_nodes * self.middle.length * (modes + modes.next_multiple_of(TILE));
         complex * size_of::<Complex<f64>>()
-            + self
-                .spectra
-                .iter()
-                .map(|s| size_of_val(&s[..]))
-                .sum::<usize>()
+            + self.spectra.bytes()
             + size_of_val(&self.row_start[..])
             + size_of_val(&self.lattice.node[..])
     }
 
-    /// Adds `finish(field, i, value)` to `out` at the wanted points i, where the values are the products of the fields `input(field, i)`.
-    pub fn add<const F: usize>(
+    /// The products of fields, at the wanted points.
+    ///
+    /// `input(field, points, line)` fills a line with a field's values at some points; `finish(field, points, values, out)` takes the products at some
+    /// points and changes the part of `out` that belongs to them.
+    pub fn apply<const F: usize>(
         &self,
         product: Product,
         on: &On<'_>,
-        input: &(impl Fn(usize, usize) -> f64 + Sync),
+        input: &(impl Fn(usize, Range<usize>, &mut [f64]) + Sync),
         out: [&mut [f64]; F],
-        finish: &(impl Fn(usize, usize, f64) -> f64 + Sync),
+        finish: &(impl Fn(usize, Range<usize>, &[f64], &mut [f64]) + Sync),
     ) {
         let mut workspace = self.workspace.take();
         let Workspace { planes, pencils } = &mut *workspace;
@@ -210,7 +194,12 @@ impl<const D: usize> BoxConvolution<D> {
             || self.scratch.take(),
             |scratch, (k, plane)| {
                 let (field, last) = (k / self.last_nodes, k % self.last_nodes);
-                self.plane_forth(last, &|i| input(field, i), plane, scratch);
+                self.plane_forth(
+                    last,
+                    &|points, line| input(field, points, line),
+                    plane,
+                    scratch,
+                );
             },
         );
         let planes = &planes[..];
@@ -245,7 +234,7 @@ impl<const D: usize> BoxConvolution<D> {
     fn plane_forth(
         &self,
         last: usize,
-        input: &impl Fn(usize) -> f64,
+        input: &impl Fn(Range<usize>, &mut [f64]),
         plane: &mut [Complex<f64>],
         work: &mut Scratch,
     ) {
@@ -257,10 +246,16 @@ impl<const D: usize> BoxConvolution<D> {
                 spectrum.fill(Complex::default());
                 continue;
             }
-            work.row.fill(0.0);
-            let start = self.row_node(middle, last);
-            for i in points {
-                work.row[self.lattice.node[i] as usize - start] = input(i);
+            let count = points.len();
+            work.row[count..].fill(0.0);
+            input(points.clone(), &mut work.row[..count]);
+            if count < self.lattice.shape[0] {
+                // To their places: never below their number, so from the end.
+                let start = self.row_node(middle, last);
+                for (k, &node) in self.lattice.node[points].iter().enumerate().rev() {
+                    let value = std::mem::take(&mut work.row[k]);
+                    work.row[node as usize - start] = value;
+                }
             }
             self.along_x
                 .forward(&mut work.row, spectrum, &mut work.scratch);
@@ -272,23 +267,24 @@ impl<const D: usize> BoxConvolution<D> {
     /// Transforms all columns of a plane along the middle axis.
     fn along_middle(&self, plane: &mut [Complex<f64>], back: bool, work: &mut Scratch) {
         let (modes, length) = (self.along_x.modes(), self.middle.length);
+        let stride = stride(length);
         if length == 1 {
             return;
         }
         for first in (0..modes).step_by(TILE) {
             let width = TILE.min(modes - first);
-            let lines = &mut work.lines[..width * length];
+            let lines = &mut work.lines[..width * stride];
             for m in 0..length {
                 let row = &plane[m * modes + first..][..width];
                 for (t, value) in row.iter().enumerate() {
-                    lines[t * length + m] = *value;
+                    lines[t * stride + m] = *value;
                 }
             }
             self.middle.apply(lines, back, &mut work.scratch);
             for m in 0..length {
                 let row = &mut plane[m * modes + first..][..width];
                 for (t, value) in row.iter_mut().enumerate() {
-                    *value = lines[t * length + m];
+                    *value = lines[t * stride + m];
                 }
             }
         }
@@ -305,94 +301,42 @@ impl<const D: usize> BoxConvolution<D> {
         work: &mut Scratch,
     ) {
         let (modes, length) = (self.along_x.modes(), self.last.length);
+        let stride = stride(length);
         let plane = self.middle.length * modes;
         let first = tile * TILE;
         let width = TILE.min(modes - first);
         // [field][x mode][last]
-        let lines = &mut work.lines[..F * width * length];
+        let lines = &mut work.lines[..F * width * stride];
         for f in 0..F {
             for t in 0..width {
-                lines[(f * width + t) * length + self.last_nodes..][..length - self.last_nodes]
+                lines[(f * width + t) * stride + self.last_nodes..][..length - self.last_nodes]
                     .fill(Complex::default());
             }
             for l in 0..self.last_nodes {
                 let row =
                     &planes[(f * self.last_nodes + l) * plane + middle * modes + first..][..width];
                 for (t, value) in row.iter().enumerate() {
-                    lines[(f * width + t) * length + l] = *value;
+                    lines[(f * width + t) * stride + l] = *value;
                 }
             }
         }
         self.last.apply(lines, false, &mut work.scratch);
         for t in 0..width {
-            self.multiply::<F>(product, middle, first + t, t, width, lines);
+            let mut rest = &mut lines[..];
+            let mut fields: [&mut [Complex<f64>]; F] = std::array::from_fn(|_| {
+                let (field, others) = std::mem::take(&mut rest).split_at_mut(width * stride);
+                rest = others;
+                &mut field[t * stride..][..length]
+            });
+            self.spectra
+                .multiply::<F>(product, middle, first + t, &mut fields);
         }
         self.last.apply(lines, true, &mut work.scratch);
         for l in 0..self.last_nodes {
             for f in 0..F {
                 let row = &mut out[(l * F + f) * TILE..][..width];
                 for (t, value) in row.iter_mut().enumerate() {
-                    *value = lines[(f * width + t) * length + l];
-                }
-            }
-        }
-    }
-
-    /// Multiplies one pencil of all fields with the kernel.
-    fn multiply<const F: usize>(
-        &self,
-        product: Product,
-        middle: usize,
-        x: usize,
-        t: usize,
-        width: usize,
-        lines: &mut [Complex<f64>],
-    ) {
-        let (length, modes) = (self.last.length, self.last.length / 2 + 1);
-        let mirrored = middle > self.middle.length / 2;
-        let folded = if mirrored {
-            self.middle.length - middle
-        } else {
-            middle
-        };
-        let from = modes * (x + self.along_x.modes() * folded);
-        // The middle axis is y in 3D; the last one is z, or y in 2D.
-        let sign = |p: usize, back: bool| {
-            let (a, b) = self.pairs[p];
-            let odd = |axis: usize| a != b && (a == axis || b == axis);
-            let flips = usize::from(mirrored && D == 3 && odd(1)) + usize::from(back && odd(D - 1));
-            if flips == 1 { -1.0 } else { 1.0 }
-        };
-        for back in [false, true] {
-            // Wave numbers 0 … π as stored, the others mirrored.
-            let range = if back { modes..length } else { 0..modes };
-            let at = |l: usize| from + if back { length - l } else { l };
-            match product {
-                Product::Pair(p) => {
-                    let sign = sign(p, back);
-                    for l in range {
-                        lines[t * length + l] *= sign * self.spectra[p][at(l)];
-                    }
-                }
-                Product::Tensor => {
-                    let mut signs = [1.0; 6];
-                    for p in 0..self.pairs.len() {
-                        signs[p] = sign(p, back);
-                    }
-                    for l in range {
-                        let mut sum = [Complex::default(); F];
-                        let k = at(l);
-                        for (p, &(a, b)) in self.pairs.iter().enumerate() {
-                            let factor = signs[p] * self.spectra[p][k];
-                            sum[a] += lines[(b * width + t) * length + l] * factor;
-                            if a != b {
-                                sum[b] += lines[(a * width + t) * length + l] * factor;
-                            }
-                        }
-                        for f in 0..F {
-                            lines[(f * width + t) * length + l] = sum[f];
-                        }
-                    }
+                    *value = lines[(f * width + t) * stride + l];
                 }
             }
         }
@@ -406,7 +350,7 @@ impl<const D: usize> BoxConvolution<D> {
         pencils: &[Complex<f64>],
         on: &On<'_>,
         out: [&mut [f64]; F],
-        finish: &(impl Fn(usize, usize, f64) -> f64 + Sync),
+        finish: &(impl Fn(usize, Range<usize>, &[f64], &mut [f64]) + Sync),
     ) {
         if range.len() == 1 {
             self.plane_back::<F>(range.start, first, pencils, on, out, finish);
@@ -435,7 +379,7 @@ impl<const D: usize> BoxConvolution<D> {
         pencils: &[Complex<f64>],
         on: &On<'_>,
         out: [&mut [f64]; F],
-        finish: &impl Fn(usize, usize, f64) -> f64,
+        finish: &impl Fn(usize, Range<usize>, &[f64], &mut [f64]),
     ) {
         let points = self.plane_start(last)..self.plane_start(last + 1);
         if count_wanted(on, points) == 0 {
@@ -464,10 +408,16 @@ impl<const D: usize> BoxConvolution<D> {
                 let Scratch { row, scratch, .. } = &mut *work;
                 self.along_x
                     .inverse(&mut plane[m * modes..(m + 1) * modes], row, scratch);
-                let start = self.row_node(m, last);
-                for_each_wanted(on, points, |i| {
-                    let value = row[self.lattice.node[i] as usize - start];
-                    out[i - first] += finish(field, i, value);
+                if points.len() < self.lattice.shape[0] {
+                    let start = self.row_node(m, last);
+                    for (k, &node) in self.lattice.node[points.clone()].iter().enumerate() {
+                        row[k] = row[node as usize - start];
+                    }
+                }
+                for_each_wanted(on, points.clone(), |some| {
+                    let values = &row[some.start - points.start..some.end - points.start];
+                    let out = &mut out[some.start - first..some.end - first];
+                    finish(field, some, values, out);
                 });
             }
         }

@@ -1,11 +1,13 @@
 //! The force operator of linear lattice bodies by convolution.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use super::box_convolution::{BoxConvolution, Product};
+use super::box_convolution::BoxConvolution;
 use super::cost::smooth_length;
 use super::pool::Pool;
 use super::tensor_kernel::{Axis, pairs};
+use super::tensor_spectra::{Product, pair};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
 use crate::archive::{Archive, Saved};
@@ -171,18 +173,7 @@ impl<const D: usize> ConvolutionForce<D> {
         };
         if let Engine::Box(convolution) = &operator.engine {
             operator.diagonal = (0..tensor_pairs.len())
-                .map(|p| {
-                    let mut sums = vec![0.0; n];
-                    let all = On::All;
-                    convolution.add(
-                        Product::Pair(p),
-                        &all,
-                        &|_, _| 1.0,
-                        [&mut sums[..]],
-                        &|_, _, value| value,
-                    );
-                    sums
-                })
+                .map(|p| sums_of_kernel(convolution, p, n))
                 .collect();
         }
         Ok(operator)
@@ -200,24 +191,34 @@ impl<const D: usize> ConvolutionForce<D> {
             Engine::Line(line) => {
                 let mut force = self.fields.take();
                 line.apply_into(u, &mut force);
-                for_each_wanted(on, 0..n, |i| out[i] += force[i]);
+                for_each_wanted(on, 0..n, |points| {
+                    for (out, force) in out[points.clone()].iter_mut().zip(&force[points]) {
+                        *out += force;
+                    }
+                });
             }
             Engine::Box(convolution) => {
                 let origin = self.origin(u);
                 let u = components::<D>(u, n);
-                convolution.add::<D>(
-                    Product::Tensor,
-                    on,
-                    &|c, i| u[c][i] - origin[c],
-                    components_mut::<D>(out, n),
-                    &|a, i, value| {
+                let relative = |c: usize, points: Range<usize>, line: &mut [f64]| {
+                    for (line, u) in line.iter_mut().zip(&u[c][points]) {
+                        *line = u - origin[c];
+                    }
+                };
+                let less_own = |a: usize, points: Range<usize>, values: &[f64], out: &mut [f64]| {
+                    let u = u.map(|u| &u[points.clone()]);
+                    let diagonal: [&[f64]; D] =
+                        std::array::from_fn(|b| &self.diagonal[pair(D, a, b)][points.clone()]);
+                    for k in 0..out.len() {
                         let mut own = 0.0;
                         for b in 0..D {
-                            own += self.diagonal[pair(D, a, b)][i] * (u[b][i] - origin[b]);
+                            own += diagonal[b][k] * (u[b][k] - origin[b]);
                         }
-                        value - own
-                    },
-                );
+                        out[k] += values[k] - own;
+                    }
+                };
+                let out = components_mut::<D>(out, n);
+                convolution.apply::<D>(Product::Tensor, on, &relative, out, &less_own);
             }
         }
     }
@@ -238,13 +239,18 @@ impl<const D: usize> ConvolutionForce<D> {
                 for (p, (a, b)) in pairs(D).into_iter().enumerate() {
                     let times = if a == b { 1.0 } else { 2.0 };
                     let square = |i: usize| times * (u[a][i] - origin[a]) * (u[b][i] - origin[b]);
-                    convolution.add(
-                        Product::Pair(p),
-                        &On::All,
-                        &|_, i| square(i),
-                        [&mut *out],
-                        &|_, i, value| value - self.diagonal[p][i] * square(i),
-                    );
+                    let squares = |_, points: Range<usize>, line: &mut [f64]| {
+                        for (line, i) in line.iter_mut().zip(points) {
+                            *line = square(i);
+                        }
+                    };
+                    let less_own = |_, points: Range<usize>, values: &[f64], out: &mut [f64]| {
+                        for ((out, value), i) in out.iter_mut().zip(values).zip(points) {
+                            *out += value - self.diagonal[p][i] * square(i);
+                        }
+                    };
+                    let all = On::All;
+                    convolution.apply(Product::Pair(p), &all, &squares, [&mut *out], &less_own);
                 }
             }
         }
@@ -255,12 +261,6 @@ fn refuse<T>(reason: &str) -> Result<T> {
     Err(PericlesError::BadConvolution {
         reason: reason.into(),
     })
-}
-
-/// The place of (a, b) among the pairs of components.
-fn pair(dimension: usize, a: usize, b: usize) -> usize {
-    let (a, b) = (a.min(b), a.max(b));
-    if a == b { a } else { dimension + a + b - 1 }
 }
 
 /// Σ |k|/|ξ| over a full family, and whether any k is negative.
@@ -323,16 +323,25 @@ fn count_bonds<const D: usize>(
     let ones = BoxConvolution::<D>::new(lattice, axes, raw, |offset, values: &mut [f64]| {
         values[0] = f64::from(u8::from(bond(offset).is_some()));
     });
-    let mut counts = vec![0.0; cloud.len()];
-    let counted = [&mut counts[..]];
-    ones.add(
-        Product::Pair(0),
+    let counts = sums_of_kernel(&ones, 0, cloud.len());
+    counts.iter().map(|count| count.round() as u64).sum()
+}
+
+/// Σ_j K_p(x_j − x_i) for every point.
+fn sums_of_kernel<const D: usize>(
+    convolution: &BoxConvolution<D>,
+    p: usize,
+    points: usize,
+) -> Vec<f64> {
+    let mut sums = vec![0.0; points];
+    convolution.apply(
+        Product::Pair(p),
         &On::All,
-        &|_, _| 1.0,
-        counted,
-        &|_, _, value| value.round(),
+        &|_, _, line| line.fill(1.0),
+        [&mut sums[..]],
+        &|_, _, values, out| out.copy_from_slice(values),
     );
-    counts.iter().map(|&count| count as u64).sum()
+    sums
 }
 
 impl<const D: usize> LinearOperator for ConvolutionForce<D> {

@@ -7,6 +7,7 @@ mod cost;
 mod fourier;
 mod pool;
 mod tensor_kernel;
+mod tensor_spectra;
 mod toeplitz;
 mod wanted;
 

@@ -88,44 +88,21 @@ impl TensorKernel {
         Self { axes, tables }
     }
 
-    /// K̂_ab = Σ K_ab(o) exp(−i θ·o) on the wave numbers of one octant, times `scale`, at index z + Z (x + X y) for X × Y × Z of them: z fastest,
-    /// because products run along z.
-    pub fn spectra(&self, scale: f64) -> Vec<Vec<f64>> {
-        let plans = self.axes.map(|axis| LineTransform::new(axis.padded));
-        let dimension = match self.tables.len() {
-            1 => 1,
-            3 => 2,
-            _ => 3,
-        };
-        let pairs = pairs(dimension);
-        pairs
-            .iter()
-            .zip(&self.tables)
-            .map(|(&(a, b), table)| {
-                let odd = |axis: usize| a != b && (axis == a || axis == b);
-                // i·i from the two odd axes.
-                let sign = if a == b { scale } else { -scale };
-                self.spectrum(&plans, table, odd, sign)
-            })
-            .collect()
-    }
-
-    fn spectrum(
-        &self,
-        plans: &[LineTransform; 3],
-        table: &[f64],
-        odd: impl Fn(usize) -> bool,
-        scale: f64,
-    ) -> Vec<f64> {
-        let mut values = table.to_vec();
+    /// Σ K_p(o) exp(−i θ·o) on the wave numbers of one octant, times `scale`, at index z + Z (x + X y) for X × Y × Z of them: z fastest, because products
+    /// run along z. `odd` tells under which axes' reflection K_p changes its sign: none or two.
+    pub fn spectrum(&self, p: usize, odd: impl Fn(usize) -> bool, scale: f64) -> Vec<f64> {
+        let mut values = self.tables[p].clone();
+        // i·i from two odd axes.
+        let scale = if (0..3).any(&odd) { -scale } else { scale };
         let mut shape = self.axes.map(|axis| axis.reach + 1);
         for axis in 0..3 {
             // Transform the fastest axis, then make it the slowest: after three rounds the order is x, y, z again.
-            let (lines, modes) = (values.len() / shape[0], self.axes[axis].modes());
+            let plan = LineTransform::new(self.axes[axis].padded);
+            let (lines, modes) = (values.len() / shape[0], plan.modes());
             let mut next = vec![0.0; lines * modes];
-            let mut work = OctantLine::new(&plans[axis]);
+            let mut work = OctantLine::new(&plan);
             for (l, line) in values.chunks(shape[0]).enumerate() {
-                work.transform(&plans[axis], line, odd(axis));
+                work.transform(&plan, line, odd(axis));
                 for (k, mode) in work.spectrum.iter().enumerate() {
                     next[l + lines * k] = if odd(axis) { mode.im } else { mode.re };
                 }

@@ -25,15 +25,18 @@ pub(super) fn count_wanted(on: &On<'_>, range: Range<usize>) -> usize {
     }
 }
 
-/// Visits the wanted points of a range, ascending.
-#[inline(always)]
-pub(super) fn for_each_wanted(on: &On<'_>, range: Range<usize>, mut visit: impl FnMut(usize)) {
+/// Visits the wanted points of a range as ranges, ascending.
+pub(super) fn for_each_wanted(
+    on: &On<'_>,
+    range: Range<usize>,
+    mut visit: impl FnMut(Range<usize>),
+) {
     match on {
-        On::All => range.for_each(visit),
-        On::Range(wanted) => overlap(wanted, &range).for_each(visit),
+        On::All => visit(range),
+        On::Range(wanted) => visit(overlap(wanted, &range)),
         On::Set(set) => {
             for &i in common(set, &range) {
-                visit(i as usize);
+                visit(i as usize..i as usize + 1);
             }
         }
     }
@@ -47,7 +50,7 @@ mod tests {
     fn subsets() {
         let visited = |on: On<'_>, range: Range<usize>| {
             let mut seen = vec![];
-            for_each_wanted(&on, range.clone(), |i| seen.push(i));
+            for_each_wanted(&on, range.clone(), |points| seen.extend(points));
             assert_eq!(seen.len(), count_wanted(&on, range));
             seen
         };
