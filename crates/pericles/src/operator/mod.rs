@@ -6,13 +6,13 @@
 mod bond_force;
 mod bond_kernels;
 pub mod lanes;
-mod linear;
+pub mod linear;
 
 use std::ops::Range;
 
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
 pub use lanes::InstructionSet;
-pub use linear::{ConvolutionForce, Ends, Route, Toeplitz};
+pub use linear::{ConvolutionForce, CostComparison, Ends, Route, Toeplitz};
 
 use crate::archive::Saved;
 

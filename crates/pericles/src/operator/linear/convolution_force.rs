@@ -290,7 +290,11 @@ fn full_family(
 }
 
 /// The axes of a lattice with the lengths of their transforms.
-fn axes<const D: usize>(lattice: &Lattice, raw: usize, periodic: [bool; D]) -> [Axis; 3] {
+pub(super) fn axes<const D: usize>(
+    lattice: &Lattice,
+    raw: usize,
+    periodic: [bool; D],
+) -> [Axis; 3] {
     std::array::from_fn(|c| {
         let nodes = lattice.shape[c];
         if c < D && periodic[c] {
