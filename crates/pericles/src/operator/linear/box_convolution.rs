@@ -5,13 +5,11 @@
 //! no middle axis. Zeros are neither stored nor transformed along the last axis, and along the others as little as possible.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
 
-use super::fourier::LineTransform;
+use super::fourier::{AxisTransform, LineTransform, stride};
 use super::pool::Pool;
 use super::tensor_kernel::Axis;
 use super::tensor_spectra::{Product, TensorSpectra};
@@ -21,49 +19,6 @@ use crate::space::Lattice;
 
 /// Columns taken together when an array is read across its rows: two cache lines.
 const TILE: usize = 8;
-
-/// Numbers between the starts of consecutive lines of a length: not a power of two, which would put all lines into the same few places of the L1 cache.
-fn stride(length: usize) -> usize {
-    length + 4
-}
-
-/// A complex transform of an axis, none if the axis has one node.
-struct AxisTransform {
-    length: usize,
-    plans: Option<[Arc<dyn Fft<f64>>; 2]>,
-}
-
-impl AxisTransform {
-    fn new(length: usize) -> Self {
-        let plans = (length > 1).then(|| {
-            let mut planner = FftPlanner::new();
-            [
-                planner.plan_fft_forward(length),
-                planner.plan_fft_inverse(length),
-            ]
-        });
-        Self { length, plans }
-    }
-
-    fn scratch_len(&self) -> usize {
-        self.plans.as_ref().map_or(0, |plans| {
-            plans
-                .iter()
-                .map(|plan| plan.get_inplace_scratch_len())
-                .max()
-                .unwrap_or(0)
-        })
-    }
-
-    /// Transforms lines that start a [`stride`] apart; `back` to the inverse, not divided by the length.
-    fn apply(&self, lines: &mut [Complex<f64>], back: bool, scratch: &mut [Complex<f64>]) {
-        if let Some(plans) = &self.plans {
-            for line in lines.chunks_mut(stride(self.length)) {
-                plans[usize::from(back)].process_with_scratch(&mut line[..self.length], scratch);
-            }
-        }
-    }
-}
 
 /// Arrays of a whole application.
 struct Workspace {
@@ -101,19 +56,14 @@ pub(super) struct BoxConvolution<const D: usize> {
 
 impl<const D: usize> BoxConvolution<D> {
     /// The convolution with `value(offset)` on a lattice body; `axes` in the lattice's order.
-    pub fn new(
-        lattice: &Lattice,
-        axes: [Axis; 3],
-        raw: usize,
-        value: impl Fn([i64; 3], &mut [f64]),
-    ) -> Self {
+    pub fn new(lattice: &Lattice, axes: [Axis; 3], value: impl Fn([i64; 3], &mut [f64])) -> Self {
         // In 2D y takes the place of z.
         let [x, middle, last] = if D == 2 {
             [axes[0], axes[2], axes[1]]
         } else {
             axes
         };
-        let spectra = TensorSpectra::new([x, middle, last], raw, value);
+        let spectra = TensorSpectra::new([x, middle, last], value);
         let rows = lattice.shape[1] * lattice.shape[2];
         let row_start = (0..=rows)
             .map(|row| {
@@ -172,6 +122,19 @@ impl<const D: usize> BoxConvolution<D> {
             + self.spectra.bytes()
             + size_of_val(&self.row_start[..])
             + size_of_val(&self.lattice.node[..])
+    }
+
+    /// Σ_j K_p(x_j − x_i) for every point.
+    pub fn kernel_sums(&self, p: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; self.lattice.node.len()];
+        self.apply(
+            Product::Pair(p),
+            &On::All,
+            &|_, _, line| line.fill(1.0),
+            [&mut sums[..]],
+            &|_, _, values, out| out.copy_from_slice(values),
+        );
+        sums
     }
 
     /// The products of fields, at the wanted points.

@@ -1,7 +1,8 @@
 //! Convolution or bond list: what one evaluation of a linear body costs either way.
 
-use super::convolution_force::axes;
-use crate::error::{PericlesError, Result, positive};
+use super::refuse;
+use super::tensor_kernel::axes;
+use crate::error::{Result, positive};
 use crate::family::VolumeCorrection;
 use crate::space::PointCloud;
 
@@ -36,9 +37,7 @@ impl CostComparison {
     /// Points that are no lattice, for which there is only the bond list; a horizon that is not positive.
     pub fn new(cloud: &PointCloud, horizon: f64, correction: VolumeCorrection) -> Result<Self> {
         let Some(lattice) = cloud.lattice() else {
-            return Err(PericlesError::BadConvolution {
-                reason: "it needs points on a regular grid; use the bond list for this body".into(),
-            });
+            return refuse("it needs points on a regular grid; use the bond list for this body");
         };
         let horizon = positive("the horizon", horizon)?;
         let dx = lattice.spacing;

@@ -4,9 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::box_convolution::BoxConvolution;
-use super::cost::smooth_length;
+use super::lattice_bonds::{LatticeBonds, OffsetBond};
 use super::pool::Pool;
-use super::tensor_kernel::{Axis, pairs};
+use super::refuse;
+use super::tensor_kernel::{Axis, axes, pairs};
 use super::tensor_spectra::{Product, pair};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
@@ -94,9 +95,6 @@ impl<const D: usize> ConvolutionForce<D> {
         stiffness_of_length: impl Fn(f64) -> f64,
         periodic: [bool; D],
     ) -> Result<Self> {
-        let Some(lattice) = cloud.lattice() else {
-            return refuse("it needs points on a regular grid; use the bond list for this body");
-        };
         if cloud.dimension() != D {
             return Err(PericlesError::WrongDimension {
                 what: "a convolution of this kind",
@@ -104,65 +102,41 @@ impl<const D: usize> ConvolutionForce<D> {
                 dimension: cloud.dimension(),
             });
         }
-        let volume = cloud.volumes()[0];
-        if cloud.volumes().iter().any(|&v| v != volume) {
-            return refuse("it needs points of equal volume; use the bond list for this body");
-        }
-        let dx = lattice.spacing;
-        let reach = correction.reach(horizon, dx);
-        if reach.is_nan() || reach < dx {
-            return Err(PericlesError::HorizonTooSmall {
-                horizon,
-                spacing: dx,
-            });
-        }
-        // k of an offset, and its length and vector; none beyond the horizon. The same arithmetic as the bond list's, so that the same bonds exist.
-        let bond = |offset: [i64; 3]| {
-            let xi = offset.map(|o| o as f64 * dx);
-            let r = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
-            (r > 0.0 && r <= reach).then(|| {
-                let stiffness = stiffness_of_length(r) * correction.factor(r, horizon, dx) * volume;
-                (stiffness, r, xi)
-            })
-        };
-        let raw = (reach / dx).floor() as i64;
-        let (bound, signed) = full_family(raw, D, &bond)?;
-        let tensor_pairs = pairs(D);
+        let (bonds, lattice) = LatticeBonds::new(&cloud, horizon, correction, stiffness_of_length)?;
+        let axes = axes(lattice, bonds.largest_offset(), periodic);
+        let (bound, signed) = bonds.full_family(axes.map(|axis| axis.raw))?;
         let n = cloud.len();
-        let whole_bar = D == 1 && n == lattice.shape[0];
-        let directed_bonds;
-        let engine = if whole_bar {
-            let weight = |r: i64| bond([r, 0, 0]).map_or(0.0, |(stiffness, r, _)| stiffness / r);
-            let weights: Vec<f64> = (1..=raw).map(weight).collect();
+        let (engine, directed_bonds);
+        if D == 1 && n == lattice.shape[0] {
+            let weights: Vec<f64> = (1..=axes[0].raw as i64)
+                .map(|r| bonds.at([r, 0, 0]))
+                .map(|bond| bond.map_or(0.0, |bond| bond.stiffness / bond.length))
+                .collect();
             let ends = if periodic[0] {
                 Ends::Periodic
             } else {
                 Ends::Free
             };
-            directed_bonds = (1..=raw as u64)
-                .map(|r| match ends {
-                    Ends::Periodic => 2 * n as u64,
-                    _ => 2 * (n as u64).saturating_sub(r),
-                })
-                .sum();
-            Engine::Line(Box::new(Toeplitz::stencil(n, &weights, ends)?))
+            engine = Engine::Line(Box::new(Toeplitz::stencil(n, &weights, ends)?));
+            directed_bonds = count_bonds_of_bar(n as u64, axes[0].raw as u64, periodic[0]);
         } else {
-            let axes = axes(lattice, raw as usize, periodic);
-            let raw = raw as usize;
-            directed_bonds = count_bonds::<D>(&cloud, lattice, axes, raw, &bond);
-            Engine::Box(Box::new(BoxConvolution::new(
-                lattice,
-                axes,
-                raw,
-                |offset, values: &mut [f64]| {
-                    if let Some((stiffness, r, xi)) = bond(offset) {
-                        for (value, &(a, b)) in values.iter_mut().zip(&tensor_pairs) {
-                            *value = stiffness * xi[a] * xi[b] / (r * r * r);
-                        }
+            directed_bonds = count_bonds::<D>(lattice, axes, |offset| bonds.at(offset).is_some());
+            let pairs = pairs(D);
+            let kernel = |offset, values: &mut [f64]| {
+                if let Some(OffsetBond {
+                    stiffness,
+                    length,
+                    xi,
+                }) = bonds.at(offset)
+                {
+                    for (value, &(a, b)) in values.iter_mut().zip(&pairs) {
+                        *value = stiffness * xi[a] * xi[b] / length.powi(3);
                     }
-                },
-            )))
-        };
+                }
+            };
+            let convolution = BoxConvolution::new(lattice, axes, kernel);
+            engine = Engine::Box(Box::new(convolution));
+        }
         let mut operator = Self {
             engine,
             diagonal: vec![],
@@ -172,8 +146,8 @@ impl<const D: usize> ConvolutionForce<D> {
             cloud,
         };
         if let Engine::Box(convolution) = &operator.engine {
-            operator.diagonal = (0..tensor_pairs.len())
-                .map(|p| sums_of_kernel(convolution, p, n))
+            operator.diagonal = (0..pairs(D).len())
+                .map(|p| convolution.kernel_sums(p))
                 .collect();
         }
         Ok(operator)
@@ -257,95 +231,29 @@ impl<const D: usize> ConvolutionForce<D> {
     }
 }
 
-fn refuse<T>(reason: &str) -> Result<T> {
-    Err(PericlesError::BadConvolution {
-        reason: reason.into(),
-    })
-}
-
-/// Σ |k|/|ξ| over a full family, and whether any k is negative.
-fn full_family(
-    raw: i64,
-    dimension: usize,
-    bond: &impl Fn([i64; 3]) -> Option<(f64, f64, [f64; 3])>,
-) -> Result<(f64, bool)> {
-    let range = |axis: usize| if axis < dimension { -raw..=raw } else { 0..=0 };
-    let (mut sum, mut signed) = (0.0, false);
-    for z in range(2) {
-        for y in range(1) {
-            for x in range(0) {
-                if let Some((stiffness, r, _)) = bond([x, y, z]) {
-                    if !stiffness.is_finite() {
-                        return refuse(
-                            "the stiffness of every bond must be finite; check the influence function",
-                        );
-                    }
-                    signed |= stiffness < 0.0;
-                    sum += stiffness.abs() / r;
-                }
-            }
-        }
-    }
-    Ok((sum, signed))
-}
-
-/// The axes of a lattice with the lengths of their transforms.
-pub(super) fn axes<const D: usize>(
-    lattice: &Lattice,
-    raw: usize,
-    periodic: [bool; D],
-) -> [Axis; 3] {
-    std::array::from_fn(|c| {
-        let nodes = lattice.shape[c];
-        if c < D && periodic[c] {
-            Axis {
-                nodes,
-                padded: nodes,
-                reach: raw.min(nodes / 2),
-                periodic: true,
-            }
-        } else {
-            let reach = raw.min(nodes - 1);
-            Axis {
-                nodes,
-                padded: smooth_length(nodes + reach),
-                reach,
-                periodic: false,
-            }
-        }
-    })
-}
-
-/// Entries of all families, by the same convolution with a kernel of ones.
+/// Directed bonds, by the same convolution with a kernel of ones.
 fn count_bonds<const D: usize>(
-    cloud: &PointCloud,
     lattice: &Lattice,
     axes: [Axis; 3],
-    raw: usize,
-    bond: &impl Fn([i64; 3]) -> Option<(f64, f64, [f64; 3])>,
+    exists: impl Fn([i64; 3]) -> bool,
 ) -> u64 {
-    let ones = BoxConvolution::<D>::new(lattice, axes, raw, |offset, values: &mut [f64]| {
-        values[0] = f64::from(u8::from(bond(offset).is_some()));
+    let ones = BoxConvolution::<D>::new(lattice, axes, |offset, values: &mut [f64]| {
+        values[0] = f64::from(u8::from(exists(offset)));
     });
-    let counts = sums_of_kernel(&ones, 0, cloud.len());
+    let counts = ones.kernel_sums(0);
     counts.iter().map(|count| count.round() as u64).sum()
 }
 
-/// Σ_j K_p(x_j − x_i) for every point.
-fn sums_of_kernel<const D: usize>(
-    convolution: &BoxConvolution<D>,
-    p: usize,
-    points: usize,
-) -> Vec<f64> {
-    let mut sums = vec![0.0; points];
-    convolution.apply(
-        Product::Pair(p),
-        &On::All,
-        &|_, _, line| line.fill(1.0),
-        [&mut sums[..]],
-        &|_, _, values, out| out.copy_from_slice(values),
-    );
-    sums
+/// The same for a bar.
+fn count_bonds_of_bar(nodes: u64, reach: u64, periodic: bool) -> u64 {
+    let at = |r: u64| {
+        if periodic {
+            nodes
+        } else {
+            nodes.saturating_sub(r)
+        }
+    };
+    (1..=reach).map(|r| 2 * at(r)).sum()
 }
 
 impl<const D: usize> LinearOperator for ConvolutionForce<D> {

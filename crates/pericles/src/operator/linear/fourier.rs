@@ -1,9 +1,10 @@
-//! Convolution of pieces of a line by real Fourier transforms.
+//! Fourier transforms of lines, and convolution by them.
 
 use std::sync::Arc;
 
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::{Fft, FftPlanner};
 
 /// Transforms of a line of real numbers of fixed length, forth and back.
 #[derive(Clone)]
@@ -129,6 +130,49 @@ impl CircularKernel {
         }
         self.transform
             .inverse(&mut work.spectrum, line, &mut work.scratch);
+    }
+}
+
+/// Numbers between the starts of consecutive lines of a length: not a power of two, which would put all lines into the same few places of the L1 cache.
+pub(super) fn stride(length: usize) -> usize {
+    length + 4
+}
+
+/// A complex transform of an axis, none if the axis has one node.
+pub(super) struct AxisTransform {
+    pub length: usize,
+    plans: Option<[Arc<dyn Fft<f64>>; 2]>,
+}
+
+impl AxisTransform {
+    pub fn new(length: usize) -> Self {
+        let plans = (length > 1).then(|| {
+            let mut planner = FftPlanner::new();
+            [
+                planner.plan_fft_forward(length),
+                planner.plan_fft_inverse(length),
+            ]
+        });
+        Self { length, plans }
+    }
+
+    pub fn scratch_len(&self) -> usize {
+        self.plans.as_ref().map_or(0, |plans| {
+            plans
+                .iter()
+                .map(|plan| plan.get_inplace_scratch_len())
+                .max()
+                .unwrap_or(0)
+        })
+    }
+
+    /// Transforms lines that start a [`stride`] apart; `back` to the inverse, not divided by the length.
+    pub fn apply(&self, lines: &mut [Complex<f64>], back: bool, scratch: &mut [Complex<f64>]) {
+        if let Some(plans) = &self.plans {
+            for line in lines.chunks_mut(stride(self.length)) {
+                plans[usize::from(back)].process_with_scratch(&mut line[..self.length], scratch);
+            }
+        }
     }
 }
 

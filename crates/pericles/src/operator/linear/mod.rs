@@ -22,8 +22,8 @@
 //! **Memory and threads.** Work arrays are lent by a pool ([`Toeplitz`] and [`ConvolutionForce`] work by `&self`, from any number of threads at once); once it has
 //! as many as are ever in use together, an application allocates nothing.
 //!
-//! References: overlap-save: Oppenheim & Schafer, Discrete-Time Signal Processing, section 8.7; convolution with a characteristic function of the body:
-//! Jafarzadeh, Wang, Larios & Bobaru, CMAME 375 (2021) 113633.
+//! References: Zhang & Wang, Comput. Methods Appl. Mech. Engrg. 311 (2016) 280–303, for linear bond-based bodies by Toeplitz structure; overlap-save is in
+//! any book on digital signal processing, such as Oppenheim & Schafer's.
 //!
 //! ```
 //! use pericles::operator::{Ends, LinearOperator, Toeplitz};
@@ -40,6 +40,7 @@ mod comparison;
 mod convolution_force;
 mod cost;
 mod fourier;
+mod lattice_bonds;
 mod pool;
 mod tensor_kernel;
 mod tensor_spectra;
@@ -50,3 +51,12 @@ pub use comparison::CostComparison;
 pub use convolution_force::ConvolutionForce;
 pub use cost::Route;
 pub use toeplitz::{Ends, Toeplitz};
+
+use crate::error::{PericlesError, Result};
+
+/// The error of what is no convolution.
+fn refuse<T>(reason: impl Into<String>) -> Result<T> {
+    Err(PericlesError::BadConvolution {
+        reason: reason.into(),
+    })
+}

@@ -5,7 +5,9 @@
 
 use realfft::num_complex::Complex;
 
+use super::cost::smooth_length;
 use super::fourier::LineTransform;
+use crate::space::Lattice;
 
 /// Offsets along an axis, wrapped round a transform of some length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +16,8 @@ pub(super) struct Axis {
     pub nodes: usize,
     /// Length of the transform: the nodes if periodic, else enough that nothing wraps.
     pub padded: usize,
-    /// Largest wrapped offset.
+    /// Largest true offset between two nodes, and largest wrapped one.
+    pub raw: usize,
     pub reach: usize,
     pub periodic: bool,
 }
@@ -26,8 +29,8 @@ impl Axis {
     }
 
     /// Wrapped offsets o ≥ 0 with the true offsets that fall on them, those of the mirrored side left out.
-    fn images(&self, raw: usize) -> Vec<(usize, i64)> {
-        let raw = raw as i64;
+    fn images(&self) -> Vec<(usize, i64)> {
+        let raw = self.raw as i64;
         let from = if self.periodic { -raw } else { 0 };
         (from..=raw)
             .map(|o| {
@@ -41,6 +44,35 @@ impl Axis {
             .filter(|&(wrapped, _)| wrapped <= self.reach)
             .collect()
     }
+}
+
+/// The axes of a lattice with the lengths of their transforms.
+pub(super) fn axes<const D: usize>(
+    lattice: &Lattice,
+    raw: usize,
+    periodic: [bool; D],
+) -> [Axis; 3] {
+    std::array::from_fn(|c| {
+        let nodes = lattice.shape[c];
+        if c < D && periodic[c] {
+            Axis {
+                nodes,
+                padded: nodes,
+                raw,
+                reach: raw.min(nodes / 2),
+                periodic: true,
+            }
+        } else {
+            let reach = raw.min(nodes - 1);
+            Axis {
+                nodes,
+                padded: smooth_length(nodes + reach),
+                raw: reach,
+                reach,
+                periodic: false,
+            }
+        }
+    })
 }
 
 /// Pairs of components, in the order (0,0), (1,1) … and then (0,1), (0,2), (1,2).
@@ -62,16 +94,11 @@ pub(super) struct TensorKernel {
 }
 
 impl TensorKernel {
-    /// `value(offset)` gives K_ab at a true offset, for the pairs in order; `raw` is the largest offset along an axis.
-    pub fn new(
-        axes: [Axis; 3],
-        raw: usize,
-        pairs: usize,
-        value: impl Fn([i64; 3], &mut [f64]),
-    ) -> Self {
+    /// `value(offset)` gives K_ab at a true offset, for the pairs in order.
+    pub fn new(axes: [Axis; 3], pairs: usize, value: impl Fn([i64; 3], &mut [f64])) -> Self {
         let shape = axes.map(|axis| axis.reach + 1);
         let mut tables = vec![vec![0.0; shape.iter().product()]; pairs];
-        let images = axes.map(|axis| axis.images(raw));
+        let images = axes.map(|axis| axis.images());
         let mut values = vec![0.0; pairs];
         for &(z, oz) in &images[2] {
             for &(y, oy) in &images[1] {

@@ -32,12 +32,12 @@ pub(super) fn pair(dimension: usize, a: usize, b: usize) -> usize {
 
 impl<const D: usize> TensorSpectra<D> {
     /// The spectra of K_ab = `value(offset)`; `axes` are x, middle, last, which are x, z, y in 2D.
-    pub fn new(axes: [Axis; 3], raw: usize, value: impl Fn([i64; 3], &mut [f64])) -> Self {
+    pub fn new(axes: [Axis; 3], value: impl Fn([i64; 3], &mut [f64])) -> Self {
         let pairs = pairs(D);
         let scale = 1.0 / axes.iter().map(|axis| axis.padded as f64).product::<f64>();
         // The place of each axis among x, y, z.
         let place = if D == 2 { [0, 2, 1] } else { [0, 1, 2] };
-        let kernel = TensorKernel::new(axes, raw, pairs.len(), |offset, values| {
+        let kernel = TensorKernel::new(axes, pairs.len(), |offset, values| {
             value(place.map(|axis| offset[axis]), values);
         });
         let spectra = pairs

@@ -6,6 +6,7 @@ use super::banded::{TILE, banded_tiles};
 use super::cost::{self, Pieces, Route};
 use super::fourier::{CircularKernel, LineScratch};
 use super::pool::Pool;
+use super::refuse;
 use crate::error::{PericlesError, Result};
 use crate::operator::{InstructionSet, LinearOperator};
 
@@ -110,9 +111,9 @@ impl Toeplitz {
         ends: Ends,
     ) -> Result<Self> {
         if ends == Ends::Free {
-            return Err(PericlesError::BadConvolution {
-                reason: "a product has no bonds that could be absent beyond free ends; use zero or periodic ends, or differences".into(),
-            });
+            return refuse(
+                "a product has no bonds that could be absent beyond free ends; use zero or periodic ends, or differences",
+            );
         }
         Self::with_middle(nodes, centre, below, above, ends, false)
     }
@@ -129,19 +130,15 @@ impl Toeplitz {
             return Err(PericlesError::EmptyBody);
         }
         if below.len() != above.len() {
-            return Err(PericlesError::BadConvolution {
-                reason: format!(
-                    "as many coefficients are needed below as above the diagonal, not {} and {}",
-                    below.len(),
-                    above.len()
-                ),
-            });
+            return refuse(format!(
+                "as many coefficients are needed below as above the diagonal, not {} and {}",
+                below.len(),
+                above.len()
+            ));
         }
         let all = || below.iter().chain(above);
         if let Some(bad) = all().chain([&middle]).find(|t| !t.is_finite()) {
-            return Err(PericlesError::BadConvolution {
-                reason: format!("coefficients must be finite, not {bad}"),
-            });
+            return refuse(format!("coefficients must be finite, not {bad}"));
         }
         let (mut middle, mut below, mut above) = (middle, below.to_vec(), above.to_vec());
         if ends == Ends::Periodic {
