@@ -112,6 +112,12 @@ pub enum PericlesError {
         /// What is missing or has another size.
         reason: String,
     },
+    /// An operator that cannot be applied as a convolution.
+    #[error("convolution: {reason}")]
+    BadConvolution {
+        /// Why, and what is allowed.
+        reason: String,
+    },
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

@@ -25,6 +25,7 @@ mod grid_padded;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;
+pub mod linear;
 mod stencil;
 
 use std::ops::Range;
@@ -34,6 +35,7 @@ pub use bond_force::{BondForce, Breaking, DamageMeasure};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
+pub use linear::{ConvolutionForce, CostComparison, Ends, Route, Toeplitz};
 
 use crate::archive::Saved;
 
