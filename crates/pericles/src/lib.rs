@@ -48,12 +48,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod analysis;
 mod archive;
 pub mod boundary;
 mod error;
 pub mod family;
 pub mod kernel;
 pub mod material;
+mod noise;
 pub mod observe;
 pub mod operator;
 pub mod parallel;
