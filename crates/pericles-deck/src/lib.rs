@@ -30,7 +30,7 @@
 //! let changes = ["material.m=4".to_owned(), "time.ende=1".to_owned()];
 //! let error = Deck::parse(text, "bar.toml", &changes).unwrap_err();
 //! let message = error.to_string();
-//! assert!(message.starts_with("--set:1:6: unknown key `ende` in [time]; did you mean `end`?"));
+//! assert!(message.starts_with("--set time.ende:1:6: unknown key `ende` in [time]; did you mean `end`?"));
 //! ```
 //!
 //! # Numbers

@@ -11,15 +11,14 @@ use crate::finding::Problem;
 use crate::source::{Place, Sources};
 use crate::vocabulary::{canonical, replaces};
 
-/// Under this name overrides appear in messages.
-const SOURCE: &str = "--set";
-
 /// Far more than any deck is deep.
 const DEEPEST: usize = 16;
 
 /// Applies one override to the document.
 pub(crate) fn apply(root: &mut Node, text: &str, sources: &mut Sources) -> Result<(), DeckError> {
-    let source = sources.add(SOURCE, text);
+    // Messages name the key, so that one override is told from another.
+    let key = text.split('=').next().unwrap_or_default().trim();
+    let source = sources.add(&format!("--set {key}"), text);
     set(root, text, source).map_err(|refusal| {
         let fault = Fault::BadOverride {
             text: text.into(),

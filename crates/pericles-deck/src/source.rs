@@ -24,7 +24,7 @@ pub struct Location {
 }
 
 impl Location {
-    /// The file's name as it was given, or `--set` for an override.
+    /// The file's name as it was given, or `--set key` for an override.
     pub fn file(&self) -> &str {
         self.text.name()
     }

@@ -7,9 +7,10 @@
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
+//! | all of these but checkpoints | a simulation, state by state | [`observers`] |
 //!
-//! Everything takes plain slices in the layout of Pericles, one component after the other (`u[c * n + i]`), in SI units, and knows
-//! nothing of physics. Field files, pictures and checkpoints are written whole or not at all ([`write_atomically`]), and their bytes
+//! But for the observers, everything takes plain slices in the layout of Pericles, one component after the other (`u[c * n + i]`), in SI units, and
+//! knows nothing of physics. Field files, pictures and checkpoints are written whole or not at all ([`write_atomically`]), and their bytes
 //! depend on the data alone: no clock, path or thread count. [`IoError`] tells apart what a user can do something about.
 //!
 //! ```
@@ -39,6 +40,7 @@ mod checkpoint;
 mod csv;
 mod error;
 mod folder;
+pub mod observers;
 mod picture;
 mod vtk;
 
@@ -47,5 +49,5 @@ pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
 pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
-pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart};
+pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

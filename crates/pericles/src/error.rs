@@ -149,7 +149,7 @@ pub enum PericlesError {
     },
     /// The time step is larger than the scheme's limit.
     #[error(
-        "the time step {dt} s is unstable: the highest frequency of the body is {omega} 1/s, so {scheme} needs dt ≤ {limit} s (give a smaller dt, \"auto\", or allow_unstable = true)"
+        "the time step {dt:e} s is unstable: the highest frequency of the body is {omega:.4e} 1/s, so {scheme} needs dt ≤ {limit:.4e} s (give a smaller dt, \"auto\", or allow_unstable = true)"
     )]
     UnstableStep {
         /// The step asked for, s.

@@ -45,3 +45,4 @@ pub use colour::ColourMap;
 pub use curve::{Axis, Curve};
 pub use field::{CellSize, FieldPicture};
 pub use line_chart::LineChart;
+pub use units::quantity;

@@ -62,8 +62,8 @@ impl Shown {
     }
 }
 
-/// One quantity with three digits: `46.0 µs`.
-pub(super) fn quantity(value: f64, unit: &str) -> String {
+/// One quantity with three digits and the SI prefix that suits its size: `46.0 µs`.
+pub fn quantity(value: f64, unit: &str) -> String {
     // Rounded first: 999.96 ns is 1.00 µs.
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     let shown = Shown::for_size(rounded.abs(), unit);

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::bond_kernels::{
     Bonds, BreakRule, Rows, Tally, Which, accept_rows, energy_rows, force_rows, tangent_rows,
 };
@@ -387,25 +389,28 @@ impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
     }
 
     fn damage_into(&self, out: &mut [f64]) {
-        for (i, damage) in out.iter_mut().enumerate() {
-            let (mut whole, mut left) = (0.0, 0.0);
-            for (entry, j) in self.bonds.family(i) {
-                let present = self.bonds.present()[entry / LANES] >> (entry % LANES) & 1 == 1;
-                if !(present || self.damage.count_precut) {
-                    continue;
+        out.par_iter_mut()
+            .enumerate()
+            .with_min_len(BLOCK)
+            .for_each(|(i, damage)| {
+                let (mut whole, mut left) = (0.0, 0.0);
+                for (entry, j) in self.bonds.family(i) {
+                    let present = self.bonds.present()[entry / LANES] >> (entry % LANES) & 1 == 1;
+                    if !(present || self.damage.count_precut) {
+                        continue;
+                    }
+                    let weight = if self.damage.count {
+                        1.0
+                    } else {
+                        self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
+                    };
+                    whole += weight;
+                    if self.is_intact(i, entry) {
+                        left += weight;
+                    }
                 }
-                let weight = if self.damage.count {
-                    1.0
-                } else {
-                    self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
-                };
-                whole += weight;
-                if self.is_intact(i, entry) {
-                    left += weight;
-                }
-            }
-            *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-        }
+                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
+            });
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -1,0 +1,160 @@
+//! Initial state, loads, prescribed motions and probes of a model.
+
+use pericles::System;
+use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
+use pericles::observe::Probe as PointProbe;
+use pericles::space::{Point, PointCloud};
+use pericles::time::State;
+
+use super::{Sets, area};
+use crate::caution::Caution;
+use crate::conditions::{LoadAmplitude, ProbePlace};
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::finding::Warning;
+use crate::reader::Path;
+
+impl Deck {
+    /// Entries for the same point replace each other in the order of the deck.
+    pub(super) fn initial_state(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+    ) -> Result<State, DeckError> {
+        let n = cloud.len();
+        let mut state = State::at_rest(cloud.dimension() * n);
+        for (k, initial) in self.initial.iter().enumerate() {
+            let points = self.members(sets, &initial.set, &Path::from("initial").index(k))?;
+            let fields = [
+                (&initial.displacement, &mut state.u),
+                (&initial.velocity, &mut state.v),
+            ];
+            for (vector, field) in fields {
+                let Some(vector) = vector else { continue };
+                for c in 0..cloud.dimension() {
+                    for &i in points {
+                        field[c * n + i as usize] = vector[c];
+                    }
+                }
+            }
+        }
+        Ok(state)
+    }
+
+    pub(super) fn add_loads(
+        &self,
+        system: &mut System,
+        cloud: &PointCloud,
+        sets: &Sets,
+    ) -> Result<(), DeckError> {
+        for (k, load) in self.loads.iter().enumerate() {
+            let path = Path::from("load").index(k);
+            let points = self.members(sets, &load.set, &path)?.clone();
+            let load = match &load.amplitude {
+                LoadAmplitude::BodyForce(density) => BodyLoad {
+                    points,
+                    density: *density,
+                    function: load.function,
+                },
+                LoadAmplitude::Traction { traction, area } => {
+                    let area = match area {
+                        Some(area) => *area,
+                        None => self
+                            .loaded_area(cloud, &load.set, &points, traction)
+                            .map_err(|reason| {
+                                self.at_path(&path.key("traction"), Fault::UnknownArea { reason })
+                            })?,
+                    };
+                    BodyLoad::traction(cloud, points, *traction, area, load.function)
+                }
+            };
+            system.add_load(load);
+        }
+        Ok(())
+    }
+
+    fn loaded_area(
+        &self,
+        cloud: &PointCloud,
+        set: &str,
+        points: &[u32],
+        traction: &[f64; 3],
+    ) -> Result<f64, &'static str> {
+        let region = self.sets.iter().find(|named| named.name == set);
+        let axis = area::normal_axis(region.map(|named| &named.region), traction)?;
+        Ok(area::seen_along(cloud, points, axis))
+    }
+
+    pub(super) fn add_motions(
+        &self,
+        system: &mut System,
+        state: &State,
+        sets: &Sets,
+    ) -> Result<(), DeckError> {
+        let mut names: Vec<String> = Vec::new();
+        for (k, motion) in self.prescribe.iter().enumerate() {
+            // Two motions of one set (along different axes) need two names in tables.
+            let mut name = motion.set.clone();
+            let mut number = 1;
+            while names.contains(&name) {
+                number += 1;
+                name = format!("{}_{number}", motion.set);
+            }
+            names.push(name.clone());
+            let path = Path::from("prescribe").index(k);
+            let prescribed = PrescribedMotion::new(
+                name,
+                self.members(sets, &motion.set, &path)?.clone(),
+                motion.kind,
+                motion.amplitude,
+                motion.function,
+                &state.u,
+                system.points(),
+            );
+            system
+                .add_motion(prescribed)
+                .map_err(|error| self.at_path(&path, error.into()))?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn point_probes(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Vec<PointProbe>, DeckError> {
+        let mut probes = Vec::new();
+        for (k, probe) in self.probes.iter().enumerate() {
+            let path = Path::from("probe").index(k);
+            let points = match &probe.place {
+                ProbePlace::Set(set) => self.members(sets, set, &path)?.clone(),
+                ProbePlace::At(place) => {
+                    let (nearest, distance) = nearest(cloud, *place);
+                    // Inside a cell no place is farther from its centre than half a diagonal.
+                    let diagonal = (cloud.dimension() as f64).sqrt() * cloud.spacing();
+                    if distance > 0.5 * diagonal * (1.0 + 1e-9) {
+                        let name = probe.name.clone();
+                        let caution = Caution::ProbeOutside { name, distance };
+                        warnings.push(self.finding(&path.key("at"), caution));
+                    }
+                    vec![nearest]
+                }
+            };
+            probes.push(PointProbe {
+                name: probe.name.clone(),
+                points,
+            });
+        }
+        Ok(probes)
+    }
+}
+
+/// The point nearest to a place, and its distance.
+fn nearest(cloud: &PointCloud, place: Point) -> (u32, f64) {
+    let nearest = cloud.nearest(place);
+    let found = cloud.point(nearest);
+    let square: f64 = (0..3).map(|c| (found[c] - place[c]).powi(2)).sum();
+    (nearest as u32, square.sqrt())
+}

@@ -1,0 +1,69 @@
+//! Crack tips over time.
+
+use std::path::PathBuf;
+
+use pericles::observe::{CrackTracker, Field, ObserveError, Observer, Snapshot};
+use pericles::{Archive, Result, Saved};
+
+use super::table::{AXES, ObserverTable, step_and_time, whole};
+use crate::csv::{Cell, Column};
+
+/// The tip of the crack that grows from each pre-crack: `cracks.csv`.
+///
+/// One row per crack and output. Columns: step, time, crack (numbered from 1 in the order of the deck), reference position of the tip, its advance from
+/// the pre-crack, points of the crack. While the crack has not grown by a spacing the position is empty and the advance zero: points beside the
+/// pre-crack may count as damaged from the start.
+pub struct Cracks {
+    table: ObserverTable,
+    tracker: CrackTracker,
+    dimension: usize,
+}
+
+impl Cracks {
+    /// The tips found by a tracker in a body of this dimension.
+    pub fn new(path: impl Into<PathBuf>, tracker: CrackTracker, dimension: usize) -> Self {
+        let mut columns = step_and_time();
+        columns.push(Column::integer("crack"));
+        for axis in &AXES[..dimension] {
+            columns.push(Column::real(format!("tip_{axis}"), "m"));
+        }
+        columns.push(Column::real("advance", "m"));
+        columns.push(Column::integer("points"));
+        Self {
+            table: ObserverTable::new(path.into(), "observer/cracks", columns),
+            tracker,
+            dimension,
+        }
+    }
+}
+
+impl Observer for Cracks {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        self.table.touch()?;
+        let state = snapshot.state();
+        let damage = snapshot.field(Field::Damage);
+        let cloud = snapshot.system().cloud();
+        let tips = self.tracker.tips(cloud, damage);
+        for (tip, number) in tips.into_iter().zip(1..) {
+            let tip = tip.filter(|tip| tip.advance > cloud.spacing());
+            let mut row = vec![whole(state.step), state.t.into(), whole(number)];
+            for c in 0..self.dimension {
+                row.push(Cell::Real(tip.map_or(f64::NAN, |tip| tip.place[c])));
+            }
+            row.push(tip.map_or(0.0, |tip| tip.advance).into());
+            row.push(whole(tip.map_or(0, |tip| tip.points as u64)));
+            self.table.append(&row)?;
+        }
+        Ok(())
+    }
+}
+
+impl Saved for Cracks {
+    fn save(&self, archive: &mut Archive) {
+        self.table.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.table.restore(archive)
+    }
+}

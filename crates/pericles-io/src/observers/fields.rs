@@ -1,0 +1,122 @@
+//! Fields on the points over time.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+use pericles::observe::{Field, ObserveError, Observer, Snapshot};
+use pericles::space::PointCloud;
+use pericles::{Archive, Result, Saved, Values};
+
+use super::table::misfit;
+use crate::error::IoError;
+use crate::vtk::{PvdSeries, VtkField, VtuFile};
+
+const KEY: &str = "observer/fields";
+
+/// All fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's numbering of the points.
+///
+/// The files hold the reference positions; displaced ones are a "Warp By Vector" away. Their bytes depend on the state alone.
+pub struct FieldSeries {
+    folder: PathBuf,
+    single_precision: bool,
+    series: Option<PvdSeries>,
+}
+
+impl FieldSeries {
+    /// A series in an output folder, whose sub-folder `fields` must be there.
+    pub fn new(folder: impl Into<PathBuf>, single_precision: bool) -> Self {
+        Self {
+            folder: folder.into(),
+            single_precision,
+            series: None,
+        }
+    }
+
+    fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
+        let series = match &mut self.series {
+            Some(series) => series,
+            none => none.insert(PvdSeries::create(self.folder.join("fields.pvd"))?),
+        };
+        let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
+        let numbering = Numbering::of(cloud);
+        let positions = numbering.apply(cloud.positions());
+        let arrays = Field::ALL.map(|field| numbering.apply(snapshot.field(field)));
+        let mut file = VtuFile::new(cloud.dimension(), &positions).time(state.t);
+        for (field, array) in Field::ALL.into_iter().zip(&arrays) {
+            let column = if field.is_vector() {
+                VtkField::vector(field.name(), array)
+            } else {
+                VtkField::scalar(field.name(), array)
+            };
+            file = file.field(if self.single_precision {
+                column.in_single_precision()
+            } else {
+                column
+            });
+        }
+        let name = PvdSeries::field_file(series.len());
+        file.write(self.folder.join(&name))?;
+        series.push(state.t, &name)
+    }
+}
+
+impl Observer for FieldSeries {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        Ok(self.write(snapshot)?)
+    }
+}
+
+impl Saved for FieldSeries {
+    fn save(&self, archive: &mut Archive) {
+        let entries = self.series.as_ref().map_or(0, PvdSeries::len);
+        archive.put(KEY, Values::U64(vec![entries as u64]));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let mut entries = 0;
+        archive.u64_into(KEY, std::slice::from_mut(&mut entries))?;
+        self.series = (entries > 0)
+            .then(|| PvdSeries::reopen(self.folder.join("fields.pvd"), entries as usize))
+            .transpose()
+            .map_err(misfit)?;
+        Ok(())
+    }
+}
+
+/// The way from the cloud's order of points to the user's; none if they are the same.
+struct Numbering(Option<Vec<usize>>);
+
+impl Numbering {
+    fn of(cloud: &PointCloud) -> Self {
+        let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.user_number(i)).collect();
+        let same = numbers.iter().enumerate().all(|(i, &number)| i == number);
+        Self((!same).then_some(numbers))
+    }
+
+    /// A component-major array in the user's order.
+    fn apply<'a>(&self, array: &'a [f64]) -> Cow<'a, [f64]> {
+        let Some(numbers) = &self.0 else {
+            return Cow::Borrowed(array);
+        };
+        let n = numbers.len();
+        let mut ordered = vec![0.0; array.len()];
+        for (from, to) in array.chunks(n).zip(ordered.chunks_mut(n)) {
+            for (&value, &number) in from.iter().zip(numbers) {
+                to[number] = value;
+            }
+        }
+        Cow::Owned(ordered)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_written_in_the_user_s_order() {
+        let numbering = Numbering(Some(vec![2, 0, 1]));
+        let ordered = numbering.apply(&[10.0, 20.0, 30.0, 1.0, 2.0, 3.0]);
+        assert_eq!(*ordered, [20.0, 30.0, 10.0, 2.0, 3.0, 1.0]);
+    }
+}

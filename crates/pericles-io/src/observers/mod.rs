@@ -1,0 +1,66 @@
+//! Observers that write files: what a run leaves behind.
+//!
+//! | observer | files | content |
+//! |---|---|---|
+//! | [`FieldSeries`] | `fields.pvd`, `fields/fields_000000.vtu` … | all fields on the points |
+//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds |
+//! | [`Reactions`] | `reactions.csv` | forces of supports |
+//! | [`Cracks`] | `cracks.csv` | crack tips |
+//! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
+//! | [`Pictures`] | `pictures/Damage-000000.png` … | a field as a picture |
+//!
+//! What they write depends on the states they are shown alone: no clock, path or number of threads enters a file. Each remembers in a checkpoint how
+//! much it has written ([`Saved`](pericles::Saved)); restored, it cuts its files back to that and goes on, so that the files of a stopped and resumed
+//! run equal those of an uninterrupted one byte for byte. Rows reach the system as they are written, and the disk before a checkpoint does.
+//!
+//! Errors of files travel through the simulation as boxed [`IoError`](crate::IoError).
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use std::sync::Arc;
+//! use pericles::family::{BondList, VolumeCorrection};
+//! use pericles::material::BondStretch;
+//! use pericles::observe::Schedule;
+//! use pericles::operator::{BondForce, Breaking, DamageMeasure};
+//! use pericles::space::{Grid, Shape};
+//! use pericles::time::{State, VelocityVerlet};
+//! use pericles::{PointScalar, Simulation, System};
+//! use pericles_io::observers::History;
+//!
+//! let shape = Shape::Box { origin: [0.0; 3], size: vec![1.0] };
+//! let bar = Grid { shape, spacing: 0.1, section: 1.0, holes: vec![] };
+//! let cloud = Arc::new(bar.points()?);
+//! let bonds = BondList::new(&cloud, 0.3, VolumeCorrection::Extended)?;
+//! let never = Breaking { critical_stretch: f64::INFINITY, no_fail: &[] };
+//! let force = BondForce::<BondStretch, 1>::with_stiffness(cloud.clone(), bonds, |_| 20.0, never, DamageMeasure::default());
+//! let system = System::new(cloud, Box::new(force), PointScalar::Uniform(1.0))?;
+//! let mut state = State::at_rest(10);
+//! state.v[0] = 0.01;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("history.csv");
+//! let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 0.05, 100);
+//! simulation.observe(Schedule::Every(10), Box::new(History::new(&path, 1)));
+//! simulation.run(|_| pericles::Control::Continue)?;
+//! assert_eq!(pericles_io::read_csv(&path)?.rows(), 11);
+//! # Ok(())
+//! # }
+//! ```
+
+mod cracks;
+mod fields;
+mod history;
+mod pictures;
+mod probes;
+mod reactions;
+mod table;
+
+pub use cracks::Cracks;
+pub use fields::FieldSeries;
+pub use history::History;
+pub use pictures::{PictureOf, Pictures};
+pub use probes::Probes;
+pub use reactions::Reactions;
+
+#[cfg(test)]
+mod tests;

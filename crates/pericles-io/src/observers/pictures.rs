@@ -1,0 +1,154 @@
+//! A field as a picture, time after time.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+use pericles::observe::{Field, ObserveError, Observer, Snapshot};
+use pericles::{Archive, Result, Saved, Values};
+
+use super::table::AXES;
+use crate::error::IoError;
+use crate::picture::{CellSize, ColourMap, FieldPicture};
+
+/// What a picture shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureOf {
+    /// The field.
+    pub field: Field,
+    /// Which component of a vector; its magnitude if none.
+    pub component: Option<usize>,
+    /// By how much displacements are enlarged.
+    pub scale: f64,
+    /// Values at the ends of the colour bar; if none, 0 and 1 for damage and those of each picture for other fields.
+    pub range: Option<[f64; 2]>,
+    /// The line above the picture.
+    pub title: String,
+}
+
+impl PictureOf {
+    /// A field, vectors by magnitude, on the points as they are displaced.
+    pub fn new(field: Field) -> Self {
+        Self {
+            field,
+            component: None,
+            scale: 1.0,
+            range: None,
+            title: String::new(),
+        }
+    }
+
+    /// `Damage`, `Velocity`, `Velocity_x` …
+    pub fn name(&self) -> String {
+        match self.component {
+            Some(component) => format!("{}_{}", self.field.name(), AXES[component]),
+            None => self.field.name().to_owned(),
+        }
+    }
+
+    /// Draws the picture of a state into a file.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn draw(&self, snapshot: &Snapshot<'_>, path: PathBuf) -> std::result::Result<(), IoError> {
+        let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
+        let n = cloud.len();
+        let values = scalar(snapshot.field(self.field), n, self.component);
+        let sizes: Vec<f64>;
+        let cell = if cloud.lattice().is_some() {
+            CellSize::Uniform(cloud.spacing())
+        } else {
+            sizes = (0..n).map(|i| cloud.cell_size(i)).collect();
+            CellSize::PerPoint(&sizes)
+        };
+        let colours = if self.component.is_some() {
+            ColourMap::Diverging
+        } else {
+            ColourMap::Viridis
+        };
+        let mut picture = FieldPicture::new(cloud.dimension(), cloud.positions(), &values, cell)
+            .label(self.name(), self.field.unit())
+            .displacement(&state.u, self.scale)
+            .title(&self.title)
+            .time(state.t)
+            .colours(colours);
+        let whole = (self.field == Field::Damage).then_some([0.0, 1.0]);
+        if let Some([low, high]) = self.range.or(whole) {
+            picture = picture.range(low, high);
+        }
+        picture.write(path)
+    }
+}
+
+/// One number per point: the field itself, a component, or a vector's magnitude.
+fn scalar(field: &[f64], n: usize, component: Option<usize>) -> Cow<'_, [f64]> {
+    if let Some(component) = component {
+        return Cow::Borrowed(&field[component * n..(component + 1) * n]);
+    }
+    if field.len() == n {
+        return Cow::Borrowed(field);
+    }
+    let magnitude = |i: usize| {
+        field
+            .chunks(n)
+            .map(|component| component[i].powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    Cow::Owned((0..n).map(magnitude).collect())
+}
+
+/// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder.
+pub struct Pictures {
+    folder: PathBuf,
+    stem: String,
+    what: PictureOf,
+    drawn: u64,
+}
+
+impl Pictures {
+    /// Pictures in a folder that is there; the stem tells them from those of other observers.
+    pub fn new(folder: impl Into<PathBuf>, stem: impl Into<String>, what: PictureOf) -> Self {
+        Self {
+            folder: folder.into(),
+            stem: stem.into(),
+            what,
+            drawn: 0,
+        }
+    }
+
+    fn key(&self) -> String {
+        format!("observer/pictures/{}", self.stem)
+    }
+}
+
+impl Observer for Pictures {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        let name = format!("{}-{:06}.png", self.stem, self.drawn);
+        self.what.draw(snapshot, self.folder.join(name))?;
+        self.drawn += 1;
+        Ok(())
+    }
+}
+
+impl Saved for Pictures {
+    fn save(&self, archive: &mut Archive) {
+        archive.put(self.key(), Values::U64(vec![self.drawn]));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        archive.u64_into(&self.key(), std::slice::from_mut(&mut self.drawn))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_become_scalars() {
+        let field = [3.0, 0.0, -4.0, 2.0];
+        assert_eq!(*scalar(&field, 2, None), [5.0, 2.0]);
+        assert_eq!(*scalar(&field, 2, Some(1)), [-4.0, 2.0]);
+        assert_eq!(*scalar(&field[..2], 2, None), [3.0, 0.0]);
+    }
+}

@@ -1,0 +1,64 @@
+//! Displacement and velocity at chosen places over time.
+
+use std::path::PathBuf;
+
+use pericles::observe::{ObserveError, Observer, Probe, Snapshot};
+use pericles::{Archive, Result, Saved};
+
+use super::table::{AXES, ObserverTable, step_and_time, whole};
+use crate::csv::{Cell, Column};
+
+/// The readings of probes: `probes.csv`.
+///
+/// Columns: step, time, then for each probe `<name>_u_<axis>` (m) and `<name>_v_<axis>` (m/s).
+pub struct Probes {
+    table: ObserverTable,
+    probes: Vec<Probe>,
+    dimension: usize,
+}
+
+impl Probes {
+    /// Probes in a body of this dimension.
+    pub fn new(path: impl Into<PathBuf>, probes: Vec<Probe>, dimension: usize) -> Self {
+        let mut columns = step_and_time();
+        for probe in &probes {
+            for (letter, unit) in [("u", "m"), ("v", "m/s")] {
+                for axis in &AXES[..dimension] {
+                    columns.push(Column::real(
+                        format!("{}_{letter}_{axis}", probe.name),
+                        unit,
+                    ));
+                }
+            }
+        }
+        Self {
+            table: ObserverTable::new(path.into(), "observer/probes", columns),
+            probes,
+            dimension,
+        }
+    }
+}
+
+impl Observer for Probes {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        let state = snapshot.state();
+        let mut row = vec![whole(state.step), state.t.into()];
+        for probe in &self.probes {
+            let reading = probe.read(snapshot);
+            for vector in [reading.displacement, reading.velocity] {
+                row.extend(vector[..self.dimension].iter().map(|&x| Cell::Real(x)));
+            }
+        }
+        Ok(self.table.append(&row)?)
+    }
+}
+
+impl Saved for Probes {
+    fn save(&self, archive: &mut Archive) {
+        self.table.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.table.restore(archive)
+    }
+}

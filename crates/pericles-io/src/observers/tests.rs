@@ -1,0 +1,246 @@
+//! A small plate that breaks under the eyes of all observers.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
+use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
+use pericles::material::BondStretch;
+use pericles::observe::{CrackTracker, Field, Probe, Schedule, TrackedCrack};
+use pericles::operator::{BondForce, Breaking, DamageMeasure};
+use pericles::space::{Face, Grid, Region, Shape};
+use pericles::time::{State, VelocityVerlet};
+use pericles::{Archive, Control, Outcome, PointScalar, Saved, Simulation, System};
+
+use super::*;
+use crate::{IoError, read_csv};
+
+const STEPS: u64 = 60;
+
+/// A notched plate whose upper edge is pulled at constant speed while the lower one is held.
+fn simulation(folder: &Path) -> Simulation {
+    let shape = Shape::Box {
+        origin: [0.0; 3],
+        size: vec![12.0, 8.0],
+    };
+    let grid = Grid {
+        shape,
+        spacing: 1.0,
+        section: 1.0,
+        holes: vec![],
+    };
+    let cloud = Arc::new(grid.points().unwrap());
+    let mut bonds = BondList::new(&cloud, 2.0, VolumeCorrection::Extended).unwrap();
+    let crack = Crack::Segment {
+        from: [0.0, 4.0],
+        to: [4.0, 4.0],
+    };
+    let points = bonds.cut(&cloud, &crack, EndRule::Closed).unwrap().points;
+    let breaking = Breaking {
+        critical_stretch: 0.02,
+        no_fail: &[],
+    };
+    let force = BondForce::<BondStretch, 2>::with_stiffness(
+        cloud.clone(),
+        bonds,
+        |_| 1.0,
+        breaking,
+        DamageMeasure::default(),
+    );
+    let mut system =
+        System::new(cloud.clone(), Box::new(force), PointScalar::Uniform(1.0)).unwrap();
+    let state = State::at_rest(2 * cloud.len());
+    for (name, speed) in [("-y", 0.0), ("+y", 0.02)] {
+        let layer = cloud.select(&Region::Layer {
+            face: Face::named(name).unwrap(),
+            depth: 1.0,
+        });
+        let motion = PrescribedMotion::new(
+            name.into(),
+            layer,
+            MotionKind::Velocity,
+            [None, Some(speed), None],
+            TimeFunction::Constant,
+            &state.u,
+            cloud.len(),
+        );
+        system.add_motion(motion).unwrap();
+    }
+    let reactions = Reactions::new(folder.join("reactions.csv"), system.motions());
+    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 0.2, STEPS);
+    let tracker = CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35);
+    let probe = Probe {
+        name: "corner".into(),
+        points: vec![0],
+    };
+    fs::create_dir_all(folder.join("fields")).unwrap();
+    fs::create_dir_all(folder.join("pictures")).unwrap();
+    let pictures = Pictures::new(
+        folder.join("pictures"),
+        "Damage",
+        PictureOf::new(Field::Damage),
+    );
+    let cracks = Cracks::new(folder.join("cracks.csv"), tracker, 2);
+    let history = History::new(folder.join("history.csv"), 2);
+    let probes = Probes::new(folder.join("probes.csv"), vec![probe], 2);
+    simulation.observe(Schedule::Every(4), Box::new(history));
+    simulation.observe(Schedule::Every(4), Box::new(reactions));
+    simulation.observe(Schedule::Every(6), Box::new(cracks));
+    simulation.observe(Schedule::Every(5), Box::new(probes));
+    simulation.observe(
+        Schedule::Every(20),
+        Box::new(FieldSeries::new(folder, false)),
+    );
+    simulation.observe(Schedule::Every(30), Box::new(pictures));
+    simulation
+}
+
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(place) = open.pop() {
+        for entry in fs::read_dir(place).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap();
+                found.insert(name.display().to_string(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn whole_run(folder: &Path) -> Simulation {
+    let mut simulation = simulation(folder);
+    let outcome = simulation.run(|_| Control::Continue).unwrap();
+    assert_eq!(outcome, Outcome::Finished);
+    simulation
+}
+
+#[test]
+fn tables_agree_with_the_simulation() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = whole_run(folder.path());
+    let read = |name: &str| read_csv(folder.path().join(name)).unwrap();
+
+    let history = read("history.csv");
+    assert_eq!(history.rows() as u64, STEPS / 4 + 1);
+    let energies = run.snapshot().energies();
+    let last = |name: &str| *history.column(name).unwrap().last().unwrap();
+    assert_eq!(last("kinetic_energy"), energies.kinetic);
+    assert_eq!(last("external_work"), energies.work);
+    assert_eq!(last("step"), STEPS as f64);
+    let broken = run.system().operator().broken_bonds();
+    assert!(
+        broken > 10,
+        "the plate must break for this test to mean anything: {broken}"
+    );
+    assert_eq!(last("broken_bonds"), broken as f64);
+    let sum = last("kinetic_energy") + last("elastic_energy") + last("dissipated_energy");
+    // The pulled layer moves from the start.
+    let initial = history.column("kinetic_energy").unwrap()[0];
+    assert!(initial > 0.0);
+    let balance = sum + last("scheme_correction") - last("external_work") - initial;
+    assert!((balance - last("balance")).abs() < 1e-12 * sum);
+
+    // The support at the top pulls upwards.
+    let reactions = read("reactions.csv");
+    assert!(reactions.column("+y_y").unwrap()[5] > 0.0);
+    assert!(
+        reactions.column("+y_x").is_none(),
+        "free axes have no column"
+    );
+
+    let cracks = read("cracks.csv");
+    let advance = cracks.column("advance").unwrap();
+    assert_eq!(advance[0], 0.0);
+    assert!(advance.last().unwrap() > &0.4);
+    let tip = cracks.column("tip_x").unwrap();
+    assert!(tip[0].is_nan() && tip.last().unwrap() > &4.0);
+
+    let probes = read("probes.csv");
+    assert_eq!(probes.rows() as u64, STEPS / 5 + 1);
+    assert_eq!(
+        probes.column("corner_u_x").unwrap().last(),
+        run.state().u.first()
+    );
+
+    let written = files(folder.path());
+    for name in [
+        "fields/fields_000003.vtu",
+        "pictures/Damage-000002.png",
+        "fields.pvd",
+    ] {
+        assert!(written.contains_key(name), "{name}");
+    }
+}
+
+#[test]
+fn stopped_and_resumed_runs_leave_the_same_bytes() {
+    let whole = tempfile::tempdir().unwrap();
+    whole_run(whole.path());
+    let expected = files(whole.path());
+
+    for stop in [1, 23, 40, STEPS - 1] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut first = simulation(folder.path());
+        let mut archive = Archive::default();
+        // The checkpoint lies a few steps before the stop: what was written in between must be cut off.
+        first
+            .run(|run| {
+                if run.state().step == stop {
+                    archive = Archive::default();
+                    run.save(&mut archive);
+                }
+                if run.state().step == stop + 7 {
+                    Control::Stop
+                } else {
+                    Control::Continue
+                }
+            })
+            .unwrap();
+        drop(first);
+        let mut second = simulation(folder.path());
+        second.restore(&archive).unwrap();
+        second.run(|_| Control::Continue).unwrap();
+        let found = files(folder.path());
+        assert_eq!(
+            found.keys().collect::<Vec<_>>(),
+            expected.keys().collect::<Vec<_>>()
+        );
+        for (name, bytes) in &expected {
+            assert!(
+                found[name] == *bytes,
+                "{name} differs after a stop at {stop}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_table_that_was_tampered_with_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = whole_run(folder.path());
+    let mut archive = Archive::default();
+    run.save(&mut archive);
+    fs::write(folder.path().join("probes.csv"), "step\n").unwrap();
+    let error = simulation(folder.path()).restore(&archive).unwrap_err();
+    assert!(error.to_string().contains("probes.csv"), "{error}");
+}
+
+#[test]
+fn trouble_with_a_file_arrives_as_an_io_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = simulation(folder.path());
+    fs::remove_dir(folder.path().join("fields")).unwrap();
+    let error = run.run(|_| Control::Continue).unwrap_err();
+    let pericles::SimulationError::Observe(source) = error else {
+        panic!("{error}");
+    };
+    let source = source.downcast_ref::<IoError>().unwrap();
+    assert!(source.is_output_problem(), "{source}");
+}
