@@ -48,6 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod analysis;
 mod archive;
 pub mod bench;
 pub mod boundary;
@@ -55,6 +56,7 @@ mod error;
 pub mod family;
 pub mod kernel;
 pub mod material;
+mod noise;
 pub mod observe;
 pub mod operator;
 pub mod parallel;

@@ -74,18 +74,19 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
             no_fail,
         };
         let stiffness =
-            |r: f64| constants.micromodulus * material.influence.alpha(r, material.horizon);
+            |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
         Self::with_stiffness(cloud, bonds, stiffness, breaking, damage)
     }
 
-    /// An operator whose bonds have the stiffness c α(r) given as a function of their reference length r.
+    /// An operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m; missing components are zero.
+    /// It must be the same for ξ and −ξ.
     ///
     /// # Panics
     /// If the cloud has another dimension than D.
     pub fn with_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
-        stiffness_of_length: impl Fn(f64) -> f64,
+        stiffness_of_bond: impl Fn([f64; 3]) -> f64,
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
@@ -94,9 +95,9 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         let mut stiffness = vec![0.0; bonds.neighbours().len()];
         for i in 0..n {
             for (entry, j) in bonds.family(i) {
-                let r = bonds.length(&cloud, i, j);
-                stiffness[entry] =
-                    stiffness_of_length(r) * bonds.volume_factor(&cloud, i, j) * cloud.volumes()[j];
+                stiffness[entry] = stiffness_of_bond(bonds.vector(&cloud, i, j))
+                    * bonds.volume_factor(&cloud, i, j)
+                    * cloud.volumes()[j];
             }
         }
         // Integer coordinates make bonds of equal offset equal to the last bit.
