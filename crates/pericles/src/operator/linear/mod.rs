@@ -15,6 +15,16 @@
 //! [`CostComparison`] does the same for convolution against the bond list. Nothing is timed at run time, because the route decides how results
 //! are rounded.
 //!
+//! **Cost**, CPU ms of one product of N = 10⁶ points on one core (AMD EPYC, AVX-512):
+//!
+//! | R | 10 | 20 | 25 | 30 | 50 | 100 | 200 | 500 | 1000 |
+//! |---|---|---|---|---|---|---|---|---|---|
+//! | banded loop | **2.1** | **3.2** | 3.8 | 4.4 | 6.6 | 12.4 | 23.8 | | |
+//! | overlap-save | 3.8 | 3.9 | **3.7** | **3.9** | **4.6** | **4.7** | **5.0** | **5.7** | **6.2** |
+//! | one transform | 13 | 12 | 14 | 13 | 12 | 12 | 12 | 12 | 12 |
+//!
+//! (bold: chosen). Lattice bodies take some 15 ns per point in 2D and 50 to 100 ns in 3D, about what the bond list takes for 3 to 20 neighbours.
+//!
 //! **Accuracy.** All routes agree with the sums to some 1e-15 of Σ|K| max|u|. Displacements are taken relative to a point's, so that rigid translations
 //! give exactly zero. Results have the same bits for any number of threads and any [`On`](super::On); transforms use the machine's best instructions,
 //! so the last bits may differ between machines. A mirror-symmetric body stays symmetric to round-off only.
