@@ -402,7 +402,7 @@ fn equals_the_bond_list<const D: usize>() {
             fast.frequency_bound(&density),
         );
         assert!(b >= a * (1.0 - 1e-12), "{name}: bound {b} below {a}");
-        if !material.influence.is_signed() {
+        if !material.influence.is_signed(material.horizon) {
             assert!(b <= a * (1.0 + 1e-11), "{name}: bound {b} above {a}");
         }
         // A large smooth strain, where neighbouring contributions cancel.
@@ -691,7 +691,7 @@ fn what_is_no_convolution_is_refused() {
         cloud,
         3.0 * DX,
         VolumeCorrection::None,
-        |r| 1.0 / (r - DX),
+        |xi: [f64; 3]| 1.0 / (xi[0].hypot(xi[1]) - DX),
         [false; 2],
     );
     assert!(matches!(

@@ -74,7 +74,7 @@ impl<const D: usize> ConvolutionForce<D> {
             );
         }
         let stiffness =
-            |r: f64| constants.micromodulus * material.influence.alpha(r, material.horizon);
+            |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
         Self::with_stiffness(
             cloud,
             material.horizon,
@@ -84,7 +84,7 @@ impl<const D: usize> ConvolutionForce<D> {
         )
     }
 
-    /// An operator whose bonds have the stiffness c α(r) given as a function of their reference length r.
+    /// An operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m; it must be the same for ξ and −ξ.
     ///
     /// # Errors
     /// Points that are no lattice, or of another dimension; a horizon below the spacing; a stiffness that is not finite.
@@ -92,7 +92,7 @@ impl<const D: usize> ConvolutionForce<D> {
         cloud: Arc<PointCloud>,
         horizon: f64,
         correction: VolumeCorrection,
-        stiffness_of_length: impl Fn(f64) -> f64,
+        stiffness_of_bond: impl Fn([f64; 3]) -> f64,
         periodic: [bool; D],
     ) -> Result<Self> {
         if cloud.dimension() != D {
@@ -102,7 +102,7 @@ impl<const D: usize> ConvolutionForce<D> {
                 dimension: cloud.dimension(),
             });
         }
-        let (bonds, lattice) = LatticeBonds::new(&cloud, horizon, correction, stiffness_of_length)?;
+        let (bonds, lattice) = LatticeBonds::new(&cloud, horizon, correction, stiffness_of_bond)?;
         let axes = axes(lattice, bonds.largest_offset(), periodic);
         let (bound, signed) = bonds.full_family(axes.map(|axis| axis.raw))?;
         let n = cloud.len();

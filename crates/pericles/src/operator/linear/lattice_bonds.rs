@@ -13,8 +13,8 @@ pub(super) struct OffsetBond {
 }
 
 /// What makes bonds of an offset: the same arithmetic as the bond list's, so that the same bonds exist.
-pub(super) struct LatticeBonds<S: Fn(f64) -> f64> {
-    stiffness_of_length: S,
+pub(super) struct LatticeBonds<S: Fn([f64; 3]) -> f64> {
+    stiffness_of_bond: S,
     correction: VolumeCorrection,
     horizon: f64,
     reach: f64,
@@ -22,7 +22,7 @@ pub(super) struct LatticeBonds<S: Fn(f64) -> f64> {
     volume: f64,
 }
 
-impl<S: Fn(f64) -> f64> LatticeBonds<S> {
+impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
     /// The bonds of a cloud, and its lattice.
     ///
     /// # Errors
@@ -31,7 +31,7 @@ impl<S: Fn(f64) -> f64> LatticeBonds<S> {
         cloud: &PointCloud,
         horizon: f64,
         correction: VolumeCorrection,
-        stiffness_of_length: S,
+        stiffness_of_bond: S,
     ) -> Result<(Self, &Lattice)> {
         let Some(lattice) = cloud.lattice() else {
             return refuse("it needs points on a regular grid; use the bond list for this body");
@@ -46,7 +46,7 @@ impl<S: Fn(f64) -> f64> LatticeBonds<S> {
             return Err(PericlesError::HorizonTooSmall { horizon, spacing });
         }
         let bonds = Self {
-            stiffness_of_length,
+            stiffness_of_bond,
             correction,
             horizon,
             reach,
@@ -66,7 +66,7 @@ impl<S: Fn(f64) -> f64> LatticeBonds<S> {
         let xi = offset.map(|o| o as f64 * self.spacing);
         let length = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
         (length > 0.0 && length <= self.reach).then(|| OffsetBond {
-            stiffness: (self.stiffness_of_length)(length)
+            stiffness: (self.stiffness_of_bond)(xi)
                 * self.correction.factor(length, self.horizon, self.spacing)
                 * self.volume,
             length,
