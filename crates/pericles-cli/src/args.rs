@@ -108,9 +108,6 @@ pub(crate) struct DispersionArgs {
     /// Folder for the results; must not exist
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Let --out replace earlier results; other files in the folder stay
-    #[arg(long, requires = "out")]
-    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]

@@ -29,7 +29,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     let model = deck.build()?;
     let lattice = BondLattice::of_body(&model.cloud, &deck.material.bonds, &model.constants)?;
     let folder = match &args.out {
-        Some(path) => OutputFolder::create(path, args.force).map_err(|error| match error {
+        Some(path) => OutputFolder::create(path, false).map_err(|error| match error {
             IoError::FolderExists { path } => CliError::OutExists { path },
             other => other.into(),
         })?,

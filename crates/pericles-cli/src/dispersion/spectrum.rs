@@ -7,6 +7,7 @@ use pericles_io::{Cell, CellSize, Column, CsvTable, Curve, FieldPicture};
 
 use super::curves::Curves;
 use crate::error::CliError;
+use crate::units::significant;
 
 /// Rows of a map: lines are put together to no more than these.
 const ROWS: usize = 240;
@@ -27,7 +28,11 @@ pub(crate) fn write_spectrum(
         map.write(&folder(&format!("spectrum_{name}.csv")), spectrum, branch)?;
         map.draw(
             &folder(&format!("spectrum_{name}.png")),
-            &format!("{title}: branch {name}"),
+            &format!(
+                "{title}, branch {name}: x is k over {}, y is ω over {}",
+                significant(curves.contour.length() / SHAPE, 4) + " rad/m",
+                significant(map.top * spectrum.line, 4) + " rad/s",
+            ),
         )?;
     }
     write_peaks(&folder("peaks.csv"), spectrum, curves)?;
@@ -72,6 +77,8 @@ struct Map {
     /// Lines in a band.
     lines: usize,
     bands: usize,
+    /// Lines in all.
+    top: f64,
     /// Largest power in each band, wave by wave.
     power: Vec<f64>,
     /// Band of the analysis, wave by wave.
@@ -102,6 +109,7 @@ impl Map {
         Self {
             lines,
             bands,
+            top: (bands * lines) as f64,
             power,
             expected,
         }
