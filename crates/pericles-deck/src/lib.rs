@@ -78,6 +78,7 @@
 //! fracture_energy = "135 J/m2"           # [Gc, G0], or critical_stretch [s0]; neither: bonds never break
 //! no_fail = ["top", "left"]              # sets whose bonds never break; default none
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
+//! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only
 //!
 //! [sets.top]                             # named sets of points: exactly one region each; "all" is always there
 //! layer = { side = "+y", depth = "0.25 mm" }

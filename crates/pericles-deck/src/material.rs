@@ -4,7 +4,7 @@ use pericles::family::VolumeCorrection;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::DamageMeasure;
+use pericles::operator::{BondForm, DamageMeasure};
 
 use crate::body::BodyRead;
 use crate::influence::{Setting, influence};
@@ -24,6 +24,8 @@ pub struct Material {
     pub no_fail: Vec<String>,
     /// How damage is measured.
     pub damage: DamageMeasure,
+    /// How bonds are kept: a matter of speed only.
+    pub form: BondForm,
 }
 
 pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
@@ -67,6 +69,15 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         .optional("no_fail")
         .map_or(Some(Vec::new()), |item| sets.references(&item));
     let damage = damage(&table);
+    let form = table.choice_or_first(
+        "bonds",
+        "form of bonds",
+        &[
+            ("fastest", BondForm::Fastest),
+            ("grid", BondForm::Grid),
+            ("list", BondForm::List),
+        ],
+    );
     table.finish();
     Some(Material {
         name: name?,
@@ -81,6 +92,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         },
         no_fail: no_fail?,
         damage: damage?,
+        form: form?,
     })
 }
 

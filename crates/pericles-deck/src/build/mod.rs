@@ -6,10 +6,9 @@ mod step;
 
 use std::sync::Arc;
 
-use pericles::family::BondList;
-use pericles::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
+use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::{BondForce, DamageMeasure, ForceOperator};
+use pericles::operator::{AssembledBonds, BondBody, BondForm};
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State, VelocityVerlet};
 use pericles::{PericlesError, PointScalar, Simulation, System};
@@ -34,6 +33,8 @@ pub struct Model {
     pub sets: Sets,
     /// The constants of the bonds.
     pub constants: BondConstants,
+    /// How the bonds are kept.
+    pub form: BondForm,
     /// Bonds that pre-cracks cut.
     pub precut_bonds: u64,
     /// The pre-cracks in the order of the deck, for following their tips.
@@ -91,18 +92,10 @@ impl Deck {
             .constants(&cloud, self.body.state)
             .map_err(|error| self.at_material(error))?;
         let mut warnings = Vec::new();
-        let (bonds, cracks, precut_bonds) = self.bonds(&cloud, &mut warnings)?;
         let no_fail = self.no_fail(&sets)?;
-        let operator = operator(
-            &cloud,
-            bonds,
-            material,
-            &constants,
-            &no_fail,
-            self.material.damage,
-        );
+        let (bonds, cracks) = self.bonds(&cloud, &constants, &no_fail, &mut warnings)?;
         let density = PointScalar::Uniform(material.density);
-        let mut system = System::new(Arc::clone(&cloud), operator, density)
+        let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
         let state = self.initial_state(&cloud, &sets)?;
         self.add_loads(&mut system, &cloud, &sets)?;
@@ -116,7 +109,8 @@ impl Deck {
             cloud,
             sets,
             constants,
-            precut_bonds,
+            form: bonds.form,
+            precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
             cracks,
             system,
             state,
@@ -185,31 +179,49 @@ impl Deck {
         Ok(points)
     }
 
+    /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
-        cloud: &PointCloud,
+        cloud: &Arc<PointCloud>,
+        constants: &BondConstants,
+        no_fail: &[u32],
         warnings: &mut Vec<Warning>,
-    ) -> Result<(BondList, Vec<TrackedCrack>, u64), DeckError> {
-        let material = &self.material.bonds;
-        let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction)
+    ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
+        let crack = |k| Path::from("crack").index(k);
+        for (k, pre_crack) in self.cracks.iter().enumerate() {
+            // The library tells what is wrong with a crack, not with which.
+            pre_crack
+                .surface
+                .cutter(pre_crack.ends, 0.0)
+                .map_err(|error| self.at_path(&crack(k), error.into()))?;
+        }
+        let surfaces: Vec<_> = self
+            .cracks
+            .iter()
+            .map(|crack| (crack.surface.clone(), crack.ends))
+            .collect();
+        let body = BondBody {
+            cloud,
+            material: &self.material.bonds,
+            constants,
+            cracks: &surfaces,
+            no_fail,
+            damage: self.material.damage,
+        };
+        let assembled = body
+            .operator(self.material.form)
             .map_err(|error| self.at_material(error))?;
         let mut tracked = Vec::new();
-        let mut total = 0;
-        for (k, crack) in self.cracks.iter().enumerate() {
-            let path = Path::from("crack").index(k);
-            let cut = bonds
-                .cut(cloud, &crack.surface, crack.ends)
-                .map_err(|error| self.at_path(&path, error.into()))?;
-            total += cut.bonds;
+        for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {
-                warnings.push(self.finding(&path, Caution::CrackCutsNothing));
+                warnings.push(self.finding(&crack(k), Caution::CrackCutsNothing));
             }
             tracked.push(TrackedCrack {
-                crack: crack.surface.clone(),
-                points: cut.points,
+                crack: surface,
+                points: cut.points.clone(),
             });
         }
-        Ok((bonds, tracked, total))
+        Ok((assembled, tracked))
     }
 
     /// The points of a set. A deck read from a text names only sets it defines; one changed by a program may not.
@@ -263,35 +275,5 @@ impl Deck {
     fn finding<S: Subject>(&self, path: &Path, subject: S) -> Finding<S> {
         let place = self.record.place(path);
         Finding::new(subject, self.record.sources.locate(place))
-    }
-}
-
-fn operator(
-    cloud: &Arc<PointCloud>,
-    bonds: BondList,
-    material: &BondMaterial,
-    constants: &BondConstants,
-    no_fail: &[u32],
-    damage: DamageMeasure,
-) -> Box<dyn ForceOperator> {
-    macro_rules! bond_force {
-        ($law:ty, $dimension:literal) => {
-            Box::new(BondForce::<$law, $dimension>::new(
-                Arc::clone(cloud),
-                bonds,
-                material,
-                constants,
-                no_fail,
-                damage,
-            ))
-        };
-    }
-    match (material.law, cloud.dimension()) {
-        (PairLaw::Linear, 1) => bond_force!(LinearBond, 1),
-        (PairLaw::Linear, 2) => bond_force!(LinearBond, 2),
-        (PairLaw::Linear, _) => bond_force!(LinearBond, 3),
-        (PairLaw::BondStretch, 1) => bond_force!(BondStretch, 1),
-        (PairLaw::BondStretch, 2) => bond_force!(BondStretch, 2),
-        (PairLaw::BondStretch, _) => bond_force!(BondStretch, 3),
     }
 }

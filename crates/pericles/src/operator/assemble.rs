@@ -20,6 +20,17 @@ pub enum BondForm {
     List,
 }
 
+impl BondForm {
+    /// As written in decks.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fastest => "fastest",
+            Self::Grid => "grid",
+            Self::List => "list",
+        }
+    }
+}
+
 /// A body of one bond-based material: all that its operator is made of.
 #[derive(Debug, Clone)]
 pub struct BondBody<'a> {
