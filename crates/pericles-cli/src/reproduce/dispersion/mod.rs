@@ -27,6 +27,9 @@ use crate::error::CliError;
 
 const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
 
+/// Coefficients with their names.
+type NamedTables = Vec<(String, Vec<f64>)>;
+
 /// The rows of a table of published numbers: cells by column, comments and header left out.
 fn published(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let lines = text.lines().filter(|line| !line.starts_with('#'));

@@ -5,7 +5,10 @@ use pericles::material::StressState;
 
 use super::super::row::Row;
 use super::super::{Context, Study};
-use super::{PAPER, method, model, number, numbers, published, tuned, write_curves, write_tables};
+use super::{
+    NamedTables, PAPER, method, model, number, numbers, published, tuned, write_curves,
+    write_tables,
+};
 use crate::error::CliError;
 
 /// The study.
@@ -21,7 +24,7 @@ const TABLE: &str =
 
 fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let mut rows = originals()?;
-    let mut tables: Vec<(f64, Vec<(String, Vec<f64>)>)> = Vec::new();
+    let mut tables: Vec<(f64, NamedTables)> = Vec::new();
     for cells in published(TABLE) {
         let (Some(n), name) = (number(&cells, 0), cells[1]) else {
             continue;

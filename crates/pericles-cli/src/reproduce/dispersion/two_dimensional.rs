@@ -7,8 +7,8 @@ use pericles::material::StressState;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{
-    PAPER, combination, method, model, number, numbers, published, rounding, tuned, write_curves,
-    write_tables,
+    NamedTables, PAPER, combination, method, model, number, numbers, published, rounding, tuned,
+    write_curves, write_tables,
 };
 use crate::dispersion::curves::write_polar;
 use crate::error::CliError;
@@ -26,7 +26,7 @@ const TABLE: &str =
 
 fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let mut rows = originals(context)?;
-    let mut tables: Vec<(f64, Vec<(String, Vec<f64>)>)> = Vec::new();
+    let mut tables: Vec<(f64, NamedTables)> = Vec::new();
     for cells in published(TABLE) {
         let (Some(n), Some(tolerance)) = (number(&cells, 0), number(&cells, 4)) else {
             continue;
