@@ -16,6 +16,7 @@ Examples:
   pericles run deck.toml --out results --force        results in ./results, replacing earlier ones
   pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
+  pericles dispersion deck.toml --measure             what the grid does to waves
   pericles reproduce --list                           studies of papers
   pericles reproduce fracture/branching";
 
@@ -53,6 +54,15 @@ Results go to ./<deck's name>, then to ./<name>-2, -3 …, or to --out. In the f
 The run goes on from its last checkpoint, bit for bit as if it had never stopped. The deck is the one the
 checkpoint holds, so the file may have changed or gone. Another number of threads gives the same results.")]
     Resume(ResumeArgs),
+    /// Analyse what the grid and the kernel of a deck do to waves
+    #[command(after_help = "\
+Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the folder:
+  dispersion.json   stability, highest frequency, largest step, anisotropy, conventions
+  curves.csv, .png  ω(k) with phase and group velocity, the time-discrete curve, the continuum
+  polar.csv, .png   speed of long waves by direction
+  classes.csv       α of every class of bonds
+  spectrum_*, peaks what --measure found")]
+    Dispersion(DispersionArgs),
     /// Compute published results again and compare
     #[command(after_help = "\
 Studies and their decks are inside the program. The exit status is 0 only if every judged row holds, else 5.")]
@@ -83,6 +93,47 @@ pub(crate) struct CheckArgs {
     pub(crate) overrides: Overrides,
     #[command(flatten)]
     pub(crate) threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DispersionArgs {
+    /// The deck, a TOML file
+    pub(crate) deck: PathBuf,
+    /// Follow waves along this direction instead of the border of the irreducible zone, such as 2,1 or 1,1,0
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction)]
+    pub(crate) direction: Option<Direction>,
+    /// Also measure the spectrum in a time-domain run of a periodic box
+    #[arg(long, conflicts_with = "direction")]
+    pub(crate) measure: bool,
+    /// Folder for the results; must not exist
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) execution: Execution,
+}
+
+/// A direction; missing components are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Direction(pub(crate) [f64; 3]);
+
+fn direction(text: &str) -> Result<Direction, String> {
+    let mut vector = [0.0; 3];
+    let numbers: Vec<&str> = text.split(',').collect();
+    let allowed = "one to three numbers with commas between them, not all zero";
+    if numbers.len() > 3 {
+        return Err(allowed.into());
+    }
+    for (component, number) in vector.iter_mut().zip(numbers) {
+        *component = number.trim().parse().map_err(|_| allowed.to_owned())?;
+    }
+    let length: f64 = vector.iter().map(|x| x * x).sum();
+    if length > 0.0 && length.is_finite() {
+        Ok(Direction(vector))
+    } else {
+        Err(allowed.into())
+    }
 }
 
 #[derive(Debug, Args)]
@@ -170,6 +221,10 @@ mod tests {
         assert!(parse("pericles reproduce --list").is_ok());
         assert!(parse("pericles reproduce --list fracture/branching").is_err());
         assert!(parse("pericles run a.toml --threads 0").is_err());
+        assert!(parse("pericles dispersion a.toml --direction 2,1").is_ok());
+        for wrong in ["0,0", "1,x", "1,2,3,4"] {
+            assert!(parse(&format!("pericles dispersion a.toml --direction {wrong}")).is_err());
+        }
         let run = parse("pericles run a.toml --set a=1 --set b=2 -q").unwrap();
         let Command::Run(run) = run.command else {
             panic!("not a run");

@@ -1,6 +1,6 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check` and `resume` act on decks and output folders, `reproduce` on the studies inside the program. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `reproduce` on the studies inside the program. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
@@ -8,6 +8,7 @@ mod args;
 mod check;
 mod checkpoint;
 mod console;
+mod dispersion;
 mod error;
 mod exit;
 mod machine;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args),
+        Command::Dispersion(args) => dispersion::dispersion(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
     };
     let exit = outcome.unwrap_or_else(|error| {

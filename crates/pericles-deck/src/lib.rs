@@ -65,10 +65,16 @@
 //! poisson_ratio = 0.25                   # [nu] optional; checked against the only one that bonds can have
 //! horizon = "0.75 mm"                    # or horizon_ratio [m] = 3, in spacings: exactly one
 //! volume_correction = "extended"         # default; or linear, none
-//! modulus = "continuum"                  # default; or lattice: bond constant from the grid's own sums
+//! modulus = "continuum"                  # default; or lattice: bond constant from the grid's own sums; or unmodified: that of the constant function
 //! influence = { function = "constant", acts_on = "stretch" }   # the defaults; acts_on = stretch | displacement
 //! # function = "constant" | "conical" | "inverse" | "power" (exponent) | "gaussian" (length; cutoff, default the horizon)
 //! #   | "tabulated" (table = [[r, value], …]; r = "length" (default) | "spacing" | "horizon", the unit of the first column)
+//! #   | "cosines" (coefficients = [a0, a1, …], wavenumber; r = "spacing" (default) | "horizon"): a0 + Σ a_j cos(j · wavenumber · r)
+//! #   | "classes" (table = [[[1, 0], value], [[1, 1], value], …]): one value for every class of bonds of the grid
+//! #   | "tuned": classes made against dispersion for this grid and horizon; all optional: method = "least-squares" (default) |
+//! #     "point-collocation" | "subdomain-collocation" | "galerkin" | "galerkin-literal" (1D) | "absolute"; combination = "separated" (default) |
+//! #     "absolute" | "signed-sum"; pressure_weight, shear_weight, default 1; decay (rad per spacing), default none; lower_bound, default none –
+//! #     needed, and positive, where bonds can break. With classes and tuned the modulus is always that of the lattice
 //! fracture_energy = "135 J/m2"           # [Gc, G0], or critical_stretch [s0]; neither: bonds never break
 //! no_fail = ["top", "left"]              # sets whose bonds never break; default none
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
@@ -145,6 +151,7 @@ mod document;
 mod error;
 mod fault;
 mod finding;
+mod influence;
 mod material;
 mod nearest;
 mod output;

@@ -1,15 +1,15 @@
 //! `[material]`: constants, horizon, influence function and breaking.
 
 use pericles::family::VolumeCorrection;
-use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
 use pericles::operator::{BondForm, DamageMeasure};
 
 use crate::body::BodyRead;
+use crate::influence::{Setting, influence};
 use crate::quantity::Quantity;
-use crate::reader::{Item, Table};
+use crate::reader::Table;
 use crate::set::SetNames;
 use crate::vocabulary::{HORIZONS, MODULI, STRENGTHS};
 
@@ -54,7 +54,16 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         ],
     );
     poisson_ratio(&table, body.state);
-    let influence = influence(&table, dimension, body.frame.spacing, horizon);
+    let influence = influence(
+        &table,
+        &Setting {
+            dimension,
+            state: body.state,
+            spacing: body.frame.spacing,
+            horizon,
+            correction: volume_correction,
+        },
+    );
     let fracture = fracture(&table);
     let no_fail = table
         .optional("no_fail")
@@ -106,6 +115,7 @@ fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
         &[
             ("continuum", Calibration::Continuum),
             ("lattice", Calibration::Lattice),
+            ("unmodified", Calibration::Unmodified),
         ],
     );
     Some(Modulus {
@@ -167,111 +177,4 @@ fn damage(table: &Table<'_>) -> Option<DamageMeasure> {
         count: count?,
         count_precut: count_precut?,
     })
-}
-
-fn influence(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-    spacing: Option<f64>,
-    horizon: Option<f64>,
-) -> Option<Influence> {
-    let table = table.table_or_empty("influence")?;
-    let function = function(&table, spacing, horizon);
-    let acts_on = table.choice_or_first(
-        "acts_on",
-        "argument",
-        &[
-            ("stretch", ActsOn::Stretch),
-            ("displacement", ActsOn::Displacement),
-        ],
-    );
-    // Without the function nobody knows which other keys belong here.
-    let influence = Influence {
-        function: function?,
-        acts_on: acts_on?,
-    };
-    if let (Some(dimension), Some(horizon)) = (dimension, horizon) {
-        table.accept(influence.check(dimension, horizon));
-    }
-    table.finish();
-    Some(influence)
-}
-
-#[derive(Clone, Copy)]
-enum Form {
-    Constant,
-    Conical,
-    Inverse,
-    Power,
-    Gaussian,
-    Tabulated,
-}
-
-fn function(
-    table: &Table<'_>,
-    spacing: Option<f64>,
-    horizon: Option<f64>,
-) -> Option<InfluenceFunction> {
-    const FORMS: [(&str, Form); 6] = [
-        ("constant", Form::Constant),
-        ("conical", Form::Conical),
-        ("inverse", Form::Inverse),
-        ("power", Form::Power),
-        ("gaussian", Form::Gaussian),
-        ("tabulated", Form::Tabulated),
-    ];
-    match table.choice_or_first("function", "influence function", &FORMS)? {
-        Form::Constant => Some(InfluenceFunction::Constant),
-        Form::Conical => Some(InfluenceFunction::Conical),
-        Form::Inverse => Some(InfluenceFunction::Inverse),
-        Form::Power => Some(InfluenceFunction::Power {
-            exponent: table.required("exponent")?.quantity(Quantity::Number)?,
-        }),
-        Form::Gaussian => {
-            let length = table
-                .required("length")
-                .and_then(|item| item.positive(Quantity::Length));
-            let cutoff = table.maybe("cutoff", |item| item.positive(Quantity::Length));
-            Some(InfluenceFunction::Gaussian {
-                length: length?,
-                cutoff: cutoff?,
-            })
-        }
-        Form::Tabulated => tabulated(table, spacing, horizon),
-    }
-}
-
-/// A table whose first column is a length, or counts spacings or horizons.
-fn tabulated(
-    table: &Table<'_>,
-    spacing: Option<f64>,
-    horizon: Option<f64>,
-) -> Option<InfluenceFunction> {
-    const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
-    let unit = table.choice_or_first("r", "unit of the first column", &UNITS);
-    let rows = table
-        .required("table")
-        .and_then(|item| item.list("a list of pairs [r, value]"));
-    let unit = unit?;
-    let quantity = if unit == 0 {
-        Quantity::Length
-    } else {
-        Quantity::Number
-    };
-    let pairs: Vec<Option<(f64, f64)>> = rows?.iter().map(|row| pair(row, quantity)).collect();
-    let scale = [Some(1.0), spacing, horizon][unit];
-    let pairs: Vec<(f64, f64)> = pairs.into_iter().collect::<Option<_>>()?;
-    let scale = scale?;
-    Some(InfluenceFunction::Tabulated {
-        table: pairs.iter().map(|(r, value)| (r * scale, *value)).collect(),
-    })
-}
-
-fn pair(row: &Item<'_>, quantity: Quantity) -> Option<(f64, f64)> {
-    let items = row.exactly(2, "a pair [r, value]")?;
-    let (r, value) = (
-        items[0].quantity(quantity),
-        items[1].quantity(Quantity::Number),
-    );
-    Some((r?, value?))
 }

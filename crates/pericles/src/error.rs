@@ -119,6 +119,15 @@ pub enum PericlesError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A tuned table with which waves grow.
+    #[error(
+        "the tuned coefficients make the lattice unstable: some waves have ω²/k² = {smallest:e} (over E/ρ, spacings), it must be positive; use a \
+         lower bound, another method or another horizon"
+    )]
+    UnstableTable {
+        /// The smallest ω²/k² over E/ρ.
+        smallest: f64,
+    },
     /// A tuning problem without a unique solution.
     #[error(
         "the tuning problem has no unique solution: {rank} independent equations for {unknowns} unknowns; another method or a smaller horizon helps"

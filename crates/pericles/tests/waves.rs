@@ -12,7 +12,7 @@ use pericles::kernel::{ActsOn, ClassTable, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, LinearBond, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, ForceOperator, On};
+use pericles::operator::{BondBody, BondForce, BondForm, DamageMeasure, ForceOperator, On};
 use pericles::space::{Grid, PointCloud, Shape};
 
 const DX: f64 = 0.25e-3;
@@ -80,7 +80,7 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
     let cloud = body(D, cells);
     let constants = material.constants(&cloud, state).unwrap();
     let bonds = BondList::new(&cloud, material.horizon, material.volume_correction).unwrap();
-    let force = BondForce::<LinearBond, D>::new(
+    let list = BondForce::<LinearBond, D>::new(
         cloud.clone(),
         bonds,
         material,
@@ -88,6 +88,15 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         &[],
         DamageMeasure::default(),
     );
+    let body = BondBody {
+        cloud: &cloud,
+        material,
+        constants: &constants,
+        cracks: &[],
+        no_fail: &[],
+        damage: DamageMeasure::default(),
+    };
+    let grid = body.operator(BondForm::Grid).unwrap().operator;
     let lattice = BondLattice::of_body(&cloud, material, &constants).unwrap();
     let (n, centre) = (cloud.len(), cloud.nearest([0.5 * cells * DX; 3]));
     let mut k = [0.0; 3];
@@ -103,13 +112,19 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         }
     }
     let mut out = vec![0.0; D * n];
-    force.add_force(0.0, &u, On::All, &mut out);
+    list.add_force(0.0, &u, On::All, &mut out);
+    let mut other = vec![0.0; D * n];
+    grid.add_force(0.0, &u, On::All, &mut other);
     let matrix = lattice.dynamical_matrix(k);
     for row in 0..D {
         let product: f64 = (0..D).map(|c| matrix[row][c] * e[c]).sum();
         let expected = -material.density * product;
         let computed = out[row * n + centre];
         let scale = material.density * matrix[0][0].abs();
+        assert!(
+            (computed - other[row * n + centre]).abs() < 1e-11 * scale,
+            "{state:?}"
+        );
         assert!(
             (computed - expected).abs() < 1e-11 * scale,
             "{state:?}: {computed} {expected}"

@@ -6,6 +6,7 @@
 //!
 //! A new study is one file with a `STUDY`, listed in [`STUDIES`].
 
+mod dispersion;
 mod fracture;
 mod row;
 mod table;
@@ -36,7 +37,18 @@ pub(crate) struct Study {
 }
 
 /// All studies.
-const STUDIES: [Study; 2] = [fracture::branching::STUDY, fracture::inclined::STUDY];
+const STUDIES: [Study; 10] = [
+    dispersion::one_dimensional::STUDY,
+    dispersion::two_dimensional::STUDY,
+    dispersion::three_dimensional::STUDY,
+    dispersion::spectrum::BARS,
+    dispersion::spectrum::PLATES,
+    dispersion::influence::STUDY,
+    dispersion::critical_stretch::STUDY,
+    dispersion::pulse::STUDY,
+    fracture::branching::STUDY,
+    fracture::inclined::STUDY,
+];
 
 /// What a study is run with.
 pub(crate) struct Context<'a> {
@@ -48,6 +60,16 @@ pub(crate) struct Context<'a> {
 }
 
 impl Context<'_> {
+    /// For tests.
+    #[cfg(test)]
+    pub(crate) fn without_figures() -> Self {
+        Self {
+            full: false,
+            quiet: true,
+            figures: None,
+        }
+    }
+
     /// The file of a figure; none if no figures are wanted.
     pub(crate) fn figure(&self, name: &str) -> Option<PathBuf> {
         self.figures.map(|folder| folder.join(name))

@@ -46,7 +46,26 @@ struct Variant {
 }
 
 /// Runs that `--full` adds.
-const VARIANTS: [Variant; 3] = [
+const VARIANTS: [Variant; 5] = [
+    Variant {
+        name: "positive table tuned against dispersion",
+        overrides: &["material.influence={function=\"tuned\",lower_bound=0.5}"],
+        start: 8e-6,
+        branching: (21e-6, 67.9e-3),
+        peak_speed: 1664.0,
+        arrival: Some(44.5e-6),
+    },
+    Variant {
+        name: "influence function of equation 50",
+        overrides: &[
+            "material.influence={function=\"cosines\",wavenumber=1.1,coefficients=[2.3,2.0,-0.39,-0.48,0.28,0.14,-0.15,-0.02,0.05]}",
+            "material.modulus=unmodified",
+        ],
+        start: 8.5e-6,
+        branching: (22e-6, 68.6e-3),
+        peak_speed: 1755.0,
+        arrival: Some(44.5e-6),
+    },
     Variant {
         name: "printed critical stretch",
         overrides: &["material.critical_stretch=1.3e-3"],

@@ -1,0 +1,301 @@
+//! `dispersion`: what the grid and the kernel of a deck do to waves. Runs nothing unless a spectrum is to be measured.
+
+pub(crate) mod curves;
+pub(crate) mod spectrum;
+
+use pericles::analysis::spectrum::{SpectrumRun, measure};
+use pericles::analysis::tuning::{ScalingModel, continuum_speeds};
+use pericles::analysis::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
+use pericles::material::StressState;
+use pericles_deck::{Deck, Model};
+use pericles_io::{IoError, OutputFolder, write_atomically};
+use serde_json::{Value as Json, json};
+
+use crate::args::DispersionArgs;
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::units::{percent, quantity, significant};
+use curves::{Curves, STEPS, write_classes, write_polar};
+use spectrum::write_spectrum;
+
+/// Analyses the lattice of a deck and writes curves, polar plot, classes and a summary.
+///
+/// # Errors
+/// A deck that is refused, output that cannot be written, a spectrum of an unstable lattice.
+pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
+    args.execution.threads.start()?;
+    let deck = Deck::read(&args.deck, &args.overrides.set)?;
+    let model = deck.build()?;
+    let lattice = BondLattice::of_body(&model.cloud, &deck.material.bonds, &model.constants)?;
+    let folder = match &args.out {
+        Some(path) => OutputFolder::create(path, false).map_err(|error| match error {
+            IoError::FolderExists { path } => CliError::OutExists { path },
+            other => other.into(),
+        })?,
+        None => {
+            let stem = args.deck.file_stem().unwrap_or_default().to_string_lossy();
+            OutputFolder::create_numbered(format!("./{stem}-dispersion"))?
+        }
+    };
+    let study = Analysis::of(&deck, &model, lattice, args);
+    let title = deck.title.clone().unwrap_or_default();
+    let curves = study.curves();
+    curves.write(&folder.file("curves.csv"))?;
+    curves.draw(&folder.file("curves.png"), &title)?;
+    if study.lattice.dimension() > 1 {
+        let polar = polar_speeds(&study.lattice, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 360);
+        write_polar(
+            &folder.file("polar.csv"),
+            &folder.file("polar.png"),
+            &polar,
+            &["p", "s1", "s2"][..study.lattice.dimension()],
+        )?;
+    }
+    study.write_classes(&deck, &folder)?;
+    let measured = match args.measure {
+        false => Json::Null,
+        true => study.measure(&folder, &title)?,
+    };
+    let summary = study.summary(&deck, &measured);
+    let text = serde_json::to_string_pretty(&summary)?;
+    write_atomically(&folder.file("dispersion.json"), |file| {
+        use std::io::Write;
+        writeln!(file, "{text}")
+    })?;
+    if !args.execution.quiet {
+        study.print(&measured)?;
+        console::print(format_args!("results in {}", folder.path().display()))?;
+    }
+    Ok(Exit::Done)
+}
+
+/// What is known about the lattice.
+struct Analysis {
+    lattice: BondLattice,
+    contour: Contour,
+    points: Vec<pericles::analysis::ContourPoint>,
+    stability: Stability,
+    /// Of the branches, m/s.
+    targets: Vec<Option<f64>>,
+    /// Speed of the bar wave √(E/ρ), m/s.
+    bar: f64,
+    dt: f64,
+}
+
+impl Analysis {
+    fn of(deck: &Deck, model: &Model, lattice: BondLattice, args: &DispersionArgs) -> Self {
+        let contour = match args.direction {
+            Some(direction) => Contour::ray(&lattice, direction.0),
+            None => Contour::irreducible(&lattice),
+        };
+        let bar = (model.constants.young / deck.material.bonds.density).sqrt();
+        let speeds = continuum_speeds(deck.body.state);
+        let targets = (0..lattice.dimension())
+            .map(|branch| {
+                let speed = if branch == 0 {
+                    speeds.pressure
+                } else {
+                    speeds.shear
+                };
+                Some(speed * bar)
+            })
+            .collect();
+        Self {
+            points: trace(&lattice, &contour, STEPS),
+            stability: stability(&lattice),
+            contour,
+            targets,
+            bar,
+            dt: model.dt,
+            lattice,
+        }
+    }
+
+    fn curves(&self) -> Curves<'_> {
+        Curves {
+            contour: &self.contour,
+            points: &self.points,
+            dt: Some(self.dt),
+            targets: &self.targets,
+        }
+    }
+
+    /// α of each class as the deck has it, with its bonds' share κ.
+    fn write_classes(&self, deck: &Deck, folder: &OutputFolder) -> Result<(), CliError> {
+        let model = scaling_model(deck)?;
+        let material = &deck.material.bonds;
+        let spacing = deck.body.grid.spacing;
+        let alpha = model
+            .classes()
+            .iter()
+            .map(|class| {
+                let xi = class.offset.map(|c| f64::from(c) * spacing);
+                material.influence.alpha_of(xi, material.horizon)
+            })
+            .collect();
+        let kappa = model
+            .classes()
+            .iter()
+            .map(|class| {
+                let length = class.length * spacing;
+                let correction = material.volume_correction;
+                correction.factor(length, material.horizon, spacing)
+            })
+            .collect();
+        let tables = [
+            ("alpha".to_owned(), alpha),
+            ("volume_factor".to_owned(), kappa),
+        ];
+        write_classes(&folder.file("classes.csv"), model.classes(), &tables)
+    }
+
+    fn measure(&self, folder: &OutputFolder, title: &str) -> Result<Json, CliError> {
+        let (nodes, steps) = [(512, 8192), (48, 4096), (16, 1024)][self.lattice.dimension() - 1];
+        let run = SpectrumRun {
+            nodes,
+            steps,
+            dt: self.dt,
+            seed: 1,
+        };
+        let spectrum = measure(&self.lattice, &self.contour, run)
+            .map_err(|error| CliError::of_run(error, String::new))?;
+        write_spectrum(&|name| folder.file(name), &spectrum, &self.curves(), title)?;
+        let (worst, peaks) = spectrum.worst_deviation();
+        Ok(json!({
+            "nodes_per_axis": nodes, "steps": steps, "dt": self.dt, "line": spectrum.line,
+            "worst_deviation_in_lines": worst, "peaks": peaks,
+        }))
+    }
+
+    /// Long-wave speeds over the continuum's: smallest and largest over all directions, pressure and shear.
+    fn anisotropy(&self) -> Vec<[f64; 2]> {
+        let planes = match self.lattice.dimension() {
+            1 => vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]],
+            2 => vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]],
+            _ => vec![
+                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+                [[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            ],
+        };
+        let count = if self.lattice.dimension() == 1 {
+            1
+        } else {
+            360
+        };
+        let all: Vec<_> = planes
+            .into_iter()
+            .flat_map(|plane| polar_speeds(&self.lattice, plane, count))
+            .collect();
+        (0..self.lattice.dimension())
+            .map(|branch| {
+                let target = self.targets[branch].unwrap_or(f64::NAN);
+                let ratios = all.iter().map(|row| row.speeds[branch] / target);
+                ratios.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+                    [low.min(x), high.max(x)]
+                })
+            })
+            .collect()
+    }
+
+    fn summary(&self, deck: &Deck, measured: &Json) -> Json {
+        let found = &self.stability;
+        let state = deck.body.state;
+        json!({
+            "title": deck.title,
+            "state": state.name(),
+            "poisson_ratio": state.poisson_ratio(),
+            "spacing": self.lattice.spacing(),
+            "horizon": deck.material.bonds.horizon,
+            "bar_wave_speed": self.bar,
+            "continuum_speeds": self.targets,
+            "long_wave_speed_ratios": self.anisotropy(),
+            "stable": found.is_stable(),
+            "smallest_omega_squared_over_k_squared": found.smallest,
+            "smallest_at": found.smallest_at,
+            "omega_max": found.omega_max,
+            "omega_max_at": found.omega_max_at,
+            "dt_max": found.is_stable().then(|| found.dt_max()),
+            "dt": self.dt,
+            "shortest_wavelength_in_spacings": self.resolved(0.01),
+            "measured_spectrum": measured,
+            "conventions": {
+                "contour": "border of the irreducible zone, or a ray, by arc length; segments share their corners",
+                "branches": "followed by the polarisation that symmetry fixes; else by likeness of polarisations",
+                "omega_verlet": "(2/dt) asin(omega dt/2)",
+                "long_wave_speed_ratios": "[smallest, largest] over directions, over the continuum's speed, pressure then shear",
+                "body": "the interior of the body; points near its surface have fewer bonds",
+                "units": "SI",
+            },
+        })
+    }
+
+    /// The shortest wavelength, in spacings, from which on all longer waves of all branches keep their phase velocity within `share` of that of long waves. Steps of a
+    /// segment are what it is found by; none if even the first one is off.
+    fn resolved(&self, share: f64) -> Option<f64> {
+        let first = self.points.iter().take_while(|point| point.segment == 0);
+        let limits: Vec<f64> = self.points[0]
+            .branches
+            .iter()
+            .map(|b| b.phase_velocity)
+            .collect();
+        let good = first.skip(1).take_while(|point| {
+            let branches = point.branches.iter().zip(&limits);
+            branches
+                .clone()
+                .all(|(b, limit)| (b.phase_velocity / limit - 1.0).abs() <= share)
+        });
+        let last = good.last()?;
+        let k = last.k.iter().map(|k| k * k).sum::<f64>().sqrt();
+        Some(std::f64::consts::TAU / k / self.lattice.spacing()[0])
+    }
+
+    fn print(&self, measured: &Json) -> Result<(), CliError> {
+        let found = &self.stability;
+        let names = ["pressure", "shear", "second shear"];
+        for (branch, [low, high]) in self.anisotropy().into_iter().enumerate() {
+            console::print(format_args!(
+                "long {} waves      {} to {} of {:.0} m/s",
+                names[branch],
+                significant(low, 5),
+                significant(high, 5),
+                self.targets[branch].unwrap_or(f64::NAN)
+            ))?;
+        }
+        if let Some(wavelength) = self.resolved(0.01) {
+            console::print(format_args!(
+                "phase velocity      within {} for wavelengths of {} spacings and more",
+                percent(0.01),
+                significant(wavelength, 3)
+            ))?;
+        }
+        if found.is_stable() {
+            console::print(format_args!(
+                "highest frequency   {:.4e} 1/s; largest stable step {}, the deck's {}",
+                found.omega_max,
+                quantity(found.dt_max(), "s"),
+                quantity(self.dt, "s")
+            ))?;
+        } else {
+            console::print(format_args!(
+                "UNSTABLE: some waves grow, smallest ω²/k² = {:.4e} m²/s²",
+                found.smallest
+            ))?;
+        }
+        match measured["worst_deviation_in_lines"].as_f64() {
+            Some(worst) => console::print(format_args!(
+                "measured spectrum   worst peak {} lines from the time-discrete curve",
+                significant(worst, 2)
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The classes of the deck's lattice.
+fn scaling_model(deck: &Deck) -> Result<ScalingModel, CliError> {
+    let material = &deck.material.bonds;
+    let state: StressState = deck.body.state;
+    let ratio = material.horizon / deck.body.grid.spacing;
+    Ok(ScalingModel::new(state, ratio, material.volume_correction)?)
+}

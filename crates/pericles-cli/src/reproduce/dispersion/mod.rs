@@ -1,0 +1,160 @@
+//! Dispersion: coefficients tuned against it, spectra measured in the time domain, influence functions and critical stretches that go with them.
+//!
+//! Alebrahim, Packo, Zaccariotto, Galvanetto, Improved wave dispersion properties in 1D and 2D bond-based peridynamic media, Computational Particle
+//! Mechanics (2022). The paper's tables of coefficients are not in print; the expected numbers were computed by separate codes and are kept in
+//! `validation/dispersion-and-fracture/`. Units of the spacing and of √(E/ρ) unless a row says otherwise; full node volumes.
+
+pub(super) mod critical_stretch;
+pub(super) mod influence;
+pub(super) mod one_dimensional;
+pub(super) mod pulse;
+pub(super) mod spectrum;
+pub(super) mod three_dimensional;
+pub(super) mod two_dimensional;
+
+use std::path::PathBuf;
+
+use pericles::analysis::trace;
+use pericles::analysis::tuning::{
+    Combination, Method, ScalingModel, TunedTable, Tuning, continuum_speeds,
+};
+use pericles::family::VolumeCorrection;
+use pericles::material::StressState;
+
+use super::Context;
+use crate::dispersion::curves::{Curves, STEPS, write_classes};
+use crate::error::CliError;
+
+const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
+
+/// Coefficients with their names.
+type NamedTables = Vec<(String, Vec<f64>)>;
+
+/// The rows of a table of published numbers: cells by column, comments and header left out.
+fn published(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    lines.skip(1).map(|line| line.split(',').collect())
+}
+
+/// A number of such a table; none where it is empty.
+fn number(row: &[&str], column: usize) -> Option<f64> {
+    row.get(column)?.parse().ok()
+}
+
+/// The numbers of one cell.
+fn numbers(row: &[&str], column: usize) -> Vec<f64> {
+    let cell = row.get(column).copied().unwrap_or_default();
+    cell.split(' ').filter_map(|x| x.parse().ok()).collect()
+}
+
+/// Half a unit of the last digit given, and a little.
+fn rounding(row: &[&str], column: usize) -> f64 {
+    let cell = row.get(column).copied().unwrap_or_default();
+    let places = cell.split_once('.').map_or(0, |(_, digits)| digits.len());
+    0.6 * 10f64.powi(-(places as i32))
+}
+
+fn method(name: &str) -> Method {
+    let found = Method::ALL.iter().find(|method| method.name() == name);
+    found.copied().unwrap_or_default()
+}
+
+fn combination(name: &str) -> Combination {
+    let found = Combination::ALL.iter().find(|c| c.name() == name);
+    found.copied().unwrap_or_default()
+}
+
+fn model(state: StressState, n: f64) -> Result<ScalingModel, CliError> {
+    Ok(ScalingModel::new(state, n, VolumeCorrection::None)?)
+}
+
+fn tuned(
+    model: &ScalingModel,
+    method: Method,
+    lower_bound: Option<f64>,
+) -> Result<TunedTable, CliError> {
+    Ok(model.tune(Tuning {
+        method,
+        lower_bound,
+        ..Default::default()
+    })?)
+}
+
+/// Draws and writes the curves of a table, if figures are wanted: `<name>.png`, `<name>.csv`.
+fn write_curves(
+    context: &Context<'_>,
+    model: &ScalingModel,
+    name: &str,
+    title: &str,
+    alpha: &[f64],
+) -> Result<(), CliError> {
+    let (Some(picture), Some(csv)) = figures(context, name) else {
+        return Ok(());
+    };
+    let lattice = model.lattice(alpha);
+    let points = trace(&lattice, model.contour(), STEPS);
+    let targets = targets(model.state());
+    let curves = Curves {
+        contour: model.contour(),
+        points: &points,
+        dt: None,
+        targets: &targets,
+    };
+    curves.write(&csv)?;
+    curves.draw(&picture, title)
+}
+
+fn figures(context: &Context<'_>, name: &str) -> (Option<PathBuf>, Option<PathBuf>) {
+    let file = |ending: &str| context.figure(&format!("{name}.{ending}"));
+    (file("png"), file("csv"))
+}
+
+/// Speed of the continuum for each branch.
+fn targets(state: StressState) -> Vec<Option<f64>> {
+    let speeds = continuum_speeds(state);
+    let mut targets = vec![Some(speeds.shear); state.dimension()];
+    targets[0] = Some(speeds.pressure);
+    targets
+}
+
+/// Writes the coefficients of tables of one model.
+fn write_tables(
+    context: &Context<'_>,
+    model: &ScalingModel,
+    name: &str,
+    tables: &[(String, Vec<f64>)],
+) -> Result<(), CliError> {
+    match context.figure(&format!("{name}.csv")) {
+        Some(path) => write_classes(&path, model.classes(), tables),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::{Study, row::Row};
+
+    /// Every study but the slow ones: all judged rows hold, and there are some.
+    #[test]
+    fn studies_hold() {
+        let context = Context::without_figures();
+        let studies: [&Study; 5] = [
+            &one_dimensional::STUDY,
+            &two_dimensional::STUDY,
+            &three_dimensional::STUDY,
+            &influence::STUDY,
+            &critical_stretch::STUDY,
+        ];
+        for study in studies {
+            let rows = (study.run)(&context).unwrap();
+            let wrong: Vec<&Row> = rows.iter().filter(|r| r.pass() == Some(false)).collect();
+            assert!(wrong.is_empty(), "{}: {wrong:?}", study.id);
+            assert!(
+                rows.iter().any(|row| row.pass() == Some(true)),
+                "{}",
+                study.id
+            );
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! The command `dispersion`.
+
+mod common;
+
+use std::fs;
+
+use common::{PLATE, fail, succeed};
+use serde_json::Value;
+
+#[test]
+fn curves_classes_and_a_summary() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("plate.toml"), PLATE).unwrap();
+    succeed(place.path(), "dispersion plate.toml");
+    let folder = place.path().join("plate-dispersion");
+    for name in ["curves.png", "polar.csv", "polar.png", "classes.csv"] {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
+    let text = fs::read_to_string(folder.join("dispersion.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(summary["stable"], true);
+    let number = |key: &str| summary[key].as_f64().unwrap();
+    assert!((number("dt_max") * number("omega_max") - 2.0).abs() < 1e-12);
+    assert!(number("dt") < number("dt_max"));
+
+    // Every number of the curves obeys (2/dt) asin(ω dt/2).
+    let csv = pericles_io::read_csv(folder.join("curves.csv")).unwrap();
+    let column = |name: &str| csv.column(name).unwrap().to_vec();
+    for branch in ["p", "s"] {
+        let (omega, discrete) = (
+            column(&format!("omega_{branch}")),
+            column(&format!("omega_verlet_{branch}")),
+        );
+        assert_eq!(omega.len(), 603);
+        for (omega, discrete) in omega.iter().zip(&discrete) {
+            let dt = number("dt");
+            assert!((2.0 / dt * (0.5 * dt * omega).asin() - discrete).abs() <= 1e-9 * discrete);
+        }
+    }
+}
+
+#[test]
+fn directions_and_refusals() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("plate.toml"), PLATE).unwrap();
+    succeed(
+        place.path(),
+        "dispersion plate.toml --direction 2,1 --out ray --quiet",
+    );
+    let csv = pericles_io::read_csv(place.path().join("ray/curves.csv")).unwrap();
+    let (x, y) = (csv.column("k_x").unwrap(), csv.column("k_y").unwrap());
+    assert!(
+        x.iter()
+            .zip(y)
+            .all(|(x, y)| (x - 2.0 * y).abs() < 1e-9 * (1.0 + x.abs()))
+    );
+    assert_eq!(fail(place.path(), "dispersion plate.toml --out ray").0, 6);
+    assert_eq!(fail(place.path(), "dispersion missing.toml").0, 3);
+    assert_eq!(
+        fail(place.path(), "dispersion plate.toml --direction 0,0").0,
+        2
+    );
+}

@@ -1,0 +1,222 @@
+//! The influence function of a material.
+
+use pericles::PericlesError;
+use pericles::analysis::tuning::{Combination, Method, ScalingModel, Tuning, Weights};
+use pericles::family::VolumeCorrection;
+use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
+use pericles::material::StressState;
+
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+
+/// What a function is made for; none where the deck does not say it rightly.
+pub(crate) struct Setting {
+    pub(crate) dimension: Option<usize>,
+    pub(crate) state: Option<StressState>,
+    /// m
+    pub(crate) spacing: Option<f64>,
+    /// m
+    pub(crate) horizon: Option<f64>,
+    pub(crate) correction: Option<VolumeCorrection>,
+}
+
+/// The influence function in a material's table.
+pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<Influence> {
+    let table = table.table_or_empty("influence")?;
+    let function = function(&table, setting);
+    let acts_on = table.choice_or_first(
+        "acts_on",
+        "argument",
+        &[
+            ("stretch", ActsOn::Stretch),
+            ("displacement", ActsOn::Displacement),
+        ],
+    );
+    // Without the function nobody knows which other keys belong here.
+    let influence = Influence {
+        function: function?,
+        acts_on: acts_on?,
+    };
+    if let (Some(dimension), Some(horizon)) = (setting.dimension, setting.horizon) {
+        table.accept(influence.check(dimension, horizon));
+    }
+    table.finish();
+    Some(influence)
+}
+
+#[derive(Clone, Copy)]
+enum Form {
+    Constant,
+    Conical,
+    Inverse,
+    Power,
+    Gaussian,
+    Tabulated,
+    Cosines,
+    Classes,
+    Tuned,
+}
+
+fn function(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+    const FORMS: [(&str, Form); 9] = [
+        ("constant", Form::Constant),
+        ("conical", Form::Conical),
+        ("inverse", Form::Inverse),
+        ("power", Form::Power),
+        ("gaussian", Form::Gaussian),
+        ("tabulated", Form::Tabulated),
+        ("cosines", Form::Cosines),
+        ("classes", Form::Classes),
+        ("tuned", Form::Tuned),
+    ];
+    match table.choice_or_first("function", "influence function", &FORMS)? {
+        Form::Constant => Some(InfluenceFunction::Constant),
+        Form::Conical => Some(InfluenceFunction::Conical),
+        Form::Inverse => Some(InfluenceFunction::Inverse),
+        Form::Power => Some(InfluenceFunction::Power {
+            exponent: table.required("exponent")?.quantity(Quantity::Number)?,
+        }),
+        Form::Gaussian => {
+            let length = table
+                .required("length")
+                .and_then(|item| item.positive(Quantity::Length));
+            let cutoff = table.maybe("cutoff", |item| item.positive(Quantity::Length));
+            Some(InfluenceFunction::Gaussian {
+                length: length?,
+                cutoff: cutoff?,
+            })
+        }
+        Form::Tabulated => tabulated(table, setting),
+        Form::Cosines => cosines(table, setting),
+        Form::Classes => classes(table, setting),
+        Form::Tuned => tuned(table, setting),
+    }
+}
+
+/// The unit of lengths in a table, m, and what numbers in it are.
+fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)> {
+    const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
+    let unit = table.choice_or_first("r", "unit of lengths", &UNITS)?;
+    let quantity = if unit == 0 {
+        Quantity::Length
+    } else {
+        Quantity::Number
+    };
+    Some((
+        [Some(1.0), setting.spacing, setting.horizon][unit],
+        quantity,
+    ))
+}
+
+/// A table whose first column is a length, or counts spacings or horizons.
+fn tabulated(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+    let unit = unit(table, setting);
+    let rows = table
+        .required("table")
+        .and_then(|item| item.list("a list of pairs [r, value]"));
+    let (scale, quantity) = unit?;
+    let pairs: Vec<Option<(f64, f64)>> = rows?.iter().map(|row| pair(row, quantity)).collect();
+    let pairs: Vec<(f64, f64)> = pairs.into_iter().collect::<Option<_>>()?;
+    let scale = scale?;
+    Some(InfluenceFunction::Tabulated {
+        table: pairs.iter().map(|(r, value)| (r * scale, *value)).collect(),
+    })
+}
+
+/// a₀ + Σ a_j cos(j w r/unit)
+fn cosines(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+    const UNITS: [(&str, usize); 2] = [("spacing", 0), ("horizon", 1)];
+    let unit = table.choice_or_first("r", "unit of lengths", &UNITS);
+    let wavenumber = table
+        .required("wavenumber")
+        .and_then(|item| item.positive(Quantity::Number));
+    let list = table
+        .required("coefficients")
+        .and_then(|item| item.list("a list of numbers a0, a1, …"));
+    let coefficients: Vec<Option<f64>> = list?
+        .iter()
+        .map(|item| item.quantity(Quantity::Number))
+        .collect();
+    let coefficients = coefficients.into_iter().collect::<Option<_>>();
+    let scale = [setting.spacing, setting.horizon][unit?]?;
+    Some(InfluenceFunction::Cosines {
+        wavenumber: wavenumber? / scale,
+        coefficients: coefficients?,
+    })
+}
+
+/// A value for every class of bonds, such as [[[1, 0], 3.7], [[1, 1], 2.9]].
+fn classes(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+    let rows = table
+        .required("table")?
+        .list("a list of pairs [[i, j, …], value]")?;
+    let entries: Vec<Option<(ClassOffset, f64)>> =
+        rows.iter().map(|row| class(row, setting)).collect();
+    let entries: Vec<(ClassOffset, f64)> = entries.into_iter().collect::<Option<_>>()?;
+    let (dimension, spacing) = (setting.dimension?, setting.spacing?);
+    let classes = table.accept(ClassTable::new(dimension, spacing, &entries))?;
+    Some(InfluenceFunction::Classes(classes))
+}
+
+fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
+    let items = row.exactly(2, "a pair [[i, j, …], value]")?;
+    let value = items[1].quantity(Quantity::Number);
+    let steps = items[0].exactly(setting.dimension?, "one whole number for every axis")?;
+    let mut offset = [0; 3];
+    for (step, item) in offset.iter_mut().zip(&steps) {
+        let whole = item.within(
+            Quantity::Number,
+            "a whole number of spacings from −100 to 100",
+            |x| x.fract() == 0.0 && x.abs() <= 100.0,
+        )?;
+        *step = whole as i32;
+    }
+    Some((offset, value?))
+}
+
+/// Coefficients tuned against dispersion for this very grid.
+fn tuned(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+    let methods = Method::ALL.map(|method| (method.name(), method));
+    let method = table.choice_or_first("method", "method of tuning", &methods);
+    let combinations = Combination::ALL.map(|combination| (combination.name(), combination));
+    let combination =
+        table.choice_or_first("combination", "combination of branches", &combinations);
+    let weight = |key| table.or(key, 1.0, |item| item.positive(Quantity::Number));
+    let (pressure, shear) = (weight("pressure_weight"), weight("shear_weight"));
+    let decay = table.maybe("decay", |item| item.positive(Quantity::Number));
+    let lower_bound = table.maybe("lower_bound", |item| item.quantity(Quantity::Number));
+    let tuning = Tuning {
+        method: method?,
+        combination: combination?,
+        weights: Weights {
+            pressure: pressure?,
+            shear: shear?,
+            decay: decay?,
+        },
+        lower_bound: lower_bound?,
+    };
+    let spacing = setting.spacing?;
+    let ratio = setting.horizon? / spacing;
+    let model = table.accept(ScalingModel::new(
+        setting.state?,
+        ratio,
+        setting.correction?,
+    ))?;
+    let found = table.accept(model.tune(tuning))?;
+    if !found.assessment.stability.is_stable() {
+        return table.accept(Err(PericlesError::UnstableTable {
+            smallest: found.assessment.stability.smallest,
+        }));
+    }
+    let influence = table.accept(found.influence(setting.dimension?, spacing))?;
+    Some(influence.function)
+}
+
+fn pair(row: &Item<'_>, quantity: Quantity) -> Option<(f64, f64)> {
+    let items = row.exactly(2, "a pair [r, value]")?;
+    let (r, value) = (
+        items[0].quantity(quantity),
+        items[1].quantity(Quantity::Number),
+    );
+    Some((r?, value?))
+}
