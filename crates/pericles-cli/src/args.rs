@@ -17,6 +17,7 @@ Examples:
   pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
+  pericles bench block-46 --threads 1                 how fast the operators are here
   pericles reproduce --list                           studies of papers
   pericles reproduce fracture/branching";
 
@@ -63,6 +64,12 @@ Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the f
   classes.csv       α of every class of bonds
   spectrum_*, peaks what --measure found")]
     Dispersion(DispersionArgs),
+    /// Time whole steps on fixed bodies and set them against what the machine can do
+    #[command(after_help = "\
+Times are medians over rounds, on the wall clock: quote ratios, not seconds, of a machine that others use too.
+The roofline counts 28 operations per eight bonds at the measured rate of multiply-adds, idle lanes included;
+on processors that add and multiply in separate units the fraction can exceed one.")]
+    Bench(BenchArgs),
     /// Compute published results again and compare
     #[command(after_help = "\
 Studies and their decks are inside the program. The exit status is 0 only if every judged row holds, else 5.")]
@@ -142,6 +149,17 @@ pub(crate) struct ResumeArgs {
     pub(crate) dir: PathBuf,
     #[command(flatten)]
     pub(crate) execution: Execution,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BenchArgs {
+    /// The case, such as block-46; all of them without one
+    pub(crate) case: Option<String>,
+    /// Write the results as JSON to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
 }
 
 #[derive(Debug, Args)]

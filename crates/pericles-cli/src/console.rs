@@ -4,7 +4,8 @@ use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
-use pericles_io::IoError;
+use pericles_io::{IoError, write_atomically};
+use serde::Serialize;
 
 use crate::error::CliError;
 
@@ -20,6 +21,18 @@ pub(crate) fn print(text: Arguments<'_>) -> Result<(), CliError> {
             CliError::Io(IoError::writing(Path::new("the standard output"), error))
         }),
     }
+}
+
+/// Writes results as JSON to a file, or to the standard output for `-`.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(results)?;
+    if path == Path::new("-") {
+        return print(format_args!("{text}"));
+    }
+    Ok(write_atomically(path, |file| writeln!(file, "{text}"))?)
 }
 
 /// Says something on the standard error; nobody may be listening.

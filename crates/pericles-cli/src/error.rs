@@ -60,6 +60,15 @@ pub(crate) enum CliError {
         /// The folder.
         path: PathBuf,
     },
+    /// A case of `bench` that does not exist.
+    #[error("there is no case \"{name}\"")]
+    UnknownCase {
+        /// The name given.
+        name: String,
+        /// All cases.
+        #[help]
+        allowed: String,
+    },
     /// A study of that name does not exist.
     #[error("there is no study \"{id}\"")]
     UnknownStudy {
@@ -111,7 +120,7 @@ impl CliError {
             Self::OutExists { .. } => Exit::Output,
             Self::Unstable { .. } => Exit::Numerical,
             Self::Simulation(SimulationError::Step(_)) => Exit::Numerical,
-            Self::UnknownStudy { .. } => Exit::Usage,
+            Self::UnknownCase { .. } | Self::UnknownStudy { .. } => Exit::Usage,
             Self::Simulation(_) | Self::Threads(_) | Self::Signals(_) | Self::Json(_) => {
                 Exit::Internal
             }

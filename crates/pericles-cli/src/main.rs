@@ -1,10 +1,11 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `reproduce` on the studies inside the program. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `reproduce` on the studies inside the program, `bench` on fixed bodies. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
 mod args;
+mod bench;
 mod check;
 mod checkpoint;
 mod console;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args),
+        Command::Bench(args) => bench::bench(&args),
         Command::Dispersion(args) => dispersion::dispersion(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
     };

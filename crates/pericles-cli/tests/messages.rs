@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{fail, report, with_plate};
+use common::{fail, report, succeed, with_plate};
 
 #[test]
 fn usage_errors_are_status_2() {
@@ -83,4 +83,19 @@ fn an_unstable_run_is_status_4_and_keeps_its_state() {
     assert!(report["error"].as_str().unwrap().contains("unstable"));
     assert!(folder.join("checkpoints/failed.chk").is_file());
     assert!(folder.join("checkpoints/step-000000000000.chk").is_file());
+}
+
+#[test]
+fn bench_names_its_cases_and_writes_json() {
+    let place = with_plate();
+    let (status, message) = fail(place.path(), "bench block-47");
+    assert_eq!(status, 2);
+    assert!(message.contains("block-46-list"), "{message}");
+    let timed = succeed(place.path(), "bench plate-512 --threads 1 --json -");
+    let results: serde_json::Value = serde_json::from_slice(&timed.stdout).unwrap();
+    let case = &results["cases"][0];
+    assert_eq!(case["case"], "plate-512");
+    assert_eq!(case["points"], 512 * 512);
+    assert_eq!(case["threads"], 1);
+    assert!(case["ns_per_bond"].as_f64().unwrap() > 0.0);
 }

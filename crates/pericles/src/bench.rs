@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn wider_vectors_are_not_slower() {
+    fn the_rate_of_every_set_is_measured() {
         let times: Vec<f64> = InstructionSet::available()
             .into_iter()
             .map(fma_seconds)

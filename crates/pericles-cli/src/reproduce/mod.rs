@@ -14,7 +14,7 @@ mod table;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use pericles_io::{OutputFolder, write_atomically};
+use pericles_io::OutputFolder;
 use serde::Serialize;
 
 use crate::args::ReproduceArgs;
@@ -124,7 +124,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
             pass: exit == Exit::Done,
             seconds,
         };
-        write_json(path, &results)?;
+        console::write_json(path, &results)?;
     }
     if !quiet && !json_only {
         console::print(format_args!("{} ({})\n", study.title, study.paper))?;
@@ -189,17 +189,6 @@ fn find(id: &str) -> Result<&'static Study, CliError> {
 
 fn default_folder(id: &str) -> PathBuf {
     format!("./reproduce-{}", id.replace('/', "-")).into()
-}
-
-fn write_json(path: &Path, results: &Results<'_>) -> Result<(), CliError> {
-    let text = serde_json::to_string_pretty(results)?;
-    if path == Path::new("-") {
-        return console::print(format_args!("{text}"));
-    }
-    Ok(write_atomically(path, |file| {
-        use std::io::Write;
-        writeln!(file, "{text}")
-    })?)
 }
 
 #[cfg(test)]

@@ -1,0 +1,115 @@
+//! `bench`: how fast the operators are on this machine.
+
+use std::path::Path;
+
+use pericles::bench::{self, Case, Timing};
+use serde::Serialize;
+
+use crate::args::BenchArgs;
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::machine;
+
+/// Rounds whose median is told.
+const ROUNDS: usize = 9;
+
+/// The results as JSON.
+#[derive(Serialize)]
+struct Results {
+    machine: String,
+    cases: Vec<CaseResult>,
+}
+
+#[derive(Serialize)]
+struct CaseResult {
+    case: &'static str,
+    operator: &'static str,
+    isa: &'static str,
+    points: usize,
+    directed_bonds: u64,
+    threads: usize,
+    ns_per_bond: f64,
+    roofline_fraction: f64,
+    bytes_per_point: f64,
+    gigabytes_per_second: f64,
+    build_seconds: f64,
+}
+
+impl From<&Timing> for CaseResult {
+    fn from(timing: &Timing) -> Self {
+        Self {
+            case: timing.case,
+            operator: timing.form.name(),
+            isa: timing.instruction_set.name(),
+            points: timing.points,
+            directed_bonds: timing.directed_bonds,
+            threads: timing.threads,
+            ns_per_bond: timing.ns_per_bond,
+            roofline_fraction: timing.roofline_fraction,
+            bytes_per_point: timing.bytes_per_point,
+            gigabytes_per_second: timing.gigabytes_per_second,
+            build_seconds: timing.build_seconds,
+        }
+    }
+}
+
+/// Times one case, or all.
+///
+/// # Errors
+/// An unknown case, output that cannot be written.
+pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
+    let cases = match &args.case {
+        None => Case::all(),
+        Some(name) => vec![Case::named(name).ok_or_else(|| {
+            let all: Vec<&str> = Case::all().iter().map(|case| case.name).collect();
+            CliError::UnknownCase {
+                name: name.clone(),
+                allowed: format!("cases: {}", all.join(", ")),
+            }
+        })?],
+    };
+    let threads = args.threads.start()?;
+    let machine = machine::words();
+    let table = args.json.as_deref() != Some(Path::new("-"));
+    if table {
+        console::print(format_args!(
+            "{machine}; {threads} threads\n{:<16} {:>5} {:>8} {:>10} {:>12} {:>8} {:>11} {:>6} {:>9} {:>8}",
+            "case",
+            "form",
+            "isa",
+            "points",
+            "bonds (dir.)",
+            "ns/bond",
+            "Mbonds/s",
+            "GB/s",
+            "roofline",
+            "B/point"
+        ))?;
+    }
+    let mut timings = Vec::new();
+    for case in &cases {
+        let timing = bench::run(case, ROUNDS)?;
+        if table {
+            console::print(format_args!(
+                "{:<16} {:>5} {:>8} {:>10} {:>12} {:>8.3} {:>11.0} {:>6.1} {:>8.0}% {:>8.0}",
+                timing.case,
+                timing.form.name(),
+                timing.instruction_set.name(),
+                timing.points,
+                timing.directed_bonds,
+                timing.ns_per_bond,
+                1e-6 * timing.bonds_per_second(),
+                timing.gigabytes_per_second,
+                100.0 * timing.roofline_fraction,
+                timing.bytes_per_point
+            ))?;
+        }
+        timings.push(timing);
+    }
+    if let Some(path) = &args.json {
+        let cases = timings.iter().map(CaseResult::from).collect();
+        console::write_json(path, &Results { machine, cases })?;
+    }
+    Ok(Exit::Done)
+}
