@@ -179,6 +179,76 @@ pub enum PericlesError {
         /// What is missing or has another size.
         reason: String,
     },
+    /// An operator that cannot be applied as a convolution.
+    #[error("convolution: {reason}")]
+    BadConvolution {
+        /// Why, and what is allowed.
+        reason: String,
+    },
+    /// A ratio of time steps below one.
+    #[error("the ratio of the time steps is {ratio}: it must be a whole number of at least 1")]
+    StepRatio {
+        /// The ratio given.
+        ratio: u32,
+    },
+    /// A fine region without points.
+    #[error("fine region {region} has no points; each needs at least one")]
+    FineRegionEmpty {
+        /// Which of the regions, from 0.
+        region: usize,
+    },
+    /// Two fine regions that share a point.
+    #[error("fine regions {first} and {second} overlap, at point {point}: give them as one region")]
+    FineRegionsOverlap {
+        /// One region, from 0.
+        first: usize,
+        /// The other.
+        second: usize,
+        /// A common point, in the user's numbering.
+        point: usize,
+    },
+    /// A fine region that bonds reach across.
+    #[error(
+        "fine region {region} is {extent:e} m thick along {axis}: it must be at least a horizon, {reach:e} m, or bonds of the coarse step pass over it"
+    )]
+    FineRegionThin {
+        /// Which of the regions, from 0.
+        region: usize,
+        /// Its extent, m.
+        extent: f64,
+        /// The axis, x, y or z.
+        axis: char,
+        /// Length of the longest bond, m.
+        reach: f64,
+    },
+    /// A scheme that this body cannot be stepped with.
+    #[error("{scheme} cannot step this body: {reason}")]
+    SchemeNotUsable {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Why, and what can be done.
+        reason: &'static str,
+    },
+    /// A parameter of a scheme outside its range.
+    #[error("{parameter} is {value}; allowed: {allowed}")]
+    SchemeParameter {
+        /// What the number stands for.
+        parameter: &'static str,
+        /// The number given.
+        value: f64,
+        /// The range.
+        allowed: &'static str,
+    },
+    /// An adaptive scheme that finds no step small enough.
+    #[error(
+        "at t = {t:e} s no step meets the tolerance: {step:e} s is the smallest that was tried; a looser tolerance or a smoother load helps"
+    )]
+    StepTooSmall {
+        /// Time, s.
+        t: f64,
+        /// The step, s.
+        step: f64,
+    },
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

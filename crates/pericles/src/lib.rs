@@ -48,8 +48,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod accounts;
 pub mod analysis;
 mod archive;
+pub mod bench;
 pub mod boundary;
 mod error;
 pub mod family;
@@ -64,7 +66,8 @@ pub mod space;
 mod system;
 pub mod time;
 
+pub use accounts::{Completed, Ledger};
 pub use archive::{Archive, Saved, Values};
 pub use error::{PericlesError, Result};
 pub use simulation::{Control, Outcome, Simulation, SimulationError};
-pub use system::{Ledger, PointScalar, System};
+pub use system::{PointScalar, System};

@@ -4,6 +4,8 @@
 
 use rayon::prelude::*;
 
+use crate::operator::On;
+
 /// Points in a block.
 pub const BLOCK: usize = 512;
 
@@ -57,6 +59,54 @@ fn split<const D: usize, S: Send>(
             );
         }
     }
+}
+
+/// Calls `set(point, entry)` for the entries of a component-major array that belong to the points named by `on`, on all cores.
+pub(crate) fn for_each_entry(
+    on: &On<'_>,
+    n: usize,
+    out: &mut [f64],
+    set: &(impl Fn(usize, &mut f64) + Sync),
+) {
+    for component in out.chunks_mut(n) {
+        match on {
+            On::All => in_range(0, component, set),
+            On::Range(range) => in_range(range.start, &mut component[range.clone()], set),
+            On::Set(points) => in_set(0, component, points, set),
+        }
+    }
+}
+
+fn in_range(first: usize, entries: &mut [f64], set: &(impl Fn(usize, &mut f64) + Sync)) {
+    entries
+        .par_chunks_mut(BLOCK)
+        .enumerate()
+        .for_each(|(block, chunk)| {
+            for (k, entry) in chunk.iter_mut().enumerate() {
+                set(first + block * BLOCK + k, entry);
+            }
+        });
+}
+
+fn in_set(
+    first: usize,
+    entries: &mut [f64],
+    points: &[u32],
+    set: &(impl Fn(usize, &mut f64) + Sync),
+) {
+    if points.len() <= 2 * BLOCK {
+        for &i in points {
+            set(i as usize, &mut entries[i as usize - first]);
+        }
+        return;
+    }
+    let (low_points, high_points) = points.split_at(points.len() / 2);
+    let middle = high_points[0] as usize;
+    let (low, high) = entries.split_at_mut(middle - first);
+    rayon::join(
+        || in_set(first, low, low_points, set),
+        || in_set(middle, high, high_points, set),
+    );
 }
 
 /// The components of a component-major array.

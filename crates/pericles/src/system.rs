@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use crate::accounts::{Completed, Ledger, Path};
 use crate::archive::{Archive, Saved, Values};
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Accepted, ForceOperator, On};
-use crate::parallel::{BLOCK, ordered_sum};
+use crate::parallel::{BLOCK, for_each_entry, ordered_sum};
 use crate::space::PointCloud;
 
 /// A number per point, stored once where all are equal.
@@ -31,30 +32,11 @@ impl PointScalar {
     }
 }
 
-/// Work and impulse of everything outside the body since the start.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Ledger {
-    /// Work of loads and supports, J.
-    pub work: f64,
-    /// Sum of the magnitudes of its contributions, J: the scale of what was exchanged.
-    pub exchanged: f64,
-    /// Impulse of loads and supports, N s.
-    pub impulse: [f64; 3],
-}
-
-impl Ledger {
-    fn book(&mut self, work: f64, impulse: [f64; 3]) {
-        self.work += work;
-        self.exchanged += work.abs();
-        for c in 0..3 {
-            self.impulse[c] += impulse[c];
-        }
-    }
-}
-
 /// ρ u_tt = f(u) + b(t) with prescribed motions and boundaries.
 ///
-/// Integrators call [`System::acceleration`] at stages and [`System::accept_and_accelerate`] at the end of steps; they hold no physics of their own.
+/// Integrators call [`System::acceleration`] at stages and [`System::accept_and_accelerate`] (schemes whose step ends with half a push) or
+/// [`System::complete_and_accelerate`] (schemes whose forces acted over the whole step) at the end of steps; they hold no physics of their own. Schemes with zones call
+/// [`System::accept_on`] at the end of sub-steps.
 pub struct System {
     cloud: Arc<PointCloud>,
     operator: Box<dyn ForceOperator>,
@@ -63,6 +45,7 @@ pub struct System {
     motions: Vec<PrescribedMotion>,
     boundaries: Vec<Box<dyn Boundary>>,
     ledger: Ledger,
+    evaluated: u64,
 }
 
 impl System {
@@ -93,6 +76,7 @@ impl System {
             motions: Vec::new(),
             boundaries: Vec::new(),
             ledger: Ledger::default(),
+            evaluated: 0,
         })
     }
 
@@ -162,6 +146,16 @@ impl System {
         &self.ledger
     }
 
+    /// Points whose force has been evaluated so far: an evaluation of the whole body counts as many as it has points.
+    pub fn evaluated_points(&self) -> u64 {
+        self.evaluated
+    }
+
+    /// Whether there are boundaries with a state of their own.
+    pub fn has_boundaries(&self) -> bool {
+        !self.boundaries.is_empty()
+    }
+
     /// Number of points.
     pub fn points(&self) -> usize {
         self.cloud.len()
@@ -174,10 +168,7 @@ impl System {
 
     /// Sets prescribed displacements of time t, and what boundaries set, before a force evaluation.
     pub fn constrain(&mut self, t: f64, u: &mut [f64], v: &mut [f64]) {
-        let n = self.points();
-        for motion in &self.motions {
-            motion.place(t, n, u);
-        }
+        self.place_on(t, &On::All, u);
         for boundary in &mut self.boundaries {
             boundary.before_force(t, u, v);
         }
@@ -185,53 +176,145 @@ impl System {
 
     /// Sets prescribed velocities of time t.
     pub fn constrain_velocity(&self, t: f64, v: &mut [f64]) {
-        for motion in &self.motions {
-            motion.drive(t, self.points(), v);
-        }
+        self.drive_on(t, &On::All, v);
     }
 
     /// Sets prescribed mean velocities of the step from t to t + dt.
     pub fn constrain_mean_velocity(&self, t: f64, dt: f64, v: &mut [f64]) {
+        self.drive_mean_on(t, dt, &On::All, v);
+    }
+
+    /// Sets prescribed displacements of time t for the points named by `on`.
+    pub fn place_on(&self, t: f64, on: &On<'_>, u: &mut [f64]) {
         for motion in &self.motions {
-            motion.drive_mean(t, dt, self.points(), v);
+            motion.place(t, on, self.points(), u);
         }
     }
 
-    /// Acceleration at a stage: internal force and loads over density; prescribed where motion is prescribed.
+    /// Sets prescribed velocities of time t for the points named by `on`.
+    pub fn drive_on(&self, t: f64, on: &On<'_>, v: &mut [f64]) {
+        for motion in &self.motions {
+            motion.drive(t, on, self.points(), v);
+        }
+    }
+
+    /// Sets prescribed mean velocities of the step from t to t + dt for the points named by `on`.
+    pub fn drive_mean_on(&self, t: f64, dt: f64, on: &On<'_>, v: &mut [f64]) {
+        for motion in &self.motions {
+            motion.drive_mean(t, dt, on, self.points(), v);
+        }
+    }
+
+    /// Acceleration at a stage: internal force and loads over density; prescribed where motion is prescribed. Entries of other points stay.
     pub fn acceleration(&mut self, t: f64, u: &[f64], v: &[f64], on: On<'_>, out: &mut [f64]) {
-        self.zero(&on, out);
-        self.operator.add_force(t, u, on.clone(), out);
-        self.add_loads(t, &on, out);
-        self.divide_by_density(&on, out);
-        self.finish(t, u, v, out);
+        self.free_acceleration(t, u, &on, out);
+        self.finish(t, u, v, &on, out);
     }
 
     /// The same at the end of a step: decides breaking and books the work and impulse of the step.
     ///
     /// `accepted.mean_velocity · dt` must be the change of displacement over the step.
     pub fn accept_and_accelerate(&mut self, accepted: Accepted<'_>, v: &[f64], out: &mut [f64]) {
-        self.zero(&On::All, out);
-        self.operator.accept_and_force(accepted, On::All, out);
-        self.add_loads(accepted.t, &On::All, out);
-        self.divide_by_density(&On::All, out);
-        self.book(accepted, out);
-        self.finish(accepted.t, accepted.u, v, out);
+        self.accept_on(accepted, &On::All, out);
+        self.book_step(accepted, out);
+        self.finish(accepted.t, accepted.u, v, &On::All, out);
     }
 
-    /// Notes the reactions of the initial state; `acceleration` are the free accelerations f/ρ there.
-    pub fn start(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
-        self.zero(&On::All, out);
-        self.operator.add_force(t, u, On::All, out);
-        self.add_loads(t, &On::All, out);
-        self.divide_by_density(&On::All, out);
-        let rest = Accepted {
+    /// The same for schemes whose forces acted over the whole step: a bond that breaks dissipates all its energy.
+    pub fn complete_and_accelerate(&mut self, completed: Completed<'_>, out: &mut [f64]) {
+        let Completed { t, dt, u, v } = completed;
+        let whole = Accepted {
             t,
-            u,
-            mean_velocity: v,
+            u: u[1],
+            mean_velocity: v[1],
             dt: 0.0,
         };
-        self.book(rest, out);
-        self.finish(t, u, v, out);
+        self.accept_on(whole, &On::All, out);
+        self.book(Path::Cubic { u, v }, t, dt, out);
+        self.finish(t, u[1], v[1], &On::All, out);
+    }
+
+    /// At the end of a sub-step of the points named by `on`: decides breaking of their bonds and evaluates f/ρ for them. Books nothing, and leaves prescribed
+    /// motion to [`System::finish`].
+    pub fn accept_on(&mut self, accepted: Accepted<'_>, on: &On<'_>, out: &mut [f64]) {
+        self.zero(on, out);
+        self.evaluated += on.count(self.points()) as u64;
+        self.operator.accept_and_force(accepted, on.clone(), out);
+        self.add_loads(accepted.t, on, out);
+        self.divide_by_density(on, out);
+    }
+
+    /// [`System::accept_on`] of the bonds whose other end is marked in `partners`; loads are part of it if `with_loads`.
+    pub fn accept_on_from(
+        &mut self,
+        accepted: Accepted<'_>,
+        on: &On<'_>,
+        partners: &[bool],
+        with_loads: bool,
+        out: &mut [f64],
+    ) {
+        self.zero(on, out);
+        self.evaluated += on.count(self.points()) as u64;
+        if let Some(zoned) = self.operator.as_zoned_mut() {
+            zoned.accept_and_force_from(accepted, on.clone(), partners, out);
+        }
+        if with_loads {
+            self.add_loads(accepted.t, on, out);
+        }
+        self.divide_by_density(on, out);
+    }
+
+    /// f/ρ with loads, for the points named by `on`, whether or not their motion is prescribed.
+    pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+        self.zero(on, out);
+        self.evaluated += on.count(self.points()) as u64;
+        self.operator.add_force(t, u, on.clone(), out);
+        self.add_loads(t, on, out);
+        self.divide_by_density(on, out);
+    }
+
+    /// [`System::free_acceleration`] by the bonds whose other end is marked in `partners`; loads are part of it if `with_loads`.
+    pub fn free_acceleration_from(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        on: &On<'_>,
+        partners: &[bool],
+        with_loads: bool,
+        out: &mut [f64],
+    ) {
+        self.zero(on, out);
+        self.evaluated += on.count(self.points()) as u64;
+        if let Some(zoned) = self.operator.as_zoned() {
+            zoned.add_force_from(t, u, on.clone(), partners, out);
+        }
+        if with_loads {
+            self.add_loads(t, on, out);
+        }
+        self.divide_by_density(on, out);
+    }
+
+    /// Puts prescribed accelerations and those of boundaries in place of f/ρ, for the points named by `on`.
+    pub fn finish(&mut self, t: f64, u: &[f64], v: &[f64], on: &On<'_>, out: &mut [f64]) {
+        for motion in &self.motions {
+            motion.accelerate(t, on, self.cloud.len(), out);
+        }
+        for boundary in &mut self.boundaries {
+            boundary.after_stage(t, u, v, out);
+        }
+    }
+
+    /// Books the work and impulse of a step that ended at `accepted`; `acceleration` are the free accelerations f/ρ of all points there.
+    pub fn book_step(&mut self, accepted: Accepted<'_>, acceleration: &[f64]) {
+        let path = Path::MeanVelocity(accepted.mean_velocity);
+        self.book(path, accepted.t, accepted.dt, acceleration);
+    }
+
+    /// Notes the reactions of the initial state.
+    pub fn start(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
+        self.free_acceleration(t, u, &On::All, out);
+        self.book(Path::MeanVelocity(v), t, 0.0, out);
+        self.finish(t, u, v, &On::All, out);
     }
 
     /// Internal force and loads at displacement u, N/m³.
@@ -280,18 +363,7 @@ impl System {
     }
 
     fn zero(&self, on: &On<'_>, out: &mut [f64]) {
-        let n = self.points();
-        match on {
-            On::All => out.par_chunks_mut(BLOCK).for_each(|chunk| chunk.fill(0.0)),
-            On::Range(range) => out
-                .chunks_mut(n)
-                .for_each(|component| component[range.clone()].fill(0.0)),
-            On::Set(set) => {
-                for component in out.chunks_mut(n) {
-                    set.iter().for_each(|&i| component[i as usize] = 0.0);
-                }
-            }
-        }
+        for_each_entry(on, self.points(), out, &|_, x| *x = 0.0);
     }
 
     fn add_loads(&self, t: f64, on: &On<'_>, out: &mut [f64]) {
@@ -302,75 +374,25 @@ impl System {
 
     fn divide_by_density(&self, on: &On<'_>, out: &mut [f64]) {
         let n = self.points();
-        match on {
-            On::All => {
-                for component in out.chunks_mut(n) {
-                    component
-                        .par_chunks_mut(BLOCK)
-                        .enumerate()
-                        .for_each(|(block, chunk)| {
-                            for (k, x) in chunk.iter_mut().enumerate() {
-                                *x /= self.density.at(block * BLOCK + k);
-                            }
-                        });
-                }
-            }
-            On::Range(range) => {
-                for component in out.chunks_mut(n) {
-                    for i in range.clone() {
-                        component[i] /= self.density.at(i);
-                    }
-                }
-            }
-            On::Set(set) => {
-                for component in out.chunks_mut(n) {
-                    for &i in *set {
-                        component[i as usize] /= self.density.at(i as usize);
-                    }
-                }
+        match &self.density {
+            PointScalar::Uniform(density) => for_each_entry(on, n, out, &|_, x| *x /= density),
+            PointScalar::PerPoint(densities) => {
+                for_each_entry(on, n, out, &|i, x| *x /= densities[i]);
             }
         }
     }
 
-    fn book(&mut self, accepted: Accepted<'_>, acceleration: &[f64]) {
+    fn book(&mut self, path: Path<'_>, t: f64, dt: f64, acceleration: &[f64]) {
         let n = self.points();
-        let Accepted {
-            t,
-            mean_velocity,
-            dt,
-            ..
-        } = accepted;
         let volumes = self.cloud.volumes();
         for load in &self.loads {
-            let factor = 0.5 * dt * (load.function.value(t) + load.function.value(t - dt));
-            let (mut work, mut impulse) = (0.0, [0.0; 3]);
-            for c in 0..self.cloud.dimension() {
-                if load.density[c] == 0.0 {
-                    continue;
-                }
-                for &i in &load.points {
-                    let force = load.density[c] * volumes[i as usize];
-                    work += force * mean_velocity[c * n + i as usize];
-                    impulse[c] += force;
-                }
-            }
-            self.ledger
-                .book(work * factor, impulse.map(|component| component * factor));
+            let (work, impulse) = path.work_of(load, t, dt, self.cloud.dimension(), volumes);
+            self.ledger.book(work, impulse);
         }
         let density = |i: usize| self.density.at(i);
         for motion in &mut self.motions {
             let (work, impulse) = motion.account(t, dt, n, acceleration, &density, volumes);
             self.ledger.book(work, impulse);
-        }
-    }
-
-    fn finish(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
-        let n = self.points();
-        for motion in &self.motions {
-            motion.accelerate(t, n, out);
-        }
-        for boundary in &mut self.boundaries {
-            boundary.after_stage(t, u, v, out);
         }
     }
 }
@@ -393,6 +415,7 @@ impl Saved for System {
             impulse: [x, y, z],
         } = self.ledger;
         archive.put("ledger", Values::F64(vec![work, exchanged, x, y, z]));
+        archive.put("evaluated", Values::U64(vec![self.evaluated]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
@@ -411,6 +434,7 @@ impl Saved for System {
             exchanged,
             impulse: [x, y, z],
         };
+        archive.u64_into("evaluated", std::slice::from_mut(&mut self.evaluated))?;
         Ok(())
     }
 }

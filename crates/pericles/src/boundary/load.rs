@@ -48,16 +48,7 @@ impl Load {
                 continue;
             }
             let component = &mut out[c * points..(c + 1) * points];
-            for &i in &self.points {
-                let wanted = match on {
-                    On::All => true,
-                    On::Range(range) => range.contains(&(i as usize)),
-                    On::Set(set) => set.binary_search(&i).is_ok(),
-                };
-                if wanted {
-                    component[i as usize] += force;
-                }
-            }
+            on.common(&self.points, |_, i| component[i] += force);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Prescribed displacement and velocity.
 
 use super::TimeFunction;
+use crate::operator::On;
 use crate::space::PointSet;
 
 /// What is prescribed.
@@ -75,56 +76,57 @@ impl PrescribedMotion {
         }
     }
 
-    /// Calls `set(entry of the state's arrays, start displacement, amplitude, slot)` for every prescribed number.
-    fn for_each(&self, cloud_len: usize, mut set: impl FnMut(usize, f64, f64, usize)) {
+    /// Calls `set(entry of the state's arrays, start displacement, amplitude, slot)` for every prescribed number of the points named by `on`.
+    fn for_each(&self, on: &On<'_>, cloud_len: usize, mut set: impl FnMut(usize, f64, f64, usize)) {
         for (axis, (c, amplitude)) in self.axes().enumerate() {
-            for (k, &i) in self.points.iter().enumerate() {
+            on.common(&self.points, |k, i| {
                 let slot = axis * self.points.len() + k;
-                set(
-                    c * cloud_len + i as usize,
-                    self.start[slot],
-                    amplitude,
-                    slot,
-                );
-            }
+                set(c * cloud_len + i, self.start[slot], amplitude, slot);
+            });
         }
     }
 
     /// Sets displacements of time t.
-    pub(crate) fn place(&self, t: f64, cloud_len: usize, u: &mut [f64]) {
+    pub(crate) fn place(&self, t: f64, on: &On<'_>, cloud_len: usize, u: &mut [f64]) {
         let (displacement, _, _) = self.course(t);
-        self.for_each(cloud_len, |entry, start, amplitude, _| {
+        self.for_each(on, cloud_len, |entry, start, amplitude, _| {
             u[entry] = start + amplitude * displacement;
         });
     }
 
     /// Sets velocities of time t.
-    pub(crate) fn drive(&self, t: f64, cloud_len: usize, v: &mut [f64]) {
+    pub(crate) fn drive(&self, t: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
         let (_, velocity, _) = self.course(t);
-        self.for_each(cloud_len, |entry, _, amplitude, _| {
+        self.for_each(on, cloud_len, |entry, _, amplitude, _| {
             v[entry] = amplitude * velocity
         });
     }
 
     /// Sets the mean velocities between t and t + dt.
-    pub(crate) fn drive_mean(&self, t: f64, dt: f64, cloud_len: usize, v: &mut [f64]) {
+    pub(crate) fn drive_mean(&self, t: f64, dt: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
         let mean = (self.course(t + dt).0 - self.course(t).0) / dt;
-        self.for_each(cloud_len, |entry, _, amplitude, _| {
+        self.for_each(on, cloud_len, |entry, _, amplitude, _| {
             v[entry] = amplitude * mean
         });
     }
 
     /// Replaces accelerations by the prescribed ones of time t.
-    pub(crate) fn accelerate(&self, t: f64, cloud_len: usize, acceleration: &mut [f64]) {
+    pub(crate) fn accelerate(
+        &self,
+        t: f64,
+        on: &On<'_>,
+        cloud_len: usize,
+        acceleration: &mut [f64],
+    ) {
         let (_, _, rate) = self.course(t);
-        self.for_each(cloud_len, |entry, _, amplitude, _| {
+        self.for_each(on, cloud_len, |entry, _, amplitude, _| {
             acceleration[entry] = amplitude * rate;
         });
     }
 
     /// Zeros the prescribed entries of a vector, as in a virtual displacement.
     pub(crate) fn project(&self, cloud_len: usize, vector: &mut [f64]) {
-        self.for_each(cloud_len, |entry, _, _, _| vector[entry] = 0.0);
+        self.for_each(&On::All, cloud_len, |entry, _, _, _| vector[entry] = 0.0);
     }
 
     /// Notes the reaction ρ a − f at an accepted state, from the accelerations f/ρ before they are replaced, and returns the work (J)
@@ -142,7 +144,7 @@ impl PrescribedMotion {
         let advance = self.course(t).0 - self.course(t - dt).0;
         let (mut work, mut impulse) = (0.0, [0.0; 3]);
         let mut reaction = std::mem::take(&mut self.reaction);
-        self.for_each(cloud_len, |entry, _, amplitude, slot| {
+        self.for_each(&On::All, cloud_len, |entry, _, amplitude, slot| {
             let (c, i) = (entry / cloud_len, entry % cloud_len);
             let now = density(i) * (amplitude * rate - acceleration[entry]);
             let mean = 0.5 * (reaction[slot] + now) * volumes[i];
@@ -157,7 +159,7 @@ impl PrescribedMotion {
     /// The force of the support on the body at the last accepted state, N.
     pub fn reaction(&self, cloud_len: usize, volumes: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        self.for_each(cloud_len, |entry, _, _, slot| {
+        self.for_each(&On::All, cloud_len, |entry, _, _, slot| {
             sum[entry / cloud_len] += self.reaction[slot] * volumes[entry % cloud_len];
         });
         sum

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::bond_kernels::{
     Bonds, BreakRule, Rows, Tally, Which, accept_rows, energy_rows, force_rows, tangent_rows,
 };
-use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::family::{BondList, LANES};
@@ -90,12 +90,33 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
+        Self::with_pair_stiffness(
+            cloud,
+            bonds,
+            |_, _, xi| stiffness_of_bond(xi),
+            breaking,
+            damage,
+        )
+    }
+
+    /// An operator whose bonds have the stiffness c α(i, j, ξ) given for each pair of points and the vector ξ from one to the other; it must be the same from both
+    /// ends.
+    ///
+    /// # Panics
+    /// If the cloud has another dimension than D.
+    pub fn with_pair_stiffness(
+        cloud: Arc<PointCloud>,
+        bonds: BondList,
+        stiffness_of_pair: impl Fn(usize, usize, [f64; 3]) -> f64,
+        breaking: Breaking<'_>,
+        damage: DamageMeasure,
+    ) -> Self {
         assert_eq!(cloud.dimension(), D, "an operator of the cloud's dimension");
         let n = cloud.len();
         let mut stiffness = vec![0.0; bonds.neighbours().len()];
         for i in 0..n {
             for (entry, j) in bonds.family(i) {
-                stiffness[entry] = stiffness_of_bond(bonds.vector(&cloud, i, j))
+                stiffness[entry] = stiffness_of_pair(i, j, bonds.vector(&cloud, i, j))
                     * bonds.volume_factor(&cloud, i, j)
                     * cloud.volumes()[j];
             }
@@ -180,6 +201,7 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
             start: self.bonds.start(),
             neighbours: self.bonds.neighbours(),
             stiffness: &self.stiffness,
+            partners: None,
         }
     }
 
@@ -214,12 +236,16 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         u: &[f64],
         step: Option<(&[f64], f64)>,
         on: &On<'_>,
+        partners: Option<&[bool]>,
         out: &mut [f64],
     ) {
         let n = self.points();
-        let whole = matches!(on, On::All);
+        let whole = matches!(on, On::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
-        let bonds = self.view();
+        let bonds = Bonds {
+            partners,
+            ..self.view()
+        };
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
             breakable: self.breakable.as_deref(),
@@ -341,7 +367,7 @@ impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
         if self.can_break() {
             let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide::<true>(accepted.u, step, &on, out);
+            self.decide::<true>(accepted.u, step, &on, None, out);
         } else {
             self.add_force(accepted.t, accepted.u, on, out);
         }
@@ -351,7 +377,7 @@ impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
         if self.can_break() {
             // No force is written: any array of the right shape will do for the loop's slices.
             let mut unused = vec![0.0; D * self.points()];
-            self.decide::<false>(u, None, &on, &mut unused);
+            self.decide::<false>(u, None, &on, None, &mut unused);
         }
     }
 
@@ -431,6 +457,82 @@ impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        Some(self)
+    }
+
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        Some(self)
+    }
+}
+
+impl<L: PairForce, const D: usize> ZonedForce for BondForce<L, D> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let present = self.bonds.present();
+        for (entry, j) in self.bonds.family(i) {
+            if present[entry / LANES] >> (entry % LANES) & 1 == 1 {
+                visit(j);
+            }
+        }
+    }
+
+    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+        let u = components::<D>(u, self.points());
+        let bonds = Bonds {
+            partners: Some(partners),
+            ..self.view()
+        };
+        self.sweep::<D>(&on, out, |intact, rows, out| {
+            force_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
+        });
+    }
+
+    fn accept_and_force_from(
+        &mut self,
+        accepted: Accepted<'_>,
+        on: On<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
+        if self.can_break() {
+            let step = Some((accepted.mean_velocity, accepted.dt));
+            self.decide::<true>(accepted.u, step, &on, Some(partners), out);
+        } else {
+            self.add_force_from(accepted.t, accepted.u, on, partners, out);
+        }
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if !self.can_break() {
+            return;
+        }
+        let threshold = L::threshold(fraction * self.critical_stretch);
+        let u = components::<D>(u, self.points());
+        let difference = |field: [&[f64]; D], i: usize, j: usize| -> [f64; D] {
+            std::array::from_fn(|c| field[c][j] - field[c][i])
+        };
+        let over = |i: usize, j: usize| {
+            let xi = difference(self.view().reference, i, j).map(|x| x * self.unit);
+            let (measure, square) = L::stretch_measure(xi, difference(u, i, j));
+            measure > threshold * square
+        };
+        let may_break = |entry: usize| {
+            self.breakable
+                .as_ref()
+                .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
+        };
+        marks
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(BLOCK)
+            .for_each(|(i, mark)| {
+                *mark |= self
+                    .bonds
+                    .family(i)
+                    .any(|(entry, j)| self.is_intact(i, entry) && may_break(entry) && over(i, j));
+            });
     }
 }
 

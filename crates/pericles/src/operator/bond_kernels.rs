@@ -17,6 +17,8 @@ pub(super) struct Bonds<'a, const D: usize> {
     pub neighbours: &'a [u32],
     /// c α κ V of the neighbour, per entry.
     pub stiffness: &'a [f64],
+    /// Marks of the points whose bonds count; all of them if none.
+    pub partners: Option<&'a [bool]>,
 }
 
 /// Rows of a block: its first point, and which of its points are wanted.
@@ -76,6 +78,22 @@ impl<const D: usize> Bonds<'_, D> {
         })
     }
 
+    /// Bits of the bonds of a group that count.
+    #[inline(always)]
+    fn wanted(&self, group: usize) -> u8 {
+        match self.partners {
+            None => 0xFF,
+            Some(marks) => {
+                let neighbours = &self.neighbours[group * LANES..(group + 1) * LANES];
+                let mut bits = 0;
+                for k in 0..LANES {
+                    bits |= u8::from(marks[neighbours[k] as usize]) << k;
+                }
+                bits
+            }
+        }
+    }
+
     #[inline(always)]
     fn stiffness(&self, group: usize) -> F64x8 {
         let stiffness = &self.stiffness[group * LANES..(group + 1) * LANES];
@@ -97,7 +115,7 @@ fn force_rows_body<L: PairForce, const D: usize>(
         let i = rows.which.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
-            let mask = intact[group - first_group];
+            let mask = intact[group - first_group] & bonds.wanted(group);
             if mask != 0 {
                 let xi = bonds.vectors(i, group);
                 let eta = bonds.differences(i, group, u);
@@ -161,7 +179,7 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
         let i = rows.which.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
-            let mut mask = intact[group - first_group];
+            let mut mask = intact[group - first_group] & bonds.wanted(group);
             if mask == 0 {
                 continue;
             }
@@ -172,7 +190,7 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
             let over = measure.greater(threshold * square) & mask & breakable;
             if over != 0 {
                 mask &= !over;
-                intact[group - first_group] = mask;
+                intact[group - first_group] &= !over;
                 break_bonds::<L, D>(bonds, rule, u, i, group, over, tally);
             }
             if FORCE {

@@ -24,8 +24,10 @@ mod grid_operator;
 mod grid_padded;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
-mod lanes_x86;
+pub(crate) mod lanes_x86;
+pub mod linear;
 mod stencil;
+mod zoned;
 
 use std::ops::Range;
 
@@ -34,6 +36,8 @@ pub use bond_force::{BondForce, Breaking, DamageMeasure};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
+pub use linear::{ConvolutionForce, CostComparison, Ends, Route, Toeplitz};
+pub use zoned::ZonedForce;
 
 use crate::archive::Saved;
 
@@ -46,6 +50,50 @@ pub enum On<'a> {
     Range(Range<usize>),
     /// Points by number, ascending.
     Set(&'a [u32]),
+}
+
+impl On<'_> {
+    /// Number of points, of a body of `points`.
+    pub fn count(&self, points: usize) -> usize {
+        match self {
+            Self::All => points,
+            Self::Range(range) => range.len(),
+            Self::Set(set) => set.len(),
+        }
+    }
+
+    /// Calls `visit(place in the list, point)` for every point of an ascending list that is wanted.
+    pub fn common(&self, list: &[u32], mut visit: impl FnMut(usize, usize)) {
+        match self {
+            Self::All => {
+                for (k, &i) in list.iter().enumerate() {
+                    visit(k, i as usize);
+                }
+            }
+            Self::Range(range) => {
+                let from = list.partition_point(|&i| (i as usize) < range.start);
+                let to = list.partition_point(|&i| (i as usize) < range.end);
+                for (k, &i) in list.iter().enumerate().take(to).skip(from) {
+                    visit(k, i as usize);
+                }
+            }
+            // The shorter of the two is walked through.
+            Self::Set(set) if set.len() < list.len() => {
+                for &i in *set {
+                    if let Ok(k) = list.binary_search(&i) {
+                        visit(k, i as usize);
+                    }
+                }
+            }
+            Self::Set(set) => {
+                for (k, &i) in list.iter().enumerate() {
+                    if set.binary_search(&i).is_ok() {
+                        visit(k, i as usize);
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// A state at the end of an accepted step.
@@ -117,6 +165,16 @@ pub trait ForceOperator: Saved + Send + Sync {
 
     /// The operator as a linear map, if it is one.
     fn as_linear(&self) -> Option<&dyn LinearOperator>;
+
+    /// The operator as a sum over bonds that can be taken apart by zones, if it is one.
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        None
+    }
+
+    /// The same, to decide breaking zone by zone.
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        None
+    }
 }
 
 /// A force density linear in the displacement.

@@ -23,7 +23,7 @@ pub(super) struct BondRule<'a> {
     pub reach: f64,
     /// κ V of a bond of a given length, m³.
     pub volume: &'a dyn Fn(f64) -> f64,
-    /// c α of a bond with a given vector ξ, m.
+    /// c α of a bond of a given reference vector.
     pub stiffness: &'a dyn Fn([f64; 3]) -> f64,
 }
 

@@ -29,6 +29,15 @@ impl HighestFrequency {
                 self.bound
             }
     }
+
+    /// The same for time steps that are `ratio` times smaller.
+    pub(super) fn over(self, ratio: f64) -> Self {
+        Self {
+            estimate: self.estimate / ratio,
+            bound: self.bound / ratio,
+            ..self
+        }
+    }
 }
 
 /// Relative residual at which the largest Ritz value counts as converged; the value's own error is smaller still.
@@ -41,6 +50,33 @@ const CHECK_EVERY: usize = 10;
 /// # Errors
 /// A body without any stiffness.
 pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency> {
+    iterate(system, u, &|vector| system.hold(vector))
+}
+
+/// The same with all points held but those given, ascending.
+///
+/// # Errors
+/// Points without any stiffness.
+pub fn highest_frequency_on(
+    system: &System,
+    u: &[f64],
+    points: &[u32],
+) -> Result<HighestFrequency> {
+    let mut held = vec![true; system.points()];
+    points.iter().for_each(|&i| held[i as usize] = false);
+    iterate(system, u, &|vector| {
+        system.hold(vector);
+        for component in vector.chunks_mut(held.len()) {
+            for (entry, held) in component.iter_mut().zip(&held) {
+                if *held {
+                    *entry = 0.0;
+                }
+            }
+        }
+    })
+}
+
+fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<HighestFrequency> {
     let density = |i: usize| system.density().at(i);
     let bound = system.operator().frequency_bound(&density);
     let n = system.points();
@@ -48,7 +84,7 @@ pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency>
     let inner = |x: &[f64], y: &[f64]| ordered_sum(x.len(), |k| mass(k) * x[k] * y[k]);
 
     let mut current = noise(u.len(), 0x9E37_79B9_7F4A_7C15);
-    system.hold(&mut current);
+    hold(&mut current);
     let norm = inner(&current, &current).sqrt();
     if norm == 0.0 || bound == 0.0 {
         return Err(PericlesError::NoStiffness);
@@ -61,6 +97,7 @@ pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency>
     let mut converged = false;
     while diagonal.len() < MOST_APPLICATIONS && !converged {
         system.vibration_into(u, &current, &mut next);
+        hold(&mut next);
         let alpha = inner(&next, &current);
         let before = off.last().copied().unwrap_or(0.0);
         for k in 0..next.len() {

@@ -1,9 +1,25 @@
 //! Time integration: u(t) ↦ u(t + dt), any scheme.
 
+mod embedded;
 mod frequency;
+mod interface;
+mod multi_time_step;
+mod refinement;
+mod respa;
+mod runge_kutta;
+mod tableau;
 mod verlet;
+mod zone;
+mod zones;
 
-pub use frequency::{HighestFrequency, highest_frequency};
+pub use embedded::AdaptiveRungeKutta;
+pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
+pub use interface::{Interpolant, Predictor};
+pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
+pub use refinement::{Fine, Follow, RefinementReport};
+pub use respa::Respa;
+pub use runge_kutta::RungeKutta;
+pub use tableau::Tableau;
 pub use verlet::VelocityVerlet;
 
 use crate::archive::{Archive, Saved, Values};
@@ -66,6 +82,19 @@ pub trait Integrator: Saved + Send {
 
     /// The largest stable ω dt for an undamped oscillation; none if the scheme is stable for any step.
     fn stability_limit(&self) -> Option<f64>;
+
+    /// The frequency that limits the step at displacement `u`: the body's highest, but for schemes whose step is not the same everywhere.
+    ///
+    /// # Errors
+    /// A body without any stiffness.
+    fn limiting_frequency(&self, system: &System, u: &[f64]) -> Result<HighestFrequency> {
+        highest_frequency(system, u)
+    }
+
+    /// What a scheme with two time steps did so far; none for other schemes.
+    fn refinement(&self) -> Option<RefinementReport> {
+        None
+    }
 
     /// What must be added to the kinetic and elastic energy of a state so that their sum is what the scheme itself conserves, J. Zero
     /// for schemes that conserve the plain energy, or none.

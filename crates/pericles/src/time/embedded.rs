@@ -1,0 +1,240 @@
+//! Runge–Kutta with a step that follows the error.
+
+use rayon::prelude::*;
+
+use super::runge_kutta::{Stages, StepForm, start};
+use super::zone::{Sum, Zone};
+use super::{Integrator, State, Tableau};
+use crate::accounts::Completed;
+use crate::archive::{Archive, Saved, Values};
+use crate::error::{PericlesError, Result, positive};
+use crate::operator::On;
+use crate::parallel::BLOCK;
+use crate::system::System;
+
+/// The Dormand–Prince pair with local extrapolation: within each step of the run as many sub-steps as the tolerance asks for.
+///
+/// The error of a sub-step h is the difference of the two methods; it is accepted if max|e_u| ≤ tolerance · max|u| and the same for
+/// v, and the next is h · 0.9 · error^(−1/5), within [0.2, 5] (Hairer, Nørsett & Wanner, II.4). Seven evaluations a sub-step: the end of the step serves the
+/// estimate, and once more after breaking is decided there. The proposed step is carried from step to step.
+pub struct AdaptiveRungeKutta {
+    tolerance: f64,
+    form: StepForm,
+    /// b − b̂, for velocities and for displacements.
+    error: [Vec<f64>; 2],
+    zone: Zone,
+    stage: Vec<f64>,
+    a: Vec<Vec<f64>>,
+    next: [Vec<f64>; 2],
+    /// The proposed sub-step, s; none before the first.
+    proposed: Option<f64>,
+    accepted: u64,
+    rejected: u64,
+}
+
+/// What a step is multiplied with at least and at most, and the safety factor.
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 5.0;
+const SAFETY: f64 = 0.9;
+/// Sub-steps smaller than this part of a step are given up.
+const SMALLEST: f64 = 1e-9;
+
+impl AdaptiveRungeKutta {
+    /// The scheme with a relative tolerance per sub-step.
+    ///
+    /// # Errors
+    /// A tolerance that is not positive; a body with boundaries that keep a state: sub-steps that are tried and rejected would disturb it.
+    pub fn new(tolerance: f64, system: &System) -> Result<Self> {
+        positive("the tolerance of the adaptive step", tolerance)?;
+        if system.has_boundaries() {
+            return Err(PericlesError::SchemeNotUsable {
+                scheme: "dormand-prince",
+                reason: "a boundary keeps a state of its own, which rejected steps would disturb; use rk4",
+            });
+        }
+        let tableau = Tableau::dormand_prince();
+        let entries = system.dimension() * system.points();
+        let array = || vec![0.0; entries];
+        let lower = tableau.embedded.as_deref().unwrap_or_default();
+        let difference: Vec<f64> = tableau
+            .weights
+            .iter()
+            .zip(lower)
+            .map(|(b, b_lower)| b - b_lower)
+            .collect();
+        Ok(Self {
+            tolerance,
+            form: StepForm::new(&tableau),
+            error: [difference.clone(), tableau.times_stages(&difference)],
+            zone: Zone::all(system.points()),
+            stage: array(),
+            a: (1..tableau.len()).map(|_| array()).collect(),
+            next: [array(), array()],
+            proposed: None,
+            accepted: 0,
+            rejected: 0,
+        })
+    }
+
+    /// Sub-steps accepted and rejected so far.
+    pub fn sub_steps(&self) -> (u64, u64) {
+        (self.accepted, self.rejected)
+    }
+
+    /// Tries a sub-step: leaves its end in `next` and returns its error over the tolerance.
+    fn attempt(&mut self, system: &mut System, state: &State, h: f64) -> f64 {
+        let State { t, u, v, a, .. } = state;
+        let n = system.points();
+        let [u_next, v_next] = &mut self.next;
+        for i in 1..self.form.len() {
+            let (before, later) = self.a.split_at_mut(i - 1);
+            let known = Stages {
+                first: a,
+                later: before,
+            };
+            self.form
+                .stage(i, h, v, known)
+                .onto(u, &self.zone, n, &mut self.stage);
+            let t_stage = t + self.form.nodes[i] * h;
+            system.acceleration(t_stage, &self.stage, v, On::All, &mut later[0]);
+        }
+        let known = Stages {
+            first: a,
+            later: &self.a,
+        };
+        self.form
+            .displacement(h, v, known)
+            .onto(u, &self.zone, n, u_next);
+        self.form.velocity(h, known).onto(v, &self.zone, n, v_next);
+        let [of_velocity, of_displacement] = &self.error;
+        let mut relative = |scale: f64, factors: &[f64], [before, after]: [&[f64]; 2]| {
+            zero(&mut self.stage);
+            Sum::new().plus_all(scale, factors, |j| known.at(j)).add_to(
+                &self.zone,
+                n,
+                &mut self.stage,
+            );
+            let size = largest(before).max(largest(after));
+            if size == 0.0 {
+                0.0
+            } else {
+                largest(&self.stage) / (self.tolerance * size)
+            }
+        };
+        let error_u = relative(h * h, of_displacement, [u, u_next]);
+        let error_v = relative(h, of_velocity, [v, v_next]);
+        error_u.max(error_v)
+    }
+}
+
+fn zero(array: &mut [f64]) {
+    array
+        .par_chunks_mut(BLOCK)
+        .for_each(|chunk| chunk.fill(0.0));
+}
+
+/// max |x|; infinite if an entry is not a number.
+fn largest(array: &[f64]) -> f64 {
+    let of_chunk = |chunk: &[f64]| {
+        let max = chunk.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
+        if chunk.iter().all(|x| x.is_finite()) {
+            max
+        } else {
+            f64::INFINITY
+        }
+    };
+    array
+        .par_chunks(BLOCK)
+        .map(of_chunk)
+        .reduce(|| 0.0, f64::max)
+}
+
+impl Integrator for AdaptiveRungeKutta {
+    fn name(&self) -> &'static str {
+        "dormand-prince"
+    }
+
+    fn order(&self) -> u32 {
+        5
+    }
+
+    /// The step is chosen by the error, which an unstable step would make large.
+    fn stability_limit(&self) -> Option<f64> {
+        None
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        start(system, state);
+    }
+
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+        let whole = t_next - state.t;
+        // The first guess is small, and the controller finds its step within a few.
+        let mut h = self.proposed.unwrap_or(1e-3 * whole);
+        loop {
+            let left = t_next - state.t;
+            // What would leave less than a hundredth of a step is stretched to the end.
+            let last = h >= 0.99 * left;
+            let try_h = if last { left } else { h };
+            let error = self.attempt(system, state, try_h);
+            let factor = (SAFETY * error.powf(-0.2)).clamp(SHRINK, GROW);
+            if error.is_nan() || error > 1.0 {
+                self.rejected += 1;
+                h = try_h * if error.is_finite() { factor } else { SHRINK };
+                if h < SMALLEST * whole {
+                    return Err(PericlesError::StepTooSmall {
+                        t: state.t,
+                        step: h,
+                    });
+                }
+                continue;
+            }
+            self.accepted += 1;
+            let t = if last { t_next } else { state.t + try_h };
+            let State { u, v, a, .. } = state;
+            let [u_next, v_next] = &mut self.next;
+            system.constrain(t, u_next, v_next);
+            system.constrain_velocity(t, v_next);
+            let completed = Completed {
+                t,
+                dt: try_h,
+                u: [u, u_next],
+                v: [v, v_next],
+            };
+            system.complete_and_accelerate(completed, a);
+            std::mem::swap(u, u_next);
+            std::mem::swap(v, v_next);
+            state.t = t;
+            // A sub-step cut short by the end of the step says little about the next.
+            h = if last {
+                h.max(try_h * factor)
+            } else {
+                try_h * factor
+            };
+            if last {
+                break;
+            }
+        }
+        self.proposed = Some(h.min(whole));
+        state.step += 1;
+        Ok(())
+    }
+}
+
+impl Saved for AdaptiveRungeKutta {
+    fn save(&self, archive: &mut Archive) {
+        let proposed = self.proposed.unwrap_or(0.0);
+        archive.put("scheme/proposed", Values::F64(vec![proposed]));
+        let counts = vec![self.accepted, self.rejected];
+        archive.put("scheme/counts", Values::U64(counts));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let (mut proposed, mut counts) = ([0.0], [0; 2]);
+        archive.f64_into("scheme/proposed", &mut proposed)?;
+        archive.u64_into("scheme/counts", &mut counts)?;
+        self.proposed = (proposed[0] > 0.0).then_some(proposed[0]);
+        [self.accepted, self.rejected] = counts;
+        Ok(())
+    }
+}

@@ -1,0 +1,372 @@
+//! Runge–Kutta with small steps where they are needed.
+
+use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
+use super::refinement::{Fine, Refinement, RefinementReport};
+use super::runge_kutta::{Stages, StepForm, start};
+use super::zone::Sum;
+use super::zones::Zones;
+use super::{HighestFrequency, Integrator, State, Tableau};
+use crate::accounts::Completed;
+use crate::archive::{Archive, Saved};
+use crate::error::{PericlesError, Result};
+use crate::operator::Accepted;
+use crate::system::System;
+
+/// Choices of [`MultiTimeStep`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct MultiTimeStepOptions {
+    /// Fine steps in a coarse one, M.
+    pub ratio: u32,
+    /// The points that take them.
+    pub fine: Fine,
+    /// Fine points at coarse stages.
+    pub predictor: Predictor,
+    /// Coarse points at fine stages.
+    pub interpolant: Interpolant,
+}
+
+/// Multi-time-step Runge–Kutta of order three or four (Liu, Sun, Tian, Don & Ju 2024).
+///
+/// The body falls into coarse points C, which take a step dt, and fine points F, which take M steps dt/M. One evaluation of all points serves
+/// both as first stage. Then the coarse points take their step, with the fine points they are bonded to predicted at the stages; then
+/// the fine points take theirs, with coarse neighbours interpolated at the stages. Each side sees the other as a given function of time known to
+/// O(dt^r), so the order r of the method stays. A step evaluates s (N_C + M N_F) points.
+///
+/// Bonds with a fine end may break after every sub-step, those between coarse points after every coarse step. Momentum across the interface is
+/// conserved to the order of the method, not to round-off.
+pub struct MultiTimeStep {
+    name: &'static str,
+    order: u32,
+    limit: f64,
+    form: StepForm,
+    inside: Inside,
+    predictor: Predictor,
+    refinement: Refinement,
+    everywhere: Zones,
+    history: History,
+    work: Work,
+}
+
+struct Work {
+    stage: Vec<f64>,
+    /// Accelerations of stages 2 … s; entries of coarse points belong to the coarse step, those of fine points to the sub-step.
+    a: Vec<Vec<f64>>,
+    /// First accelerations of sub-steps after the first, and of the next step.
+    first: Vec<f64>,
+    u: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl MultiTimeStep {
+    /// The scheme for a body.
+    ///
+    /// # Errors
+    /// A method of another order than three or four; a ratio below one; fine regions that are empty, overlap or are thinner than a horizon; operators that cannot be
+    /// evaluated on a part of the body.
+    pub fn new(tableau: &Tableau, options: MultiTimeStepOptions, system: &System) -> Result<Self> {
+        let (name, order) = match (tableau.order, tableau.len()) {
+            (3, 3) => ("rk3-mts", 3),
+            (4, 4) => ("rk4-mts", 4),
+            _ => {
+                return Err(PericlesError::SchemeNotUsable {
+                    scheme: tableau.name,
+                    reason: "predictors and interpolants for two time steps are known for rk3 and rk4 only",
+                });
+            }
+        };
+        let MultiTimeStepOptions {
+            ratio,
+            fine,
+            predictor,
+            interpolant,
+        } = options;
+        let entries = system.dimension() * system.points();
+        let array = || vec![0.0; entries];
+        Ok(Self {
+            name,
+            order,
+            limit: tableau.stability_limit(),
+            form: StepForm::new(tableau),
+            inside: Inside::new(interpolant, tableau),
+            predictor,
+            refinement: Refinement::new(system, name, ratio, fine)?,
+            everywhere: Zones::all_fine(system.points()),
+            history: History::new(predictor.levels(order), entries),
+            work: Work {
+                stage: array(),
+                a: (1..tableau.len()).map(|_| array()).collect(),
+                first: array(),
+                u: array(),
+                v: array(),
+            },
+        })
+    }
+}
+
+impl Integrator for MultiTimeStep {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn order(&self) -> u32 {
+        self.order
+    }
+
+    fn stability_limit(&self) -> Option<f64> {
+        Some(self.limit)
+    }
+
+    fn limiting_frequency(&self, system: &System, u: &[f64]) -> Result<HighestFrequency> {
+        self.refinement.limiting_frequency(system, u)
+    }
+
+    fn refinement(&self) -> Option<RefinementReport> {
+        Some(self.refinement.report())
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        start(system, state);
+        self.refinement.start(system);
+    }
+
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+        self.refinement.update(system, state);
+        // The predictor's earlier levels come from steps that are fine everywhere.
+        let starting = !self.history.is_complete() && !self.refinement.zones.fine.is_empty();
+        self.refinement.count(starting);
+        let step = Step {
+            form: &self.form,
+            order: self.order,
+            predictor: self.predictor,
+            inside: &self.inside,
+            history: &self.history,
+            zones: if starting {
+                &self.everywhere
+            } else {
+                &self.refinement.zones
+            },
+            ratio: self.refinement.ratio,
+            t: state.t,
+            t_next,
+        };
+        step.coarse(system, state, &mut self.work);
+        step.fine(system, state, &mut self.work);
+
+        let dt = t_next - state.t;
+        let Work { first, u, v, .. } = &mut self.work;
+        let completed = Completed {
+            t: t_next,
+            dt,
+            u: [&state.u, u],
+            v: [&state.v, v],
+        };
+        system.complete_and_accelerate(completed, first);
+        std::mem::swap(&mut state.u, u);
+        std::mem::swap(&mut state.v, v);
+        std::mem::swap(&mut state.a, first);
+        // The arrays of the old state are what the history wants.
+        match self.predictor {
+            Predictor::Structured => self.history.push(first, dt),
+            Predictor::BackwardDifference => self.history.push(v, dt),
+        }
+        state.t = t_next;
+        state.step += 1;
+        Ok(())
+    }
+}
+
+/// One coarse step and what it needs to know.
+struct Step<'a> {
+    form: &'a StepForm,
+    order: u32,
+    predictor: Predictor,
+    inside: &'a Inside,
+    history: &'a History,
+    zones: &'a Zones,
+    ratio: u32,
+    t: f64,
+    t_next: f64,
+}
+
+impl Step<'_> {
+    /// The step of the coarse points, into `work.u`, `work.v`.
+    fn coarse(&self, system: &mut System, state: &State, work: &mut Work) {
+        let Zones {
+            coarse,
+            fine_border,
+            ..
+        } = self.zones;
+        if coarse.is_empty() {
+            return;
+        }
+        let (n, dt) = (system.points(), self.t_next - self.t);
+        let State { u, v, a, .. } = state;
+        for i in 1..self.form.len() {
+            let (before, later) = work.a.split_at_mut(i - 1);
+            let x = self.form.nodes[i] * dt;
+            self.form
+                .stage(
+                    i,
+                    dt,
+                    v,
+                    Stages {
+                        first: a,
+                        later: before,
+                    },
+                )
+                .onto(u, coarse, n, &mut work.stage);
+            if !fine_border.is_empty() {
+                self.predictor.at(self.order, x, v, a, self.history).onto(
+                    u,
+                    fine_border,
+                    n,
+                    &mut work.stage,
+                );
+            }
+            system.acceleration(self.t + x, &work.stage, v, coarse.on(), &mut later[0]);
+        }
+        let known = Stages {
+            first: a,
+            later: &work.a,
+        };
+        self.form
+            .displacement(dt, v, known)
+            .onto(u, coarse, n, &mut work.u);
+        self.form
+            .velocity(dt, known)
+            .onto(v, coarse, n, &mut work.v);
+        system.place_on(self.t_next, &coarse.on(), &mut work.u);
+        system.drive_on(self.t_next, &coarse.on(), &mut work.v);
+    }
+
+    /// The sub-steps of the fine points, within `work.u`, `work.v`.
+    fn fine(&self, system: &mut System, state: &State, work: &mut Work) {
+        let Zones {
+            fine,
+            coarse_border,
+            ..
+        } = self.zones;
+        if fine.is_empty() {
+            return;
+        }
+        let n = system.points();
+        let dt = self.t_next - self.t;
+        let h = dt / f64::from(self.ratio);
+        let Work {
+            stage,
+            a,
+            first,
+            u,
+            v,
+        } = work;
+        Sum::new().onto(&state.u, fine, n, u);
+        Sum::new().onto(&state.v, fine, n, v);
+        for m in 0..self.ratio {
+            let t = self.time(m);
+            let opening: &[f64] = if m == 0 { &state.a } else { first };
+            for i in 1..self.form.len() {
+                let node = self.form.nodes[i];
+                self.interpolate(
+                    (f64::from(m) + node) / f64::from(self.ratio),
+                    state,
+                    [u, v],
+                    a,
+                    stage,
+                    n,
+                );
+                let (before, later) = a.split_at_mut(i - 1);
+                self.form
+                    .stage(
+                        i,
+                        h,
+                        v,
+                        Stages {
+                            first: opening,
+                            later: before,
+                        },
+                    )
+                    .onto(u, fine, n, stage);
+                system.acceleration(t + node * h, stage, v, fine.on(), &mut later[0]);
+            }
+            let known = Stages {
+                first: opening,
+                later: a,
+            };
+            // The displacement needs the old velocity.
+            self.form.displacement(h, v, known).add_to(fine, n, u);
+            self.form.velocity(h, known).add_to(fine, n, v);
+            let t_next = self.time(m + 1);
+            system.place_on(t_next, &fine.on(), u);
+            system.drive_on(t_next, &fine.on(), v);
+            if m + 1 == self.ratio {
+                break;
+            }
+            Sum::new().onto(u, fine, n, stage);
+            if !coarse_border.is_empty() {
+                self.interpolate(
+                    f64::from(m + 1) / f64::from(self.ratio),
+                    state,
+                    [u, v],
+                    a,
+                    stage,
+                    n,
+                );
+            }
+            let ended = Accepted {
+                t: t_next,
+                u: stage,
+                mean_velocity: v,
+                dt: 0.0,
+            };
+            system.accept_on(ended, &fine.on(), first);
+            system.finish(t_next, stage, v, &fine.on(), first);
+        }
+    }
+
+    /// Time at the start of sub-step m.
+    fn time(&self, m: u32) -> f64 {
+        if m == self.ratio {
+            self.t_next
+        } else {
+            self.t + (self.t_next - self.t) * (f64::from(m) / f64::from(self.ratio))
+        }
+    }
+
+    /// Displacements of coarse points next to fine ones.
+    fn interpolate(
+        &self,
+        theta: f64,
+        state: &State,
+        [u_next, v_next]: [&[f64]; 2],
+        a: &[Vec<f64>],
+        stage: &mut [f64],
+        n: usize,
+    ) {
+        let step = CoarseStep {
+            dt: self.t_next - self.t,
+            u: &state.u,
+            v: &state.v,
+            u_next,
+            v_next,
+            a: Stages {
+                first: &state.a,
+                later: a,
+            },
+        };
+        self.inside
+            .at(theta, &step)
+            .onto(&state.u, &self.zones.coarse_border, n, stage);
+    }
+}
+
+impl Saved for MultiTimeStep {
+    fn save(&self, archive: &mut Archive) {
+        self.refinement.save(archive);
+        self.history.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.refinement.restore(archive)?;
+        self.history.restore(archive)
+    }
+}

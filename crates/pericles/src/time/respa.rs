@@ -1,0 +1,208 @@
+//! r-RESPA: velocity Verlet with short steps for some bonds.
+
+use super::refinement::{Fine, Refinement, RefinementReport};
+use super::runge_kutta::start;
+use super::zone::{Sum, Zone};
+use super::zones::Zones;
+use super::{HighestFrequency, Integrator, State};
+use crate::archive::{Archive, Saved, Values};
+use crate::error::Result;
+use crate::operator::{Accepted, On};
+use crate::system::System;
+
+/// The reversible reference system propagator (Tuckerman, Berne & Martyna 1992), split by bonds.
+///
+/// Bonds between coarse points are slow, all others fast; loads belong to the points they act on. A step kicks the coarse points with half the slow impulse, takes M velocity
+/// Verlet steps dt/M of the fast forces on fine points and their coarse neighbours while the other coarse points drift, and kicks
+/// again. Second order; symplectic while the fine region stays; momentum is conserved to round-off. A step evaluates N_C + M (N_F + N_CB) points.
+///
+/// The slow impulses meet resonances with fast vibrations near ω dt = k π; the step is kept below the limit 2/ω of the coarse points.
+pub struct Respa {
+    refinement: Refinement,
+    /// Accelerations by slow bonds on coarse points.
+    slow: Vec<f64>,
+    /// Accelerations by fast bonds on fine points and their coarse neighbours.
+    fast: Vec<f64>,
+    /// Displacement at the start of the step, then the mean velocity over it.
+    mean: Vec<f64>,
+    everywhere: Zone,
+}
+
+impl Respa {
+    /// The scheme with M fast steps in a slow one.
+    ///
+    /// # Errors
+    /// A ratio below one; fine regions that are empty, overlap or are thinner than a horizon; operators that cannot be evaluated on a part of the body.
+    pub fn new(ratio: u32, fine: Fine, system: &System) -> Result<Self> {
+        let array = || vec![0.0; system.dimension() * system.points()];
+        Ok(Self {
+            refinement: Refinement::new(system, "respa", ratio, fine)?,
+            slow: array(),
+            fast: array(),
+            mean: array(),
+            everywhere: Zone::all(system.points()),
+        })
+    }
+
+    /// Both parts of the acceleration from scratch, when the zones are new.
+    fn evaluate(&mut self, system: &mut System, t: f64, u: &[f64]) {
+        let Zones {
+            coarse_inner,
+            coarse_border,
+            fine,
+            is_fine,
+            is_coarse,
+            ..
+        } = &self.refinement.zones;
+        let border = coarse_border.on();
+        system.free_acceleration(t, u, &coarse_inner.on(), &mut self.slow);
+        if !coarse_border.is_empty() {
+            system.free_acceleration_from(t, u, &border, is_coarse, true, &mut self.slow);
+            system.free_acceleration_from(t, u, &border, is_fine, false, &mut self.fast);
+        }
+        if !fine.is_empty() {
+            system.free_acceleration(t, u, &fine.on(), &mut self.fast);
+        }
+    }
+
+    /// One fast step from t to t_next.
+    fn fast_step(&mut self, system: &mut System, [u, v]: [&mut [f64]; 2], t: f64, t_next: f64) {
+        let Zones {
+            active,
+            fine,
+            coarse_border,
+            is_fine,
+            ..
+        } = &self.refinement.zones;
+        let (n, h) = (system.points(), t_next - t);
+        kick(active, &self.fast, 0.5 * h, n, v);
+        system.drive_mean_on(t, h, &active.on(), v);
+        Sum::new().plus(h, v).add_to(active, n, u);
+        system.place_on(t_next, &active.on(), u);
+        let accepted = Accepted {
+            t: t_next,
+            u,
+            mean_velocity: v,
+            dt: h,
+        };
+        system.accept_on(accepted, &fine.on(), &mut self.fast);
+        if !coarse_border.is_empty() {
+            // Fast bonds were decided from their fine ends.
+            let border = coarse_border.on();
+            system.free_acceleration_from(t_next, u, &border, is_fine, false, &mut self.fast);
+        }
+        kick(active, &self.fast, 0.5 * h, n, v);
+    }
+}
+
+fn kick(zone: &Zone, a: &[f64], dt: f64, n: usize, v: &mut [f64]) {
+    Sum::new().plus(dt, a).add_to(zone, n, v);
+}
+
+impl Integrator for Respa {
+    fn name(&self) -> &'static str {
+        "respa"
+    }
+
+    fn order(&self) -> u32 {
+        2
+    }
+
+    fn stability_limit(&self) -> Option<f64> {
+        Some(2.0)
+    }
+
+    fn limiting_frequency(&self, system: &System, u: &[f64]) -> Result<HighestFrequency> {
+        self.refinement.limiting_frequency(system, u)
+    }
+
+    fn refinement(&self) -> Option<RefinementReport> {
+        Some(self.refinement.report())
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        start(system, state);
+        self.refinement.start(system);
+        self.evaluate(system, state.t, &state.u);
+    }
+
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+        if self.refinement.update(system, state) {
+            self.evaluate(system, state.t, &state.u);
+        }
+        self.refinement.count(false);
+        let State { t, step, u, v, a } = state;
+        let (n, dt, ratio) = (system.points(), t_next - *t, self.refinement.ratio);
+        let Zones {
+            coarse,
+            coarse_inner,
+            ..
+        } = &self.refinement.zones;
+        Sum::new().onto(u, &self.everywhere, n, &mut self.mean);
+        kick(coarse, &self.slow, 0.5 * dt, n, v);
+        system.drive_mean_on(*t, dt, &coarse_inner.on(), v);
+        Sum::new().plus(dt, v).add_to(coarse_inner, n, u);
+        system.place_on(t_next, &coarse_inner.on(), u);
+        if !self.refinement.zones.fine.is_empty() {
+            for m in 0..ratio {
+                let time = |m: u32| {
+                    if m == ratio {
+                        t_next
+                    } else {
+                        *t + dt * (f64::from(m) / f64::from(ratio))
+                    }
+                };
+                self.fast_step(system, [u, v], time(m), time(m + 1));
+            }
+        }
+        let Zones {
+            coarse,
+            coarse_inner,
+            coarse_border,
+            is_coarse,
+            ..
+        } = &self.refinement.zones;
+        self.everywhere
+            .for_each_run(n, &mut self.mean, &|mean, range| {
+                for (mean, u) in mean.iter_mut().zip(&u[range]) {
+                    *mean = (u - *mean) / dt;
+                }
+            });
+        let accepted = Accepted {
+            t: t_next,
+            u,
+            mean_velocity: &self.mean,
+            dt,
+        };
+        system.accept_on(accepted, &coarse_inner.on(), &mut self.slow);
+        if !coarse_border.is_empty() {
+            let border = coarse_border.on();
+            system.accept_on_from(accepted, &border, is_coarse, true, &mut self.slow);
+        }
+        kick(coarse, &self.slow, 0.5 * dt, n, v);
+        system.constrain_velocity(t_next, v);
+        // The sum of both parts is what observers and accounts are to see.
+        Sum::new().onto(&self.slow, coarse, n, a);
+        Sum::new().onto(&self.fast, &self.refinement.zones.fine, n, a);
+        Sum::new().plus(1.0, &self.fast).add_to(coarse_border, n, a);
+        system.book_step(accepted, a);
+        system.finish(t_next, u, v, &On::All, a);
+        *t = t_next;
+        *step += 1;
+        Ok(())
+    }
+}
+
+impl Saved for Respa {
+    fn save(&self, archive: &mut Archive) {
+        self.refinement.save(archive);
+        archive.put("scheme/slow", Values::F64(self.slow.clone()));
+        archive.put("scheme/fast", Values::F64(self.fast.clone()));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.refinement.restore(archive)?;
+        archive.f64_into("scheme/slow", &mut self.slow)?;
+        archive.f64_into("scheme/fast", &mut self.fast)
+    }
+}

@@ -1,0 +1,196 @@
+//! Runge–Kutta with one step everywhere.
+
+use super::zone::{Sum, Zone};
+use super::{Integrator, State, Tableau};
+use crate::accounts::Completed;
+use crate::archive::{Archive, Saved};
+use crate::error::Result;
+use crate::operator::On;
+use crate::system::System;
+
+/// The coefficients of a step in displacement form.
+#[derive(Debug, Clone)]
+pub(super) struct StepForm {
+    pub(super) nodes: Vec<f64>,
+    /// A, for the velocities of stages.
+    stages: Vec<Vec<f64>>,
+    /// Ā.
+    displacement_stages: Vec<Vec<f64>>,
+    /// b.
+    velocity: Vec<f64>,
+    /// b̄.
+    displacement: Vec<f64>,
+}
+
+impl StepForm {
+    pub(super) fn new(tableau: &Tableau) -> Self {
+        Self {
+            nodes: tableau.nodes.clone(),
+            stages: tableau.stages.clone(),
+            displacement_stages: tableau.displacement_stages(),
+            velocity: tableau.weights.clone(),
+            displacement: tableau.times_stages(&tableau.weights),
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// U_i − u for a step h from (u, v), with the accelerations of the stages before.
+    pub(super) fn stage<'a>(&self, i: usize, h: f64, v: &'a [f64], a: Stages<'a>) -> Sum<'a> {
+        Sum::new()
+            .plus(self.nodes[i] * h, v)
+            .plus_all(h * h, &self.displacement_stages[i], |j| a.at(j))
+    }
+
+    /// V_i − v.
+    pub(super) fn stage_velocity<'a>(&self, i: usize, h: f64, a: Stages<'a>) -> Sum<'a> {
+        Sum::new().plus_all(h, &self.stages[i], |j| a.at(j))
+    }
+
+    /// u₁ − u.
+    pub(super) fn displacement<'a>(&self, h: f64, v: &'a [f64], a: Stages<'a>) -> Sum<'a> {
+        Sum::new()
+            .plus(h, v)
+            .plus_all(h * h, &self.displacement, |j| a.at(j))
+    }
+
+    /// v₁ − v.
+    pub(super) fn velocity<'a>(&self, h: f64, a: Stages<'a>) -> Sum<'a> {
+        Sum::new().plus_all(h, &self.velocity, |j| a.at(j))
+    }
+}
+
+/// The accelerations of the stages; the first is that of the state.
+#[derive(Clone, Copy)]
+pub(super) struct Stages<'a> {
+    pub(super) first: &'a [f64],
+    pub(super) later: &'a [Vec<f64>],
+}
+
+impl<'a> Stages<'a> {
+    pub(super) fn at(&self, j: usize) -> &'a [f64] {
+        if j == 0 {
+            self.first
+        } else {
+            &self.later[j - 1]
+        }
+    }
+}
+
+/// An explicit Runge–Kutta method on (u, v), one step everywhere.
+///
+/// The acceleration of the state is the first stage of the next step, so a step of s stages takes s force evaluations. Breaking is decided at the end of
+/// steps only: states of stages are of low order. Prescribed displacements and velocities are exact at the end of steps; stages see
+/// their accelerations. Momentum is conserved to round-off; energy decays by (ω dt)⁴/12 (order 3) or (ω dt)⁶/72 (order 4) per step for an oscillation
+/// ω, so short waves disappear.
+pub struct RungeKutta {
+    name: &'static str,
+    order: u32,
+    limit: f64,
+    form: StepForm,
+    zone: Zone,
+    stage: [Vec<f64>; 2],
+    a: Vec<Vec<f64>>,
+    next: [Vec<f64>; 2],
+}
+
+impl RungeKutta {
+    /// The method of a tableau, for a body; embedded weights are not used.
+    pub fn new(tableau: &Tableau, system: &System) -> Self {
+        let entries = system.dimension() * system.points();
+        let array = || vec![0.0; entries];
+        let with_velocity = if system.has_boundaries() { entries } else { 0 };
+        Self {
+            name: tableau.name,
+            order: tableau.order,
+            limit: tableau.stability_limit(),
+            form: StepForm::new(tableau),
+            zone: Zone::all(system.points()),
+            stage: [array(), vec![0.0; with_velocity]],
+            a: (1..tableau.len()).map(|_| array()).collect(),
+            next: [array(), array()],
+        }
+    }
+}
+
+impl Integrator for RungeKutta {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn order(&self) -> u32 {
+        self.order
+    }
+
+    fn stability_limit(&self) -> Option<f64> {
+        Some(self.limit)
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        start(system, state);
+    }
+
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+        let State { t, step, u, v, a } = state;
+        let (dt, n) = (t_next - *t, system.points());
+        for i in 1..self.form.len() {
+            let (before, later) = self.a.split_at_mut(i - 1);
+            let known = Stages {
+                first: a,
+                later: before,
+            };
+            let [stage, velocity] = &mut self.stage;
+            self.form
+                .stage(i, dt, v, known)
+                .onto(u, &self.zone, n, stage);
+            if !velocity.is_empty() {
+                self.form
+                    .stage_velocity(i, dt, known)
+                    .onto(v, &self.zone, n, velocity);
+            }
+            let t_stage = *t + self.form.nodes[i] * dt;
+            system.acceleration(t_stage, stage, velocity, On::All, &mut later[0]);
+        }
+        let known = Stages {
+            first: a,
+            later: &self.a,
+        };
+        let [u_next, v_next] = &mut self.next;
+        self.form
+            .displacement(dt, v, known)
+            .onto(u, &self.zone, n, u_next);
+        self.form.velocity(dt, known).onto(v, &self.zone, n, v_next);
+        system.constrain(t_next, u_next, v_next);
+        system.constrain_velocity(t_next, v_next);
+        let completed = Completed {
+            t: t_next,
+            dt,
+            u: [u, u_next],
+            v: [v, v_next],
+        };
+        system.complete_and_accelerate(completed, a);
+        std::mem::swap(u, u_next);
+        std::mem::swap(v, v_next);
+        *t = t_next;
+        *step += 1;
+        Ok(())
+    }
+}
+
+/// Prescribed values and the acceleration at the start.
+pub(super) fn start(system: &mut System, state: &mut State) {
+    system.constrain(state.t, &mut state.u, &mut state.v);
+    system.constrain_velocity(state.t, &mut state.v);
+    system.start(state.t, &state.u, &state.v, &mut state.a);
+}
+
+/// The method carries nothing from step to step but the state.
+impl Saved for RungeKutta {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> Result<()> {
+        Ok(())
+    }
+}
