@@ -28,15 +28,85 @@ const HALF: f64 = 5e-3;
 /// Window of speeds, s.
 const WINDOW: f64 = 4e-6;
 
+/// An influence function made against dispersion, and what the reference code found.
+struct Variant {
+    name: &'static str,
+    overrides: &'static [&'static str],
+    critical_stretch: f64,
+    /// Of the first two arms, degrees.
+    angles: [f64; 2],
+    peak_speed: f64,
+}
+
+/// Runs that `--full` adds.
+const VARIANTS: [Variant; 2] = [
+    Variant {
+        name: "positive table tuned against dispersion",
+        overrides: &["material.influence={function=\"tuned\",lower_bound=0.5}"],
+        critical_stretch: 2.621e-3,
+        angles: [18.0, 72.0],
+        peak_speed: 1892.0,
+    },
+    Variant {
+        name: "influence function of equation 50",
+        overrides: &[
+            "material.influence={function=\"cosines\",wavenumber=1.1,coefficients=[2.3,2.0,-0.39,-0.48,0.28,0.14,-0.15,-0.02,0.05]}",
+            "material.modulus=unmodified",
+        ],
+        critical_stretch: 2.714e-3,
+        angles: [19.0, 71.0],
+        peak_speed: 2028.0,
+    },
+];
+
+/// (t, distance of the farthest point from the middle) and (t, its speed).
+fn motion(recorded: &Recorded) -> [Vec<(f64, f64)>; 2] {
+    let looks = recorded.looks.iter();
+    let front: Vec<(f64, f64)> = looks.map(|look| (look.t, reach(recorded, look))).collect();
+    let speeds = slopes(&front, WINDOW);
+    [front, speeds]
+}
+
 fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+    let mut rows = original(context)?;
+    if context.full {
+        for variant in &VARIANTS {
+            rows.extend(variant_rows(variant, context)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn variant_rows(variant: &Variant, context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+    let overrides: Vec<String> = variant.overrides.iter().map(|&text| text.into()).collect();
+    let deck = Deck::parse(DECK, "inclined.toml", &overrides)?;
+    let recorded = record(&deck, Symmetry::half_turn, context)?;
+    let row =
+        |what: &str, unit, computed| Row::new(format!("{}: {what}", variant.name), unit, computed);
+    let [_, speeds] = motion(&recorded);
+    let peak = speeds.iter().map(|s| s.1).reduce(f64::max);
+    let last = recorded.looks.last();
+    let angles = last
+        .map(|look| arms_at(&recorded, look, 18e-3))
+        .unwrap_or_default();
+    let mut rows = vec![
+        row("critical stretch", "", recorded.facts.critical_stretch)
+            .within_share(variant.critical_stretch, 1e-3),
+        row("tips start", "s", recorded.start().map(|look| look.t)).within(6e-6, 1e-6),
+        row("arms at radius 18 mm", "", Some(angles.len() as f64)).within(4.0, 0.0),
+        row("peak speed", "m/s", peak).within_share(variant.peak_speed, 0.1),
+    ];
+    for (k, expected) in variant.angles.into_iter().enumerate() {
+        let what = format!("angle of arm {} at 18 mm", k + 1);
+        rows.push(row(&what, "°", angles.get(k).copied()).within(expected, 6.0));
+    }
+    Ok(rows)
+}
+
+fn original(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let deck = Deck::parse(DECK, "inclined.toml", &[])?;
     let recorded = record(&deck, Symmetry::half_turn, context)?;
-    let front: Vec<(f64, f64)> = recorded
-        .looks
-        .iter()
-        .map(|look| (look.t, reach(&recorded, look)))
-        .collect();
-    let speeds = slopes(&front, WINDOW);
+    let [front, speeds] = motion(&recorded);
     let peak = speeds.iter().map(|s| s.1).reduce(f64::max);
     draw(context, &recorded, &front, &speeds)?;
 
