@@ -14,6 +14,7 @@
 //! Units: E, K in Pa; c in N/m⁶ for a dimensionless α; G₀ in J/m².
 
 mod constants;
+mod lattice;
 mod law;
 
 pub use constants::{

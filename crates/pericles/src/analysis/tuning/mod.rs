@@ -26,6 +26,7 @@
 //! ```
 
 mod absolute;
+mod bounded;
 mod functions;
 mod method;
 mod model;
