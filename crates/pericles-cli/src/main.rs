@@ -1,2 +1,51 @@
-//! The program `pericles`.
-fn main() {}
+//! The program `pericles`: peridynamics from a deck.
+//!
+//! `run`, `check` and `resume` act on decks and output folders, `reproduce` on the studies inside the program. Each command is one module; what they
+//! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
+//! status ([`exit`]).
+
+mod args;
+mod check;
+mod checkpoint;
+mod console;
+mod error;
+mod exit;
+mod machine;
+mod prepare;
+mod progress;
+mod report;
+mod reproduce;
+mod run;
+mod signals;
+mod summary;
+mod units;
+mod waves;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Cli, Command};
+use exit::Exit;
+
+fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|panic| {
+        console::note(format_args!(
+            "pericles: {panic}\nThis is a bug in Pericles {}. Please report it with the deck and the command line.",
+            env!("CARGO_PKG_VERSION")
+        ));
+        std::process::exit(i32::from(Exit::Internal.status()));
+    }));
+    let outcome = match Cli::parse().command {
+        Command::Run(args) => run::run(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Resume(args) => run::resume(&args),
+        Command::Reproduce(args) => reproduce::reproduce(&args),
+    };
+    let exit = outcome.unwrap_or_else(|error| {
+        let exit = error.exit();
+        error.report();
+        exit
+    });
+    exit.into()
+}

@@ -15,32 +15,47 @@ pub(crate) fn for_each_block<const D: usize, S: Send>(
     states: &mut [S],
     work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
 ) {
-    split(0, out, states, work);
+    for_each_part(out, states, &|block| block * BLOCK, &|block, out, state| {
+        work(block * BLOCK, out, state);
+    });
+}
+
+/// Calls `work(part, one slice per component, the part's own state)` for every part, on all cores, without allocating. Part k has the
+/// points from `first(k)` to `first(k + 1)`, the last one all that are left; `first(0)` is 0.
+pub(crate) fn for_each_part<const D: usize, S: Send>(
+    out: [&mut [f64]; D],
+    states: &mut [S],
+    first: &(impl Fn(usize) -> usize + Sync),
+    work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+) {
+    split(0, out, states, first, work);
 }
 
 fn split<const D: usize, S: Send>(
-    first_block: usize,
+    part: usize,
     out: [&mut [f64]; D],
     states: &mut [S],
+    first: &(impl Fn(usize) -> usize + Sync),
     work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
 ) {
     match states {
         [] => {}
-        [state] => work(first_block * BLOCK, out, state),
+        [state] => work(part, out, state),
         _ => {
             let middle = states.len() / 2;
+            let points = first(part + middle) - first(part);
             let (low_states, high_states) = states.split_at_mut(middle);
             let mut high: [&mut [f64]; D] = std::array::from_fn(|_| Default::default());
             let mut component = 0;
             let low = out.map(|slice| {
-                let (low, rest) = slice.split_at_mut(middle * BLOCK);
+                let (low, rest) = slice.split_at_mut(points);
                 high[component] = rest;
                 component += 1;
                 low
             });
             rayon::join(
-                || split(first_block, low, low_states, work),
-                || split(first_block + middle, high, high_states, work),
+                || split(part, low, low_states, first, work),
+                || split(part + middle, high, high_states, first, work),
             );
         }
     }

@@ -3,6 +3,9 @@
 //! A pair law is written once, generic over [`Real`]. With [`F64x8`] the loops over the lanes become vector instructions of the
 //! set the surrounding function is compiled for; with `f64` the same text is the naive twin used by tests. No
 //! operation is contracted or reassociated, so all instruction sets give the same bits.
+//!
+//! Kernels whose speed must not depend on how well a compiler finds vectors are written on [`Lanes`]: eight numbers held in whole
+//! registers of each set. Only [`Lanes::mul_add`] may round differently from set to set.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -32,6 +35,27 @@ impl Real for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
+}
+
+/// Eight numbers side by side, in whole registers of an instruction set.
+pub trait Lanes: Real {
+    /// The eight numbers from `numbers[at]` on.
+    ///
+    /// # Panics
+    /// If the slice ends before.
+    fn load(numbers: &[f64], at: usize) -> Self;
+    /// The numbers, in order.
+    fn to_array(self) -> [f64; LANES];
+    /// self · factor + addend, rounded once where the set has such an instruction.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+    /// The larger of each pair; `other` if one of them is no number.
+    fn max(self, other: Self) -> Self;
+    /// The smaller of each pair; `other` if one of them is no number.
+    fn min(self, other: Self) -> Self;
+    /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
+    fn masked(self, mask: u8) -> Self;
+    /// One bit per lane: self > other. NaN compares false.
+    fn greater(self, other: Self) -> u8;
 }
 
 /// Eight numbers.
@@ -109,6 +133,50 @@ impl Real for F64x8 {
     }
 }
 
+impl Lanes for F64x8 {
+    #[inline(always)]
+    fn load(numbers: &[f64], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        Self::from_fn(|k| numbers[k])
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        self.0
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::from_fn(|k| {
+            if self.0[k] > other.0[k] {
+                self.0[k]
+            } else {
+                other.0[k]
+            }
+        })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::from_fn(|k| {
+            if self.0[k] < other.0[k] {
+                self.0[k]
+            } else {
+                other.0[k]
+            }
+        })
+    }
+    #[inline(always)]
+    fn masked(self, mask: u8) -> Self {
+        F64x8::masked(self, mask)
+    }
+    #[inline(always)]
+    fn greater(self, other: Self) -> u8 {
+        F64x8::greater(self, other)
+    }
+}
+
 /// The vector whose component c is `component(c)`.
 ///
 /// `std::array::from_fn` would do, but is not always inlined, and a copy that is not takes the instruction set of the baseline.
@@ -136,7 +204,7 @@ pub fn dot<T: Real, const D: usize>(a: [T; D], b: [T; D]) -> T {
 pub enum InstructionSet {
     /// What every machine of the architecture has.
     Baseline,
-    /// AVX2.
+    /// AVX2 with FMA.
     Avx2,
     /// AVX-512 (F, VL, DQ, BW).
     Avx512,
@@ -154,7 +222,7 @@ impl InstructionSet {
             {
                 return Self::Avx512;
             }
-            if is_x86_feature_detected!("avx2") {
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
                 return Self::Avx2;
             }
         }
@@ -185,20 +253,38 @@ impl InstructionSet {
 }
 
 /// Compiles one inlined function for every instruction set and chooses among the copies at run time.
+///
+/// Written `= body on lanes`, the function's first generic argument is the set's own type of eight numbers (see [`Lanes`]).
 macro_rules! for_each_instruction_set {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident) => {
+        for_each_instruction_set! {
+            @compile [$body::<$($argument),*>] [$body::<$($argument),*>] [$body::<$($argument),*>]
+            $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)
+        }
+    };
+    ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident on lanes) => {
+        for_each_instruction_set! {
+            @compile
+            [$body::<$crate::operator::lanes::F64x8, $($argument),*>]
+            [$body::<$crate::operator::lanes_x86::Avx2x8, $($argument),*>]
+            [$body::<$crate::operator::lanes_x86::Avx512x8, $($argument),*>]
+            $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)
+        }
+    };
+    (@compile [$($baseline:tt)*] [$($avx2:tt)*] [$($avx512:tt)*]
+     $(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),*)) => {
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)]
         $visibility fn $name<$($generics)*>(set: InstructionSet, $($parameter: $type),*) {
             #[cfg(target_arch = "x86_64")]
             {
-                #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+                #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
                 fn avx512<$($generics)*>($($parameter: $type),*) {
-                    $body::<$($argument),*>($($parameter),*)
+                    $($avx512)*($($parameter),*)
                 }
-                #[target_feature(enable = "avx2")]
+                #[target_feature(enable = "avx2,fma")]
                 fn avx2<$($generics)*>($($parameter: $type),*) {
-                    $body::<$($argument),*>($($parameter),*)
+                    $($avx2)*($($parameter),*)
                 }
                 match set {
                     // SAFETY: InstructionSet::detect found these features on this machine.
@@ -209,7 +295,7 @@ macro_rules! for_each_instruction_set {
                 }
             }
             let _ = set;
-            $body::<$($argument),*>($($parameter),*)
+            $($baseline)*($($parameter),*)
         }
     };
 }

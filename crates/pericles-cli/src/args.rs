@@ -1,0 +1,180 @@
+//! The command line.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::exit::Exit;
+
+const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
+
+const EXAMPLES: &str = "\
+Examples:
+  pericles check examples/fracture/branching.toml     what a run would need; runs nothing
+  pericles run examples/fracture/branching.toml       results in ./branching, then ./branching-2 …
+  pericles run deck.toml --out results --force        results in ./results, replacing earlier ones
+  pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
+  pericles resume branching                           goes on after Ctrl-C, to the same bytes
+  pericles reproduce --list                           studies of papers
+  pericles reproduce fracture/branching";
+
+/// The whole command line.
+#[derive(Debug, Parser)]
+#[command(
+    name = "pericles",
+    version,
+    about = ABOUT,
+    after_help = EXAMPLES,
+    after_long_help = format!("{EXAMPLES}\n\n{}", Exit::table()),
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a deck
+    #[command(after_help = "\
+Results go to ./<deck's name>, then to ./<name>-2, -3 …, or to --out. In the folder:
+  run.json          the deck as read, the audit of energy and momentum, speed, memory
+  fields.pvd        open this one in ParaView; fields/ holds its files
+  history.csv       energies, momentum, broken bonds; reactions.csv, cracks.csv, probes.csv
+  pictures/         pictures of the fields the deck asks for
+  checkpoints/      the last two states, from which `pericles resume` goes on")]
+    Run(RunArgs),
+    /// Tell what a run of a deck would need: points, bonds, memory, stable step, time; runs nothing
+    Check(CheckArgs),
+    /// Go on with a run that was stopped
+    #[command(after_help = "\
+The run goes on from its last checkpoint, bit for bit as if it had never stopped. The deck is the one the
+checkpoint holds, so the file may have changed or gone. Another number of threads gives the same results.")]
+    Resume(ResumeArgs),
+    /// Compute published results again and compare
+    #[command(after_help = "\
+Studies and their decks are inside the program. The exit status is 0 only if every judged row holds, else 5.")]
+    Reproduce(ReproduceArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// The deck, a TOML file
+    pub(crate) deck: PathBuf,
+    /// Folder for the results; must not exist
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Let --out replace the results of an earlier run; other files in the folder stay
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) execution: Execution,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// The deck, a TOML file
+    pub(crate) deck: PathBuf,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ResumeArgs {
+    /// The folder of the run
+    pub(crate) dir: PathBuf,
+    #[command(flatten)]
+    pub(crate) execution: Execution,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    /// The study, such as fracture/branching
+    #[arg(required_unless_present = "list", conflicts_with = "list")]
+    pub(crate) id: Option<String>,
+    /// List the studies
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Write the rows as JSON to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE", conflicts_with = "list")]
+    pub(crate) json: Option<PathBuf>,
+    /// Add the rows that take long
+    #[arg(long, conflicts_with = "list")]
+    pub(crate) full: bool,
+    /// Folder for the figures [default: ./reproduce-<study>, then -2, -3 …]
+    #[arg(long, value_name = "DIR", conflicts_with = "list")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) execution: Execution,
+}
+
+/// Changes to the deck.
+#[derive(Debug, Args)]
+pub(crate) struct Overrides {
+    /// Change the deck, such as time.dt=auto or crack.0.ends=open; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+/// How to compute and how much to say.
+#[derive(Debug, Args)]
+pub(crate) struct Execution {
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Threads.
+#[derive(Debug, Args)]
+pub(crate) struct Threads {
+    /// Threads [default: one per core]; results do not depend on it
+    #[arg(long = "threads", value_name = "N")]
+    count: Option<NonZeroUsize>,
+}
+
+impl Threads {
+    /// Starts the threads; without a number one per core.
+    pub(crate) fn start(&self) -> Result<usize, rayon::ThreadPoolBuildError> {
+        let count = self.count.map_or(0, NonZeroUsize::get);
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .build_global()?;
+        Ok(rayon::current_num_threads())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn force_needs_out_and_list_stands_alone() {
+        let parse = |line: &str| Cli::try_parse_from(line.split(' '));
+        assert!(parse("pericles run a.toml --force").is_err());
+        assert!(parse("pericles run a.toml --force --out b").is_ok());
+        assert!(parse("pericles reproduce").is_err());
+        assert!(parse("pericles reproduce --list").is_ok());
+        assert!(parse("pericles reproduce --list fracture/branching").is_err());
+        assert!(parse("pericles run a.toml --threads 0").is_err());
+        let run = parse("pericles run a.toml --set a=1 --set b=2 -q").unwrap();
+        let Command::Run(run) = run.command else {
+            panic!("not a run");
+        };
+        assert_eq!(run.overrides.set, ["a=1", "b=2"]);
+        assert!(run.execution.quiet);
+    }
+}

@@ -1,0 +1,184 @@
+//! `check`: what a run of a deck would need. Runs nothing and writes nothing.
+
+use std::time::{Duration, Instant};
+
+use pericles::time::{Integrator, State};
+use pericles::{PericlesError, System};
+use pericles_deck::{Deck, Model};
+
+use crate::args::CheckArgs;
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::prepare::Facts;
+use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
+use crate::waves::WaveSpeeds;
+
+/// Checks a deck.
+///
+/// # Errors
+/// A deck that is refused.
+pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
+    let count_of_threads = args.threads.start()?;
+    let deck = Deck::read(&args.deck, &args.overrides.set)?;
+    let model = deck.build()?;
+    let facts = Facts::of(&deck, &model);
+    for warning in &facts.warnings {
+        console::note(format_args!("warning: {warning}"));
+    }
+    let mut lines = body(&deck, &facts);
+    lines.extend(material(&deck, &facts));
+    lines.extend(time(&facts));
+    let seconds = seconds_per_step(model)? * facts.steps as f64;
+    lines.push((
+        "run time",
+        format!(
+            "about {} on {} ({}), files not counted",
+            duration(seconds),
+            threads(count_of_threads),
+            facts.instruction_set
+        ),
+    ));
+    let title = deck.title.as_deref().unwrap_or("no title");
+    let mut text = format!("{}: {title}", args.deck.display());
+    for (name, value) in lines {
+        text += &format!("\n  {name:<18} {value}");
+    }
+    console::print(format_args!("{text}"))?;
+    Ok(Exit::Done)
+}
+
+type Line = (&'static str, String);
+
+fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
+    let state = deck.body.state.name();
+    let mut lines = vec![
+        ("body", format!("{}D, {state}", facts.dimension)),
+        ("points", count(facts.points as u64)),
+        (
+            "bonds",
+            format!(
+                "{} ({} directed, {} per point)",
+                count(facts.bonds),
+                count(facts.directed_bonds),
+                significant(facts.directed_bonds as f64 / facts.points as f64, 3)
+            ),
+        ),
+        ("memory", format!("about {}", bytes(facts.memory_estimate))),
+        (
+            "spacing, horizon",
+            format!(
+                "{}, {}; ratio {}",
+                quantity(facts.spacing, "m"),
+                quantity(facts.horizon, "m"),
+                significant(facts.horizon / facts.spacing, 4)
+            ),
+        ),
+    ];
+    if facts.precut_bonds > 0 {
+        lines.insert(3, ("bonds cut before", count(facts.precut_bonds)));
+    }
+    lines
+}
+
+fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
+    let mut lines = vec![
+        ("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
+        (
+            "bond constant c",
+            format!(
+                "{:.6e} (SI, of the force density c α s)",
+                facts.micromodulus
+            ),
+        ),
+        (
+            "stiffness error",
+            format!("{} of the grid's interior", percent(facts.stiffness_error)),
+        ),
+    ];
+    match (facts.critical_stretch, facts.fracture_energy) {
+        (Some(stretch), Some(energy)) => lines.push((
+            "breaking",
+            format!(
+                "beyond the stretch {}, fracture energy {}",
+                significant(stretch, 4),
+                quantity(energy, "J/m²")
+            ),
+        )),
+        _ => lines.push(("breaking", "never".into())),
+    }
+    let density = deck.material.bonds.density;
+    let speeds = WaveSpeeds::of(facts.youngs_modulus, density, deck.body.state);
+    let mut waves = format!("pressure {:.0} m/s", speeds.pressure);
+    if let Some(transverse) = speeds.transverse {
+        waves += &format!(
+            ", shear {:.0} m/s, Rayleigh {:.0} m/s",
+            transverse.shear, transverse.rayleigh
+        );
+    }
+    lines.push(("waves", waves));
+    lines
+}
+
+fn time(facts: &Facts) -> Vec<Line> {
+    let mut lines = Vec::new();
+    if let (Some(omega), Some(limit)) = (facts.highest_frequency, facts.stable_step) {
+        let doubt = if facts.frequency_converged == Some(false) {
+            " (an estimate; the step is that of a bound)"
+        } else {
+            ""
+        };
+        lines.push(("highest frequency", format!("{omega:.4e} 1/s{doubt}")));
+        lines.push((
+            "stable step",
+            format!("{} ({})", quantity(limit, "s"), facts.scheme),
+        ));
+    }
+    let share = facts
+        .stable_step
+        .map(|limit| format!(", {} of the stable one", percent(facts.dt / limit)))
+        .unwrap_or_default();
+    lines.push((
+        "steps",
+        format!(
+            "{} of {}{share}; end at {}",
+            count(facts.steps),
+            quantity(facts.dt, "s"),
+            quantity(facts.steps as f64 * facts.dt, "s")
+        ),
+    ));
+    lines
+}
+
+/// The time of the clock for one step of the scheme, from a few on the built model, which is thrown away.
+fn seconds_per_step(model: Model) -> Result<f64, PericlesError> {
+    const LONGEST: Duration = Duration::from_millis(500);
+    const MOST: u64 = 500;
+    let Model {
+        mut system,
+        mut state,
+        mut integrator,
+        dt,
+        ..
+    } = model;
+    integrator.start(&mut system, &mut state);
+    // The first step finds cold caches and sleeping threads.
+    step(&mut system, &mut state, &mut *integrator, dt)?;
+    let began = Instant::now();
+    let mut steps = 0;
+    while steps < MOST && began.elapsed() < LONGEST {
+        step(&mut system, &mut state, &mut *integrator, dt)?;
+        steps += 1;
+    }
+    Ok(began.elapsed().as_secs_f64() / steps as f64)
+}
+
+fn step(
+    system: &mut System,
+    state: &mut State,
+    integrator: &mut dyn Integrator,
+    dt: f64,
+) -> Result<(), PericlesError> {
+    let t_next = state.t + dt;
+    integrator.step(system, state, t_next)
+}

@@ -1,0 +1,207 @@
+//! Checkpoints of a run: when they are due, and what they hold besides the state.
+//!
+//! One is written before the first step, so that a run that dies at any time can be resumed, then at the deck's schedule (by default every ten minutes
+//! of wall time), and when Ctrl-C or SIGTERM stops the run. A run that becomes unstable leaves its failing state as `failed.chk`, which is for looking
+//! at only: `resume` goes on from the last regular one.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use pericles::observe::Schedule;
+use pericles::{Archive, Saved, Simulation, Values};
+use pericles_deck::{Checkpoint, Deck};
+use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder, Section};
+use serde::{Deserialize, Serialize};
+
+use crate::error::CliError;
+
+const FAILED: &str = "failed.chk";
+
+/// What a checkpoint says besides the state: enough to build the same run again.
+#[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
+pub(crate) struct Metadata {
+    /// The version that wrote it.
+    pub(crate) version: String,
+    /// The instruction set it ran with.
+    pub(crate) instruction_set: String,
+    /// Steps taken.
+    pub(crate) step: u64,
+    /// The deck.
+    pub(crate) deck: DeckText,
+}
+
+/// A deck as it was given.
+#[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
+pub(crate) struct DeckText {
+    /// What messages call it.
+    pub(crate) file: String,
+    /// Its text.
+    pub(crate) source: String,
+    /// The overrides from the command line.
+    pub(crate) overrides: Vec<String>,
+}
+
+impl DeckText {
+    /// The text of a deck that was read from `file`.
+    pub(crate) fn of(deck: &Deck, file: String) -> Self {
+        Self {
+            file,
+            source: deck.source().to_owned(),
+            overrides: deck.overrides().map(str::to_owned).collect(),
+        }
+    }
+
+    /// Reads the deck again.
+    ///
+    /// # Errors
+    /// What this version no longer accepts.
+    pub(crate) fn read(&self) -> Result<Deck, CliError> {
+        Ok(Deck::parse(&self.source, &self.file, &self.overrides)?)
+    }
+}
+
+/// The checkpoints of one run.
+pub(crate) struct Checkpoints {
+    folder: CheckpointFolder,
+    schedule: Checkpoint,
+    deck: DeckText,
+    last: Instant,
+}
+
+impl Checkpoints {
+    /// The checkpoints of a run in its output folder.
+    pub(crate) fn new(folder: &OutputFolder, schedule: Checkpoint, deck: DeckText) -> Self {
+        Self {
+            folder: CheckpointFolder::new(folder.file("checkpoints")),
+            schedule,
+            deck,
+            last: Instant::now(),
+        }
+    }
+
+    /// Whether one is due after the present step.
+    pub(crate) fn is_due(&self, simulation: &Simulation) -> bool {
+        let step = simulation.state().step;
+        let due = |schedule: Schedule| schedule.is_due(step, simulation.dt(), simulation.steps());
+        match self.schedule {
+            Checkpoint::Wall(seconds) => {
+                // A deck may ask for more seconds than a clock can count.
+                let wait = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+                self.last.elapsed() >= wait
+            }
+            Checkpoint::Every(steps) => due(Schedule::Every(steps)),
+            Checkpoint::Interval(time) => due(Schedule::Interval(time)),
+        }
+    }
+
+    /// Writes the present state.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub(crate) fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, CliError> {
+        let container = self.container(simulation)?;
+        let path = self.folder.write(simulation.state().step, &container)?;
+        self.last = Instant::now();
+        Ok(path)
+    }
+
+    /// Writes a state that cannot be gone on from.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub(crate) fn write_failed(&self, simulation: &Simulation) -> Result<PathBuf, CliError> {
+        let path = self.folder.path().join(FAILED);
+        self.container(simulation)?.write(&path)?;
+        Ok(path)
+    }
+
+    /// Removes what an earlier failure left.
+    pub(crate) fn forget_failed(&self) {
+        // It is overwritten by the next failure, and of no use to a success.
+        let _ = std::fs::remove_file(self.folder.path().join(FAILED));
+    }
+
+    /// The step from which `resume` would go on.
+    pub(crate) fn last_step(&self) -> Option<u64> {
+        self.folder.steps().ok()?.last().copied()
+    }
+
+    fn container(&self, simulation: &Simulation) -> Result<Container, CliError> {
+        let operator = simulation.system().operator();
+        let metadata = Metadata {
+            version: env!("CARGO_PKG_VERSION").into(),
+            instruction_set: operator.instruction_set().name().into(),
+            step: simulation.state().step,
+            deck: self.deck.clone(),
+        };
+        let mut archive = Archive::default();
+        simulation.save(&mut archive);
+        let sections = archive
+            .into_arrays()
+            .into_iter()
+            .map(|(name, values)| (name, section(values)))
+            .collect();
+        Ok(Container {
+            metadata: serde_json::to_value(metadata)?,
+            sections,
+        })
+    }
+}
+
+/// A checkpoint read back.
+pub(crate) struct Stored {
+    /// The file.
+    pub(crate) path: PathBuf,
+    /// What it says.
+    pub(crate) metadata: Metadata,
+    /// The state.
+    pub(crate) archive: Archive,
+    /// Why newer ones were refused.
+    pub(crate) refused: Vec<IoError>,
+}
+
+impl Stored {
+    /// The newest usable checkpoint of a run.
+    ///
+    /// # Errors
+    /// No checkpoint that is whole, or one of another program.
+    pub(crate) fn latest(folder: &OutputFolder) -> Result<Self, CliError> {
+        let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid()?;
+        let unusable = |reason: String| CliError::Checkpoint {
+            path: latest.path.clone(),
+            reason,
+        };
+        let metadata = serde_json::from_value(latest.container.metadata)
+            .map_err(|error| unusable(error.to_string()))?;
+        let mut archive = Archive::default();
+        for (name, section) in latest.container.sections {
+            let values = values(section)
+                .ok_or_else(|| unusable(format!("the array \"{name}\" has an unknown type")))?;
+            archive.put(name, values);
+        }
+        Ok(Self {
+            path: latest.path,
+            metadata,
+            archive,
+            refused: latest.refused,
+        })
+    }
+}
+
+fn section(values: Values) -> Section {
+    match values {
+        Values::F64(values) => Section::F64(values),
+        Values::U64(values) => Section::U64(values),
+        Values::U8(values) => Section::U8(values),
+    }
+}
+
+/// Archives hold no numbers of 32 bits.
+fn values(section: Section) -> Option<Values> {
+    match section {
+        Section::F64(values) => Some(Values::F64(values)),
+        Section::U64(values) => Some(Values::U64(values)),
+        Section::U8(values) => Some(Values::U8(values)),
+        Section::U32(_) => None,
+    }
+}

@@ -1,0 +1,188 @@
+//! What can go wrong on the way from the command line to the results, and how it is reported.
+
+use std::fmt::{self, Display};
+use std::io::IsTerminal;
+use std::path::PathBuf;
+
+use miette::{Diagnostic, MietteHandler, ReportHandler};
+use pericles::{PericlesError, SimulationError};
+use pericles_deck::DeckError;
+use pericles_io::IoError;
+
+use crate::console;
+use crate::exit::Exit;
+
+/// Everything that ends a command early.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[non_exhaustive]
+pub(crate) enum CliError {
+    /// The deck is refused.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Deck(#[from] DeckError),
+    /// A file is to blame.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// The output folder is taken.
+    #[error("{} exists already", path.display())]
+    #[diagnostic(help("choose another --out, or replace the results in it with --force"))]
+    OutExists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The run became unstable.
+    #[error("{source}")]
+    Unstable {
+        /// What happened.
+        source: SimulationError,
+        /// What is left of the run.
+        #[help]
+        left: String,
+    },
+    /// Anything else that keeps a run from going on.
+    #[error("{0}")]
+    Simulation(#[source] SimulationError),
+    /// A checkpoint that does not go with its deck.
+    #[error("the checkpoint {} cannot be used: {reason}", path.display())]
+    #[diagnostic(help(
+        "the folder may have been changed since the run stopped; run the deck again"
+    ))]
+    Checkpoint {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// There is nothing to resume.
+    #[error("{} is no output folder of a run: it has no checkpoints", path.display())]
+    #[diagnostic(help("give the folder that `pericles run` made, such as ./branching"))]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A study of that name does not exist.
+    #[error("there is no study \"{id}\"")]
+    UnknownStudy {
+        /// The name given.
+        id: String,
+        /// The nearest name, and where to find the others.
+        #[help]
+        hint: String,
+    },
+    /// A step of the library outside of a run.
+    #[error(transparent)]
+    Library(#[from] PericlesError),
+    /// The system refuses threads.
+    #[error("the threads cannot be started: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The system refuses signal handlers.
+    #[error("Ctrl-C and SIGTERM cannot be watched: {0}")]
+    Signals(#[source] std::io::Error),
+    /// A value that has no JSON.
+    #[error("the results cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl CliError {
+    /// Sorts the failure of a run; `left` tells what is left if it became unstable.
+    pub(crate) fn of_run(error: SimulationError, left: impl FnOnce() -> String) -> Self {
+        match error {
+            SimulationError::Observe(source) => match source.downcast::<IoError>() {
+                Ok(error) => Self::Io(*error),
+                Err(source) => Self::Simulation(SimulationError::Observe(source)),
+            },
+            SimulationError::Unstable { .. } => Self::Unstable {
+                source: error,
+                left: left(),
+            },
+            other => Self::Simulation(other),
+        }
+    }
+
+    /// The exit status it leads to.
+    pub(crate) fn exit(&self) -> Exit {
+        match self {
+            Self::Deck(_) | Self::Checkpoint { .. } | Self::NoRun { .. } | Self::Library(_) => {
+                Exit::Input
+            }
+            Self::Io(error) if error.is_output_problem() => Exit::Output,
+            Self::Io(IoError::Shape { .. } | IoError::Unsuitable { .. }) => Exit::Internal,
+            Self::Io(_) => Exit::Input,
+            Self::OutExists { .. } => Exit::Output,
+            Self::Unstable { .. } => Exit::Numerical,
+            Self::Simulation(SimulationError::Step(_)) => Exit::Numerical,
+            Self::UnknownStudy { .. } => Exit::Usage,
+            Self::Simulation(_) | Self::Threads(_) | Self::Signals(_) | Self::Json(_) => {
+                Exit::Internal
+            }
+        }
+    }
+
+    /// Reports on the standard error: with the places in the deck marked on a terminal, in plain lines otherwise.
+    pub(crate) fn report(&self) {
+        if std::io::stderr().is_terminal() {
+            return match self {
+                // One by one: the error as a whole would list them all a second time.
+                Self::Deck(error) if !error.problems().is_empty() => error
+                    .problems()
+                    .iter()
+                    .for_each(|problem| console::note(format_args!("{}", Drawn(problem)))),
+                other => console::note(format_args!("{}", Drawn(other))),
+            };
+        }
+        console::note(format_args!("error: {self}"));
+        // The plain text of a refused deck says what is allowed itself.
+        if let (Some(help), false) = (self.help(), matches!(self, Self::Deck(_))) {
+            console::note(format_args!("help: {help}"));
+        }
+    }
+}
+
+/// A diagnostic as it looks on a terminal.
+struct Drawn<'a>(&'a dyn Diagnostic);
+
+impl Display for Drawn<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        MietteHandler::default().debug(self.0, f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io;
+    use std::path::Path;
+
+    #[test]
+    fn exit_statuses_tell_whose_fault_it_is() {
+        let path = || PathBuf::from("out");
+        let io = |kind| IoError::writing(Path::new("out/a.csv"), io::Error::from(kind));
+        let observed = |error: IoError| {
+            CliError::of_run(SimulationError::Observe(Box::new(error)), String::new)
+        };
+        let unstable = SimulationError::Unstable {
+            step: 20,
+            t: 1e-6,
+            cause: "a velocity is not a number",
+            point: 0,
+            place: [0.0; 3],
+            speed: f64::INFINITY,
+        };
+        let cases = [
+            (CliError::from(io(io::ErrorKind::StorageFull)), 6),
+            (observed(io(io::ErrorKind::StorageFull)), 6),
+            (observed(IoError::Locked { path: path() }), 6),
+            (CliError::OutExists { path: path() }, 6),
+            (CliError::NoRun { path: path() }, 3),
+            (CliError::from(IoError::NotFound { path: path() }), 3),
+            (CliError::of_run(unstable, || "left".into()), 4),
+            (
+                CliError::of_run(SimulationError::Observe("odd".into()), String::new),
+                1,
+            ),
+        ];
+        for (error, status) in cases {
+            assert_eq!(error.exit().status(), status, "{error}");
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! From a model to a simulation with all its observers, and the facts about it that reports need.
+
+use std::collections::HashMap;
+
+use pericles::Simulation;
+use pericles::observe::{CrackTracker, Schedule};
+use pericles_deck::{Deck, Model, Precision};
+use pericles_io::OutputFolder;
+use pericles_io::observers::{
+    Cracks, FieldSeries, History, PictureOf, Pictures, Probes, Reactions,
+};
+use serde::Serialize;
+
+use crate::error::CliError;
+
+/// What is known about a run before its first step; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Facts {
+    pub(crate) dimension: usize,
+    pub(crate) points: usize,
+    pub(crate) spacing: f64,
+    pub(crate) horizon: f64,
+    /// Bonds, each counted once, after pre-cutting.
+    pub(crate) bonds: u64,
+    pub(crate) directed_bonds: u64,
+    pub(crate) precut_bonds: u64,
+    pub(crate) youngs_modulus: f64,
+    pub(crate) micromodulus: f64,
+    /// None if bonds never break.
+    pub(crate) critical_stretch: Option<f64>,
+    pub(crate) fracture_energy: Option<f64>,
+    /// Bulk stiffness of the grid's interior over the continuum's, less one.
+    pub(crate) stiffness_error: f64,
+    pub(crate) dt: f64,
+    pub(crate) steps: u64,
+    /// None if nothing resists motion.
+    pub(crate) highest_frequency: Option<f64>,
+    pub(crate) frequency_converged: Option<bool>,
+    pub(crate) stable_step: Option<f64>,
+    /// Points, state and bonds, bytes.
+    pub(crate) memory_estimate: u64,
+    pub(crate) scheme: &'static str,
+    pub(crate) instruction_set: &'static str,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Facts {
+    /// The facts about a model of a deck.
+    pub(crate) fn of(deck: &Deck, model: &Model) -> Self {
+        let operator = model.system.operator();
+        let (points, dimension) = (model.cloud.len(), model.cloud.dimension());
+        let directed_bonds = operator.directed_bonds();
+        let constants = &model.constants;
+        let finite = |x: f64| x.is_finite().then_some(x);
+        // Position and volume, then displacement, velocity and acceleration.
+        let numbers = points * (dimension + 1) + 3 * points * dimension;
+        Self {
+            dimension,
+            points,
+            spacing: model.cloud.spacing(),
+            horizon: deck.material.bonds.horizon,
+            bonds: directed_bonds / 2,
+            directed_bonds,
+            precut_bonds: model.precut_bonds,
+            youngs_modulus: constants.young,
+            micromodulus: constants.micromodulus,
+            critical_stretch: finite(constants.critical_stretch),
+            fracture_energy: finite(constants.fracture_energy),
+            stiffness_error: constants.stiffness_error,
+            dt: model.dt,
+            steps: model.steps,
+            highest_frequency: model.frequency.map(|f| f.estimate),
+            frequency_converged: model.frequency.map(|f| f.converged),
+            stable_step: model.stable_step(),
+            memory_estimate: (operator.bytes() + numbers * size_of::<f64>()) as u64,
+            scheme: model.integrator.name(),
+            instruction_set: operator.instruction_set().name(),
+            warnings: model.warnings.iter().map(|w| w.line()).collect(),
+        }
+    }
+}
+
+/// The simulation of a model with the observers the deck asks for, writing into a folder.
+///
+/// # Errors
+/// Sub-folders that cannot be made.
+pub(crate) fn simulation(
+    deck: &Deck,
+    model: Model,
+    folder: &OutputFolder,
+) -> Result<Simulation, CliError> {
+    let (cloud, output) = (model.cloud.clone(), &deck.output);
+    let dimension = cloud.dimension();
+    let can_break = model.system.operator().can_break();
+    let reactions = (!model.system.motions().is_empty())
+        .then(|| Reactions::new(folder.file("reactions.csv"), model.system.motions()));
+    let (probes, cracks) = (model.probes.clone(), model.cracks.clone());
+    let mut simulation = model.simulation();
+
+    let history = History::new(folder.file("history.csv"), dimension);
+    simulation.observe(output.history, Box::new(history));
+    if let Some(reactions) = reactions {
+        simulation.observe(output.history, Box::new(reactions));
+    }
+    if !probes.is_empty() {
+        let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
+        simulation.observe(output.history, Box::new(probes));
+    }
+    if can_break && !cracks.is_empty() {
+        let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);
+        let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
+        simulation.observe(output.cracks.schedule, Box::new(cracks));
+    }
+    if output.fields != Schedule::Never {
+        folder.subfolder("fields")?;
+        let single = output.precision == Precision::Single;
+        let fields = FieldSeries::new(folder.path(), single);
+        simulation.observe(output.fields, Box::new(fields));
+    }
+    add_pictures(deck, folder, &mut simulation)?;
+    Ok(simulation)
+}
+
+fn add_pictures(
+    deck: &Deck,
+    folder: &OutputFolder,
+    simulation: &mut Simulation,
+) -> Result<(), CliError> {
+    if deck.output.pictures.is_empty() {
+        return Ok(());
+    }
+    let place = folder.subfolder("pictures")?;
+    let mut uses: HashMap<String, u32> = HashMap::new();
+    for picture in &deck.output.pictures {
+        let what = PictureOf {
+            field: picture.field,
+            component: picture.component,
+            scale: picture.scale,
+            range: picture.range,
+            title: deck.title.clone().unwrap_or_default(),
+        };
+        // Two pictures of one field get two names.
+        let uses = uses.entry(what.name()).or_default();
+        *uses += 1;
+        let stem = match *uses {
+            1 => what.name(),
+            number => format!("{}_{number}", what.name()),
+        };
+        simulation.observe(
+            picture.schedule,
+            Box::new(Pictures::new(&place, stem, what)),
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,273 @@
+//! `run` and `resume`: a simulation in its folder, from a first step to its end or to a signal.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
+use pericles_deck::Deck;
+use pericles_io::{IoError, OutputFolder};
+
+use crate::args::{ResumeArgs, RunArgs};
+use crate::checkpoint::{Checkpoints, DeckText, Stored};
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::prepare::{self, Facts};
+use crate::progress::Progress;
+use crate::report::{Audit, Report, Status};
+use crate::signals::Signals;
+use crate::summary;
+use crate::units::{count, quantity};
+
+/// Runs a deck.
+///
+/// # Errors
+/// A deck that is refused, output that cannot be written, an unstable run.
+pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
+    args.execution.threads.start()?;
+    let deck = Deck::read(&args.deck, &args.overrides.set)?;
+    let text = DeckText::of(&deck, args.deck.display().to_string());
+    let quiet = args.execution.quiet;
+    if !quiet {
+        console::note(format_args!("{}: building the model", text.file));
+    }
+    // The folder is made once nothing in the deck can be wrong any more.
+    let model = deck.build()?;
+    let facts = Facts::of(&deck, &model);
+    let folder = match &args.out {
+        Some(path) => OutputFolder::create(path, args.force).map_err(|error| match error {
+            IoError::FolderExists { path } => CliError::OutExists { path },
+            other => other.into(),
+        })?,
+        None => OutputFolder::create_numbered(stem(&args.deck))?,
+    };
+    let simulation = prepare::simulation(&deck, model, &folder)?;
+    let report = Report::new(&deck, text.clone(), facts, 0);
+    let session = Session {
+        checkpoints: Checkpoints::new(&folder, deck.checkpoint, text),
+        momentum_at_start: momentum(&simulation),
+        simulation,
+        report,
+        folder,
+        quiet,
+    };
+    session.drive()
+}
+
+/// Goes on with a run from its last checkpoint.
+///
+/// # Errors
+/// No usable checkpoint, and what can go wrong with a run.
+pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
+    args.execution.threads.start()?;
+    let quiet = args.execution.quiet;
+    if args.dir.is_dir() && !args.dir.join("checkpoints").is_dir() {
+        let path = args.dir.clone();
+        return Err(CliError::NoRun { path });
+    }
+    let folder = OutputFolder::open(&args.dir)?;
+    if is_finished(&folder) {
+        if !quiet {
+            let path = folder.path().display();
+            console::print(format_args!(
+                "{path}: the run has finished; nothing to resume"
+            ))?;
+        }
+        return Ok(Exit::Done);
+    }
+    let stored = Stored::latest(&folder)?;
+    let deck = stored.metadata.deck.read()?;
+    let model = deck.build()?;
+    let mut facts = Facts::of(&deck, &model);
+    facts.warnings.extend(doubts(&stored, &facts));
+    let mut simulation = prepare::simulation(&deck, model, &folder)?;
+    // The state is still that of the start.
+    let momentum_at_start = momentum(&simulation);
+    simulation
+        .restore(&stored.archive)
+        .map_err(|error| CliError::Checkpoint {
+            path: stored.path.clone(),
+            reason: error.to_string(),
+        })?;
+    let step = simulation.state().step;
+    if !quiet {
+        let path = folder.path().display();
+        let (steps, t) = (count(simulation.steps()), simulation.state().t);
+        let step = count(step);
+        console::note(format_args!(
+            "{path}: going on from step {step} of {steps}, t = {}",
+            quantity(t, "s")
+        ));
+    }
+    let text = stored.metadata.deck;
+    let report = Report::new(&deck, text.clone(), facts, step);
+    let checkpoints = Checkpoints::new(&folder, deck.checkpoint, text);
+    checkpoints.forget_failed();
+    let session = Session {
+        checkpoints,
+        momentum_at_start,
+        simulation,
+        report,
+        folder,
+        quiet,
+    };
+    session.drive()
+}
+
+/// The deck's name without its ending, in the present folder.
+fn stem(deck: &Path) -> PathBuf {
+    match deck.file_stem() {
+        Some(stem) => Path::new(".").join(stem),
+        None => "./run".into(),
+    }
+}
+
+fn momentum(simulation: &Simulation) -> [f64; 3] {
+    simulation.system().momentum(&simulation.state().v)
+}
+
+/// Whether `run.json` says so. A report that cannot be read says nothing: the checkpoints decide.
+fn is_finished(folder: &OutputFolder) -> bool {
+    let status = || -> Option<String> {
+        let text = std::fs::read_to_string(folder.file("run.json")).ok()?;
+        let report: serde_json::Value = serde_json::from_str(&text).ok()?;
+        Some(report.get("status")?.as_str()?.to_owned())
+    };
+    status().as_deref() == Some("finished")
+}
+
+/// What may make a resumed run differ from an uninterrupted one.
+fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
+    let mut doubts: Vec<String> = stored
+        .refused
+        .iter()
+        .map(|error| format!("{error}; the checkpoint before it is used"))
+        .collect();
+    let metadata = &stored.metadata;
+    let version = env!("CARGO_PKG_VERSION");
+    if metadata.version != version {
+        doubts.push(format!(
+            "the run was begun by version {} and goes on with version {version}: it may not be the same bit for bit",
+            metadata.version
+        ));
+    }
+    if metadata.instruction_set != facts.instruction_set {
+        doubts.push(format!(
+            "the run was begun with instruction set {} and goes on with {}; all sets are meant to give the same bits",
+            metadata.instruction_set, facts.instruction_set
+        ));
+    }
+    doubts
+}
+
+/// A run in its folder.
+struct Session {
+    simulation: Simulation,
+    momentum_at_start: [f64; 3],
+    checkpoints: Checkpoints,
+    report: Report,
+    folder: OutputFolder,
+    quiet: bool,
+}
+
+impl Session {
+    fn drive(mut self) -> Result<Exit, CliError> {
+        if !self.quiet {
+            for warning in &self.report.model.warnings {
+                console::note(format_args!("warning: {warning}"));
+            }
+            summary::opening(&self.report, self.folder.path());
+        }
+        let signals = Signals::watch().map_err(CliError::Signals)?;
+        self.report.write(&self.folder.file("run.json"))?;
+        let began = Instant::now();
+        let ended = self.integrate(&signals);
+        self.report
+            .note_progress(&self.simulation, began.elapsed().as_secs_f64());
+        let outcome = match ended {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                self.report.status = Status::Failed;
+                self.report.error = Some(error.to_string());
+                // The first error is the one to report; on a full disk this one fails for the same reason.
+                let _ = self.report.write(&self.folder.file("run.json"));
+                return Err(error);
+            }
+        };
+        self.close(outcome, &signals)
+    }
+
+    fn integrate(&mut self, signals: &Signals) -> Result<Outcome, CliError> {
+        if self.simulation.state().step == 0 {
+            self.checkpoints.write(&self.simulation)?;
+        }
+        let (first, steps) = (self.simulation.state().step, self.simulation.steps());
+        let mut progress = Progress::new(self.quiet, first, steps);
+        let checkpoints = &mut self.checkpoints;
+        let mut trouble = None;
+        let outcome = self.simulation.run(|simulation| {
+            let state = simulation.state();
+            progress.step(state.step, state.t);
+            if signals.asked().is_some() {
+                return Control::Stop;
+            }
+            if checkpoints.is_due(simulation)
+                && let Err(error) = checkpoints.write(simulation)
+            {
+                trouble = Some(error);
+                return Control::Stop;
+            }
+            Control::Continue
+        });
+        progress.finish();
+        if let Some(error) = trouble {
+            return Err(error);
+        }
+        let outcome = outcome.map_err(|error| self.sorted(error))?;
+        if outcome == Outcome::Stopped {
+            self.checkpoints.write(&self.simulation)?;
+        }
+        Ok(outcome)
+    }
+
+    /// The failure of the run, with what is left of it.
+    fn sorted(&self, error: SimulationError) -> CliError {
+        CliError::of_run(error, || {
+            let mut left = match self.checkpoints.write_failed(&self.simulation) {
+                Ok(path) => format!("the failing state is in {}", path.display()),
+                Err(error) => format!("the failing state could not be kept ({error})"),
+            };
+            if let Some(step) = self.checkpoints.last_step() {
+                let folder = self.folder.path().display();
+                left += &format!(
+                    "; the last good checkpoint, from which `pericles resume {folder}` would go on, is that of step {step}"
+                );
+            }
+            left
+        })
+    }
+
+    fn close(mut self, outcome: Outcome, signals: &Signals) -> Result<Exit, CliError> {
+        let history = self.folder.file("history.csv");
+        self.report.audit = Some(Audit::of(
+            &self.simulation,
+            self.momentum_at_start,
+            &history,
+        )?);
+        let exit = match outcome {
+            Outcome::Finished => {
+                self.report.status = Status::Finished;
+                Exit::Done
+            }
+            Outcome::Stopped => {
+                self.report.status = Status::Stopped;
+                signals.asked().unwrap_or(Exit::StoppedEarly)
+            }
+        };
+        self.report.write(&self.folder.file("run.json"))?;
+        if !self.quiet {
+            summary::closing(&self.report, self.folder.path())?;
+        }
+        Ok(exit)
+    }
+}

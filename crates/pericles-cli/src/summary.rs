@@ -1,0 +1,73 @@
+//! What a run says about itself to people.
+
+use std::path::Path;
+
+use crate::console;
+use crate::error::CliError;
+use crate::report::{Audit, Report, Status};
+use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
+
+/// Before the first step.
+pub(crate) fn opening(report: &Report, folder: &Path) {
+    let model = &report.model;
+    console::note(format_args!(
+        "{} points, {} bonds, {} steps of {}, about {}; results in {}",
+        count(model.points as u64),
+        count(model.bonds),
+        count(model.steps),
+        quantity(model.dt, "s"),
+        bytes(model.memory_estimate),
+        folder.display()
+    ));
+}
+
+/// After the last step.
+///
+/// # Errors
+/// A standard output that cannot be written.
+pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
+    let (model, progress) = (&report.model, &report.progress);
+    let folder = folder.display();
+    let word = match report.status {
+        Status::Finished => "finished",
+        _ => "stopped",
+    };
+    console::print(format_args!(
+        "{word} after step {} of {}, t = {}, in {}: {} million bond updates/s on {} ({})",
+        count(progress.last_step),
+        count(model.steps),
+        quantity(progress.t, "s"),
+        duration(progress.wall_seconds),
+        significant(1e-6 * progress.directed_bond_updates_per_second, 3),
+        threads(rayon::current_num_threads()),
+        model.instruction_set,
+    ))?;
+    if let Some(audit) = &report.audit {
+        energies(audit)?;
+    }
+    if report.status == Status::Stopped {
+        console::print(format_args!("go on with: pericles resume {folder}"))?;
+    }
+    console::print(format_args!(
+        "results in {folder}: fields.pvd (ParaView), history.csv, run.json"
+    ))
+}
+
+fn energies(audit: &Audit) -> Result<(), CliError> {
+    console::print(format_args!(
+        "energy: kinetic {}, elastic {}, dissipated {}; work done on the body {}",
+        quantity(audit.kinetic_energy, "J"),
+        quantity(audit.elastic_energy, "J"),
+        quantity(audit.dissipated_energy, "J"),
+        quantity(audit.external_work, "J"),
+    ))?;
+    let scale = audit.external_work.abs().max(audit.initial_energy.abs());
+    console::print(format_args!(
+        "audit: energy off by {} ({}), momentum by {} kg m/s; {} bonds broken, largest damage {:.2}",
+        quantity(audit.balance, "J"),
+        percent(audit.balance / scale),
+        format_args!("{:.1e}", audit.momentum_error),
+        count(audit.broken_bonds),
+        audit.largest_damage,
+    ))
+}

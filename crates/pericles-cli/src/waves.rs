@@ -1,0 +1,92 @@
+//! Wave speeds of the elastic material that a bond-based one approaches.
+
+use pericles::material::StressState;
+
+/// Speeds of waves, m/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct WaveSpeeds {
+    /// Pressure waves; in a bar the bar wave, √(E/ρ).
+    pub(crate) pressure: f64,
+    /// Shear and Rayleigh waves; none in a bar.
+    pub(crate) transverse: Option<Transverse>,
+}
+
+/// Speeds of transverse waves, m/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Transverse {
+    pub(crate) shear: f64,
+    /// Waves along a free surface, which a crack in mode I cannot overtake.
+    pub(crate) rayleigh: f64,
+}
+
+impl WaveSpeeds {
+    /// The speeds for Young's modulus (Pa), density (kg/m³) and the state of stress, with Poisson's ratio fixed by the state.
+    pub(crate) fn of(young: f64, density: f64, state: StressState) -> Self {
+        let Some(nu) = state.poisson_ratio() else {
+            return Self {
+                pressure: (young / density).sqrt(),
+                transverse: None,
+            };
+        };
+        let shear = (young / (2.0 * (1.0 + nu) * density)).sqrt();
+        // c_s²/c_p²: in plane stress the pressure wave runs at √(E/(1−ν²)/ρ).
+        let ratio = match state {
+            StressState::PlaneStress => 0.5 * (1.0 - nu),
+            _ => (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)),
+        };
+        Self {
+            pressure: shear / ratio.sqrt(),
+            transverse: Some(Transverse {
+                shear,
+                rayleigh: shear * rayleigh(ratio).sqrt(),
+            }),
+        }
+    }
+}
+
+/// The root x = c_R²/c_s² in (0, 1) of Rayleigh's equation (2 − x)² = 4 √(1 − x) √(1 − r x), r = c_s²/c_p² ≤ 1/2.
+fn rayleigh(ratio: f64) -> f64 {
+    let excess = |x: f64| (2.0 - x).powi(2) - 4.0 * ((1.0 - x) * (1.0 - ratio * x)).sqrt();
+    // x = 0 is a root too; just above it the excess is negative, at 1 it is 1.
+    let (mut low, mut high) = (0.1, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rayleigh_s_equation_has_a_closed_form_at_a_quarter() {
+        // Poisson's ratio 1/4: x = 2 − 2/√3.
+        let exact = 2.0 - 2.0 / 3f64.sqrt();
+        assert!((rayleigh(1.0 / 3.0) - exact).abs() < 1e-14);
+    }
+
+    #[test]
+    fn glasses_of_the_fracture_studies() {
+        let rayleigh = |young, density| {
+            WaveSpeeds::of(young, density, StressState::PlaneStrain)
+                .transverse
+                .unwrap()
+                .rayleigh
+        };
+        assert!((rayleigh(72e9, 2440.0) - 3159.0).abs() < 0.5);
+        assert!((rayleigh(65e9, 2235.0) - 3136.0).abs() < 0.5);
+    }
+
+    #[test]
+    fn a_steel_bar() {
+        let speeds = WaveSpeeds::of(210e9, 7850.0, StressState::Uniaxial);
+        assert!((speeds.pressure - 5172.2).abs() < 0.1);
+        assert_eq!(speeds.transverse, None);
+    }
+}

@@ -1,0 +1,110 @@
+//! Every example runs, and its stored scalars come out again.
+//!
+//! `expected.toml` beside the decks holds them: for each deck a list of a file, a column, which row of it to take, the value and the relative tolerance.
+
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::{report, succeed};
+use pericles_io::{CsvData, read_csv};
+
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
+}
+
+/// Runs an example and returns where its results are.
+fn run(place: &Path, deck: &str) -> PathBuf {
+    let deck = examples().join(deck).canonicalize().unwrap();
+    succeed(place, &format!("run {} --quiet --out out", deck.display()));
+    let out = place.join("out");
+    assert_eq!(report(&out)["status"], "finished");
+    out
+}
+
+fn check(topic: &str, name: &str) -> (tempfile::TempDir, PathBuf) {
+    let place = tempfile::tempdir().unwrap();
+    let out = run(place.path(), &format!("{topic}/{name}.toml"));
+    let text = fs::read_to_string(examples().join(topic).join("expected.toml")).unwrap();
+    let expected: toml::Table = text.parse().unwrap();
+    let scalars = expected[name].as_array().unwrap();
+    assert!(scalars.len() >= 4);
+    let mut wrong = Vec::new();
+    for scalar in scalars {
+        let word = |key: &str| scalar[key].as_str().unwrap();
+        let number = |key: &str| scalar[key].as_float().unwrap();
+        let table = read_csv(out.join(word("file"))).unwrap();
+        let column = table.column(word("column")).unwrap();
+        let computed = match word("take") {
+            "last" => column[column.len() - 1],
+            "largest" => column.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            "smallest" => column.iter().copied().fold(f64::INFINITY, f64::min),
+            other => panic!("take = {other:?}"),
+        };
+        let (value, tolerance) = (number("value"), number("tolerance"));
+        let error = (computed - value).abs() / value.abs();
+        if error.is_nan() || error > tolerance {
+            wrong.push(format!("{scalar}: computed {computed:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    (place, out)
+}
+
+#[test]
+fn branching() {
+    let (_place, out) = check("fracture", "branching");
+    let report = report(&out);
+    let audit = |key: &str| report["audit"][key].as_f64().unwrap();
+    assert!(audit("balance_over_work").abs() < 2e-3);
+    assert!(audit("balance_over_dissipated").abs() < 0.03);
+    for k in 0..=4 {
+        assert!(out.join(format!("pictures/Damage-{k:06}.png")).is_file());
+    }
+}
+
+#[test]
+fn block() {
+    let (_place, out) = check("impact", "block");
+    // Newton's second law for the push: its impulse is the momentum of the block.
+    let (reactions, history) = (table(&out, "reactions.csv"), table(&out, "history.csv"));
+    let (t, force) = (
+        reactions.column("time").unwrap(),
+        reactions.column("struck_x").unwrap(),
+    );
+    let impulse: f64 = (1..t.len())
+        .map(|k| 0.5 * (force[k] + force[k - 1]) * (t[k] - t[k - 1]))
+        .sum();
+    let momentum = *history.column("momentum_x").unwrap().last().unwrap();
+    assert!(
+        (impulse / momentum - 1.0).abs() < 0.01,
+        "{impulse} {momentum}"
+    );
+}
+
+#[test]
+fn the_pulse_in_the_bar_runs_at_the_speed_of_sound() {
+    let (_place, out) = check("wave", "bar");
+    let probes = table(&out, "probes.csv");
+    let time = |name: &str| peak(probes.column("time").unwrap(), probes.column(name).unwrap());
+    let speed = 0.2 / (time("far_u_x") - time("near_u_x"));
+    let exact = (210e9f64 / 7850.0).sqrt();
+    assert!((exact - 5172.2).abs() < 0.1);
+    assert!(
+        (speed / exact - 1.0).abs() < 0.01,
+        "{speed} m/s, not {exact} m/s"
+    );
+}
+
+fn table(out: &Path, name: &str) -> CsvData {
+    read_csv(out.join(name)).unwrap()
+}
+
+/// When a curve is highest: the vertex of the parabola through the highest sample and its neighbours.
+fn peak(t: &[f64], y: &[f64]) -> f64 {
+    let k = (1..y.len() - 1).fold(1, |best, k| if y[k] > y[best] { k } else { best });
+    let (before, after) = (y[k - 1] - y[k], y[k + 1] - y[k]);
+    // Steps are equal.
+    t[k] + 0.5 * (t[k + 1] - t[k]) * (before - after) / (before + after)
+}

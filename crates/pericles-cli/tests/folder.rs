@@ -1,0 +1,176 @@
+//! Where results go, and who may write there.
+
+mod common;
+
+use std::fs;
+use std::process::Stdio;
+
+use common::{fail, report, run, succeed, text, with_plate};
+
+#[test]
+fn folders_are_named_after_the_deck_and_numbered() {
+    let place = with_plate();
+    for expected in ["plate", "plate-2", "plate-3"] {
+        succeed(place.path(), "run plate.toml --quiet --set time.end=1e-6");
+        let folder = place.path().join(expected);
+        assert_eq!(report(&folder)["status"], "finished", "{expected}");
+    }
+    let folder = place.path().join("plate");
+    let all = [
+        "run.json",
+        "fields.pvd",
+        "fields/fields_000000.vtu",
+        "history.csv",
+        "reactions.csv",
+        "cracks.csv",
+        "probes.csv",
+        "pictures/Damage-000002.png",
+        "checkpoints/step-000000000000.chk",
+    ];
+    for name in all {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn out_is_refused_if_it_exists_and_replaced_by_force() {
+    let place = with_plate();
+    let line = "run plate.toml --out results --quiet --set time.end=1e-6";
+    succeed(place.path(), line);
+    let folder = place.path().join("results");
+    fs::write(folder.join("notes.txt"), "mine").unwrap();
+    fs::write(folder.join("fields/fields_000099.vtu"), "old").unwrap();
+    let (status, message) = fail(place.path(), line);
+    assert_eq!(status, 6);
+    assert!(
+        message.contains("results") && message.contains("--force"),
+        "{message}"
+    );
+    assert!(folder.join("fields/fields_000099.vtu").exists());
+    succeed(place.path(), &format!("{line} --force"));
+    assert!(!folder.join("fields/fields_000099.vtu").exists());
+    assert_eq!(
+        fs::read_to_string(folder.join("notes.txt")).unwrap(),
+        "mine"
+    );
+}
+
+#[test]
+fn force_never_empties_a_folder_of_other_things() {
+    let place = with_plate();
+    fs::create_dir(place.path().join("thesis")).unwrap();
+    fs::write(place.path().join("thesis/chapter.tex"), "words").unwrap();
+    let (status, message) = fail(place.path(), "run plate.toml --out thesis --force");
+    assert_eq!(status, 6, "{message}");
+    assert_eq!(
+        fs::read_dir(place.path().join("thesis")).unwrap().count(),
+        1
+    );
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_status_6() {
+    let place = with_plate();
+    // A path that leads through a file: not writable for the superuser either.
+    let (status, message) = fail(place.path(), "run plate.toml --out plate.toml/results");
+    assert_eq!(status, 6, "{message}");
+    assert!(message.contains("cannot write"), "{message}");
+    let (status, message) = fail(
+        place.path(),
+        "reproduce fracture/inclined --out plate.toml/figures",
+    );
+    assert_eq!(status, 6, "{message}");
+}
+
+#[test]
+fn nothing_is_written_for_a_refused_deck_or_a_check() {
+    let place = with_plate();
+    succeed(place.path(), "check plate.toml");
+    assert_eq!(fail(place.path(), "run plate.toml --set time.dt=1").0, 3);
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn quiet_says_nothing_and_plain_lines_replace_the_bar() {
+    let place = with_plate();
+    let quiet = succeed(place.path(), "run plate.toml --quiet --set time.end=1e-6");
+    assert_eq!((quiet.stdout.len(), quiet.stderr.len()), (0, 0));
+    let loud = succeed(place.path(), "run plate.toml");
+    let (out, err) = (text(&loud.stdout), text(&loud.stderr));
+    assert_eq!(err.matches(" %  step ").count(), 9, "{err}");
+    assert!(out.contains("finished after step 400 of 400"), "{out}");
+    assert!(out.contains("results in ./plate-2"), "{out}");
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let place = with_plate();
+    for line in [
+        "run plate.toml",
+        "check plate.toml",
+        "reproduce --list",
+        "--help",
+    ] {
+        let mut child = common::pericles(place.path())
+            .args(line.split(' '))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Nobody listens from the start.
+        drop(child.stdout.take());
+        if line.starts_with("run") {
+            drop(child.stderr.take());
+        }
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{line}");
+        assert!(!text(&output.stderr).contains("panic"), "{line}");
+    }
+    assert_eq!(report(&place.path().join("plate"))["status"], "finished");
+}
+
+#[test]
+fn run_json_tells_what_was_run_and_how_it_went() {
+    let place = with_plate();
+    succeed(
+        place.path(),
+        "run plate.toml --threads 1 --quiet --set material.E=70e9",
+    );
+    let report = report(&place.path().join("plate"));
+    let number = |path: &str| report.pointer(path).and_then(|v| v.as_f64()).unwrap();
+    assert_eq!(report["program"]["threads"], 1);
+    assert_eq!(report["program"]["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(report["deck"]["source"], common::PLATE);
+    assert_eq!(report["deck"]["overrides"][0], "material.E=70e9");
+    assert_eq!(number("/deck/values/body/spacing"), 1e-3);
+    assert_eq!(number("/model/youngs_modulus"), 70e9);
+    assert_eq!(number("/model/points"), 288.0);
+    assert_eq!(number("/model/steps"), 400.0);
+    assert!(number("/model/stable_step") > 1e-7);
+    assert!(number("/progress/directed_bond_updates_per_second") > 0.0);
+    assert!(number("/audit/broken_bonds") > 10.0);
+    assert!(number("/audit/external_work") > 0.0);
+    assert!(number("/audit/balance_over_work").abs() < 1e-3);
+    assert!(number("/audit/largest_balance") >= number("/audit/balance").abs());
+}
+
+#[test]
+fn check_tells_the_numbers_of_a_deck() {
+    let place = with_plate();
+    let output = succeed(
+        place.path(),
+        "check plate.toml --set material.volume_correction=none",
+    );
+    let text = text(&output.stdout);
+    for part in [
+        "Torn plate",
+        "288",
+        "400 of 100 ns",
+        "0.002000",
+        "Rayleigh",
+        "stable step",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert_eq!(run(place.path(), "check gone.toml").status.code(), Some(3));
+}

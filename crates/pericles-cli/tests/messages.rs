@@ -1,0 +1,86 @@
+//! What is said when something is wrong, and with which exit status.
+
+mod common;
+
+use std::fs;
+
+use common::{fail, report, with_plate};
+
+#[test]
+fn usage_errors_are_status_2() {
+    let place = with_plate();
+    for line in [
+        "run",
+        "walk plate.toml",
+        "run plate.toml --threads 0",
+        "run plate.toml --force",
+    ] {
+        assert_eq!(fail(place.path(), line).0, 2, "{line}");
+    }
+    let (status, message) = fail(place.path(), "reproduce fracture/branch");
+    assert_eq!(status, 2);
+    assert!(
+        message.contains("did you mean fracture/branching"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_wrong_deck_is_status_3_and_shown_where() {
+    let place = with_plate();
+    let deck = common::PLATE
+        .replace("72 GPa", "72 GPA")
+        .replace("horizon_ratio", "horizont_ratio");
+    fs::write(place.path().join("wrong.toml"), deck).unwrap();
+    let (status, message) = fail(place.path(), "run wrong.toml");
+    assert_eq!(status, 3);
+    // Line 9 `youngs_modulus = "72 GPA"`, line 11 `horizont_ratio = 3`.
+    assert!(message.contains("wrong.toml:9:18"), "{message}");
+    assert!(message.contains("wrong.toml:11:1"), "{message}");
+    assert!(
+        message.contains("did you mean `horizon_ratio`"),
+        "{message}"
+    );
+    assert!(message.starts_with("error: "), "{message}");
+    let (status, message) = fail(place.path(), "check plate.toml --set body.spacing=0.7e-3");
+    assert_eq!(status, 3);
+    assert!(message.contains("whole number of cells"), "{message}");
+}
+
+#[test]
+fn missing_inputs_are_status_3() {
+    let place = with_plate();
+    for line in ["run gone.toml", "resume gone"] {
+        let (status, message) = fail(place.path(), line);
+        assert_eq!(status, 3, "{line}");
+        assert!(message.contains("gone"), "{message}");
+    }
+    fs::create_dir(place.path().join("other")).unwrap();
+    let (status, message) = fail(place.path(), "resume other");
+    assert_eq!(status, 3);
+    assert!(message.contains("no output folder of a run"), "{message}");
+    assert_eq!(fs::read_dir(place.path().join("other")).unwrap().count(), 0);
+}
+
+#[test]
+fn an_unstable_run_is_status_4_and_keeps_its_state() {
+    let place = with_plate();
+    // Four times the stable step, in a plate that cannot break.
+    let line = "run plate.toml --set time.dt=1e-6 --set time.allow_unstable=true --set time.end=1e-3 \
+                --set material.critical_stretch=1e9 --set checkpoint.every=1000000";
+    let (status, message) = fail(place.path(), line);
+    assert_eq!(status, 4, "{message}");
+    assert!(message.contains("unstable at step"), "{message}");
+    assert!(message.contains("failed.chk"), "{message}");
+    assert!(message.contains("pericles resume ./plate"), "{message}");
+    assert!(
+        message.contains("warning: "),
+        "the step was known to be large: {message}"
+    );
+    let folder = place.path().join("plate");
+    let report = report(&folder);
+    assert_eq!(report["status"], "failed");
+    assert!(report["error"].as_str().unwrap().contains("unstable"));
+    assert!(folder.join("checkpoints/failed.chk").is_file());
+    assert!(folder.join("checkpoints/step-000000000000.chk").is_file());
+}

@@ -1,0 +1,101 @@
+//! The studies of papers: their rows hold, and their output is what scripts expect.
+
+mod common;
+
+use std::fs;
+
+use common::{fail, succeed, text};
+use serde_json::Value;
+
+/// Wants every judged row to hold.
+fn assert_holds(results: &Value, id: &str) {
+    let failed: Vec<&Value> = rows(results)
+        .iter()
+        .filter(|row| row["pass"] == false)
+        .collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    assert_eq!(results["pass"], true);
+    assert_eq!(results["study"], id);
+}
+
+fn rows(results: &Value) -> &[Value] {
+    results["rows"].as_array().unwrap()
+}
+
+#[test]
+fn branching_as_json_alone() {
+    let place = tempfile::tempdir().unwrap();
+    let output = succeed(place.path(), "reproduce fracture/branching --json -");
+    let out = text(&output.stdout);
+    // Nothing but JSON there, and without --out no figures.
+    let results: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{out}"));
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
+    assert_holds(&results, "fracture/branching");
+    let keys: Vec<&String> = results.as_object().unwrap().keys().collect();
+    assert_eq!(keys, ["paper", "pass", "rows", "seconds", "study"]);
+    assert!(results["seconds"].as_f64().unwrap() > 0.0);
+    assert!(results["paper"].as_str().unwrap().contains("2022"));
+    for row in rows(&results) {
+        let keys: Vec<&String> = row.as_object().unwrap().keys().collect();
+        assert_eq!(
+            keys,
+            [
+                "absolute",
+                "case",
+                "computed",
+                "expected",
+                "note",
+                "pass",
+                "printed",
+                "tolerance"
+            ]
+        );
+        assert_eq!(row["pass"].is_null(), row["expected"].is_null(), "{row}");
+        assert!(
+            row["absolute"].is_boolean() && row["note"].is_string(),
+            "{row}"
+        );
+    }
+    let judged = rows(&results).iter().filter(|row| row["pass"] == true);
+    assert!(judged.count() >= 10);
+    // The printed critical stretch does not reproduce; the row says so and is judged by the formula.
+    let stretch = &rows(&results)[0];
+    assert_eq!(stretch["printed"], 0.0013);
+    assert_eq!(stretch["expected"], 1.809e-3);
+    assert!(stretch["note"].as_str().unwrap().contains("√2"));
+}
+
+#[test]
+fn inclined_with_figures_and_table() {
+    let place = tempfile::tempdir().unwrap();
+    let line = "reproduce fracture/inclined --out figures --json results.json";
+    let output = succeed(place.path(), line);
+    for name in ["damage.png", "tip.png", "speed.png"] {
+        let bytes = fs::read(place.path().join("figures").join(name)).unwrap();
+        assert!(bytes.starts_with(b"\x89PNG"), "{name}");
+    }
+    let results = fs::read_to_string(place.path().join("results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    assert_holds(&results, "fracture/inclined");
+    let angles = rows(&results)
+        .iter()
+        .filter(|row| row["case"].as_str().unwrap().starts_with("angle of arm"));
+    assert_eq!(angles.count(), 4);
+    let table = text(&output.stdout);
+    assert!(table.contains("| verdict"), "{table}");
+    for row in rows(&results) {
+        assert!(table.contains(row["case"].as_str().unwrap()), "{row}");
+    }
+    let (status, message) = fail(place.path(), line);
+    assert_eq!(status, 6, "{message}");
+}
+
+#[test]
+fn all_studies_are_listed() {
+    let place = tempfile::tempdir().unwrap();
+    let list = text(&succeed(place.path(), "reproduce --list").stdout);
+    assert_eq!(list.lines().count(), 2);
+    for id in ["fracture/branching", "fracture/inclined"] {
+        assert!(list.contains(id), "{list}");
+    }
+}

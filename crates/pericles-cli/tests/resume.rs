@@ -1,0 +1,142 @@
+//! Stopped and resumed runs, and runs on other numbers of threads: the same bytes.
+
+mod common;
+
+use std::fs;
+
+use common::{Background, assert_same_results, fail, report, succeed, text, with_plate};
+
+/// Long enough to be stopped in its middle: some hundred thousand bytes of history, and a second of time.
+const LONG: &str = "run plate.toml --threads 1 --set time.end=3e-3 --set output.fields.every=5000 \
+                    --set output.history.every=100 --set output.cracks.every=1000 --set output.picture.1.every=9000 \
+                    --set checkpoint.every=777";
+
+#[test]
+fn one_and_two_threads_give_the_same_bytes() {
+    let place = with_plate();
+    for threads in [1, 2] {
+        let line = format!("run plate.toml --quiet --threads {threads} --out on-{threads}");
+        succeed(place.path(), &line);
+    }
+    let [one, two] = ["on-1", "on-2"].map(|name| place.path().join(name));
+    assert_eq!(report(&one)["program"]["threads"], 1);
+    assert_eq!(report(&two)["program"]["threads"], 2);
+    assert_same_results(&one, &two);
+}
+
+#[test]
+fn a_killed_run_goes_on_to_the_same_bytes() {
+    let place = with_plate();
+    succeed(place.path(), &format!("{LONG} --out whole"));
+    let run = Background::start(place.path(), &format!("{LONG} --out killed"), "killed");
+    run.signal("KILL");
+    assert_eq!(run.finish().status.code(), None);
+    let killed = place.path().join("killed");
+    assert_eq!(report(&killed)["status"], "running");
+    // The newest checkpoint may be the victim of a disk: the one before it must do.
+    let mut checkpoints: Vec<_> = fs::read_dir(killed.join("checkpoints"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "chk"))
+        .collect();
+    checkpoints.sort();
+    let mut damaged = 0;
+    if let [_, newest] = &checkpoints[..] {
+        let mut bytes = fs::read(newest).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        fs::write(newest, bytes).unwrap();
+        damaged += 1;
+    }
+    // The deck may have gone: the checkpoint has it. Another number of threads makes no difference.
+    fs::remove_file(place.path().join("plate.toml")).unwrap();
+    let output = succeed(place.path(), "resume killed --threads 2");
+    let err = text(&output.stderr);
+    assert_eq!(
+        err.matches("the checkpoint before it is used").count(),
+        damaged,
+        "{err}"
+    );
+    assert_eq!(report(&killed)["status"], "finished");
+    assert_same_results(&place.path().join("whole"), &killed);
+}
+
+#[test]
+fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
+    let place = with_plate();
+    succeed(place.path(), &format!("{LONG} --out whole"));
+    let out = place.path().join("stopped");
+    let run = Background::start(place.path(), &format!("{LONG} --out stopped"), "stopped");
+
+    // While it runs nobody else may write there.
+    let (status, message) = fail(place.path(), "resume stopped");
+    assert_eq!(status, 6, "{message}");
+    assert!(message.contains("in use by another run"), "{message}");
+
+    run.signal("INT");
+    let output = run.finish();
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(
+        said.contains("go on with: pericles resume stopped"),
+        "{said}"
+    );
+    let stopped = report(&out);
+    assert_eq!(stopped["status"], "stopped");
+    let step = stopped["progress"]["last_step"].as_u64().unwrap();
+    assert!(step > 0 && step < 30_000, "{step}");
+    let checkpoint = format!("checkpoints/step-{step:012}.chk");
+    assert!(out.join(checkpoint).is_file());
+
+    let rows = || {
+        fs::read_to_string(out.join("history.csv"))
+            .unwrap()
+            .lines()
+            .count()
+    };
+    let before = rows();
+    let child = common::pericles(place.path())
+        .args(["resume", "stopped", "--threads", "1"])
+        .spawn()
+        .unwrap();
+    let run = Background::waiting(child, || rows() > before + 3);
+    run.signal("TERM");
+    assert_eq!(run.finish().status.code(), Some(143));
+    assert_eq!(report(&out)["progress"]["first_step"], step);
+
+    succeed(place.path(), "resume stopped --quiet");
+    assert_same_results(&place.path().join("whole"), &out);
+    let again = succeed(place.path(), "resume stopped");
+    assert!(text(&again.stdout).contains("has finished"));
+}
+
+#[test]
+fn resuming_at_the_very_start_repeats_nothing() {
+    let place = with_plate();
+    succeed(place.path(), "run plate.toml --quiet --out whole");
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --out begun --set checkpoint.every=10000",
+    );
+    let begun = place.path().join("begun");
+    let text = fs::read_to_string(begun.join("run.json")).unwrap();
+    fs::write(
+        begun.join("run.json"),
+        text.replace("\"finished\"", "\"running\""),
+    )
+    .unwrap();
+    succeed(place.path(), "resume begun --quiet");
+    assert_same_results(&place.path().join("whole"), &begun);
+}
+
+#[test]
+fn a_run_that_does_not_fit_its_files_is_refused() {
+    let place = with_plate();
+    succeed(place.path(), "run plate.toml --quiet --out a");
+    let folder = place.path().join("a");
+    fs::remove_file(folder.join("run.json")).unwrap();
+    fs::remove_file(folder.join("probes.csv")).unwrap();
+    let (status, message) = fail(place.path(), "resume a");
+    assert_eq!(status, 3, "{message}");
+    assert!(message.contains("probes.csv"), "{message}");
+}

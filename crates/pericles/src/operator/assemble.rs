@@ -1,0 +1,150 @@
+//! The choice of an operator's form for a body.
+
+use std::sync::Arc;
+
+use super::{BondForce, DamageMeasure, ForceOperator, GridForce, GridLaw};
+use crate::error::{PericlesError, Result};
+use crate::family::{BondList, Crack, Cut, EndRule, LANES};
+use crate::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
+use crate::space::PointCloud;
+
+/// How bonds are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BondForm {
+    /// The grid where the points fill a lattice well enough, else the list.
+    #[default]
+    Fastest,
+    /// One stencil for all nodes of a lattice ([`GridForce`]).
+    Grid,
+    /// A list of every point's bonds ([`BondForce`]).
+    List,
+}
+
+/// A body of one bond-based material: all that its operator is made of.
+#[derive(Debug, Clone)]
+pub struct BondBody<'a> {
+    /// The points.
+    pub cloud: &'a Arc<PointCloud>,
+    /// The material.
+    pub material: &'a BondMaterial,
+    /// Its constants on this body.
+    pub constants: &'a BondConstants,
+    /// Pre-cracks.
+    pub cracks: &'a [(Crack, EndRule)],
+    /// Points whose bonds never break.
+    pub no_fail: &'a [u32],
+    /// How damage weighs bonds.
+    pub damage: DamageMeasure,
+}
+
+/// An operator, and what each pre-crack removed from it.
+pub struct AssembledBonds {
+    /// The operator.
+    pub operator: Box<dyn ForceOperator>,
+    /// One for each pre-crack.
+    pub cuts: Vec<Cut>,
+    /// The form taken, never [`BondForm::Fastest`].
+    pub form: BondForm,
+}
+
+/// Places of the padded box per point above which the list is better: the box is mostly empty, or very short along x.
+const SPARSE: usize = 8;
+
+impl BondBody<'_> {
+    /// The form that is fastest for this body.
+    pub fn fastest_form(&self) -> BondForm {
+        match self.cloud.lattice() {
+            Some(lattice) => {
+                let [x, y, z] = lattice.shape;
+                let places = x.next_multiple_of(LANES) * y * z;
+                if places <= SPARSE * self.cloud.len().max(LANES) {
+                    BondForm::Grid
+                } else {
+                    BondForm::List
+                }
+            }
+            None => BondForm::List,
+        }
+    }
+
+    /// The operator.
+    ///
+    /// # Errors
+    /// A horizon that reaches no neighbour, an unusable crack, [`BondForm::Grid`] without a lattice.
+    pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
+        match (self.material.law, self.cloud.dimension()) {
+            (PairLaw::Linear, 1) => self.operator_of::<LinearBond, 1>(form),
+            (PairLaw::Linear, 2) => self.operator_of::<LinearBond, 2>(form),
+            (PairLaw::Linear, 3) => self.operator_of::<LinearBond, 3>(form),
+            (PairLaw::BondStretch, 1) => self.operator_of::<BondStretch, 1>(form),
+            (PairLaw::BondStretch, 2) => self.operator_of::<BondStretch, 2>(form),
+            (PairLaw::BondStretch, 3) => self.operator_of::<BondStretch, 3>(form),
+            (_, dimension) => Err(PericlesError::WrongDimension {
+                what: "a bond-based material",
+                needed: "1, 2 or 3",
+                dimension,
+            }),
+        }
+    }
+
+    fn operator_of<L: GridLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+        let form = match form {
+            BondForm::Fastest => self.fastest_form(),
+            chosen => chosen,
+        };
+        let (operator, cuts): (Box<dyn ForceOperator>, _) = match form {
+            BondForm::List => {
+                let (list, cuts) = self.list::<L, D>()?;
+                (Box::new(list), cuts)
+            }
+            _ => {
+                let grid = self.grid::<L, D>()?;
+                let cuts = grid.cuts().to_vec();
+                (Box::new(grid), cuts)
+            }
+        };
+        Ok(AssembledBonds {
+            operator,
+            cuts,
+            form,
+        })
+    }
+
+    /// The grid operator.
+    ///
+    /// # Errors
+    /// See [`GridForce::new`].
+    pub fn grid<L: GridLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+        GridForce::new(
+            self.cloud.clone(),
+            self.material,
+            self.constants,
+            self.cracks,
+            self.no_fail,
+            self.damage,
+        )
+    }
+
+    /// The list operator, and what each pre-crack removed from it.
+    ///
+    /// # Errors
+    /// A horizon that reaches no neighbour, an unusable crack.
+    pub fn list<L: GridLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+        let material = self.material;
+        let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
+        let cuts = self
+            .cracks
+            .iter()
+            .map(|(crack, rule)| bonds.cut(self.cloud, crack, *rule))
+            .collect::<Result<_>>()?;
+        let list = BondForce::new(
+            self.cloud.clone(),
+            bonds,
+            material,
+            self.constants,
+            self.no_fail,
+            self.damage,
+        );
+        Ok((list, cuts))
+    }
+}

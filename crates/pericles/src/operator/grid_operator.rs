@@ -1,0 +1,221 @@
+//! [`ForceOperator`] for lattice bodies.
+
+use super::grid_force::GridForce;
+use super::grid_kernels::{energy_chunks, force_chunks, tangent_chunks};
+use super::grid_law::GridLaw;
+use super::grid_padded::Padded;
+use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
+use crate::archive::{Archive, Saved, Values};
+use crate::error::Result;
+use crate::parallel::{components_mut, for_each_part, ordered_sum};
+
+impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
+    fn points(&self) -> usize {
+        self.cloud.len()
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        self.sweep::<D>(u, &on, out, |grid, block, intact, out| {
+            force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
+        });
+    }
+
+    fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
+        self.sweep::<1>(u, &On::All, out, |grid, block, intact, out| {
+            energy_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
+        });
+    }
+
+    fn energy(&self, t: f64, u: &[f64]) -> f64 {
+        let mut density = vec![0.0; self.points()];
+        self.add_energy_density(t, u, &mut density);
+        ordered_sum(self.points(), |i| density[i] * self.cloud.volumes()[i])
+    }
+
+    /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ|, by Gershgorin's discs of D×D blocks.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let (offsets, lengths) = (self.stencil.offsets(), self.stencil.lengths());
+        let mut rows = vec![0.0; self.points()];
+        self.for_each_block(&mut rows, |first, number, intact, rows| {
+            self.for_each_counted(number, intact, |point, offset, intact| {
+                if intact {
+                    rows[point - first] += offsets[offset].stiffness.abs() / lengths[offset];
+                }
+            });
+        });
+        let square = |(i, row): (usize, &f64)| 2.0 * row / density(i);
+        rows.iter()
+            .enumerate()
+            .map(square)
+            .fold(0.0, f64::max)
+            .sqrt()
+    }
+
+    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
+        if self.can_break() {
+            let step = Some((accepted.mean_velocity, accepted.dt));
+            self.decide::<true>(accepted.u, step, &on, None, out);
+        } else {
+            self.add_force(accepted.t, accepted.u, on, out);
+        }
+    }
+
+    fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
+        if self.can_break() {
+            // No force is written: any array of the right shape will do for the loop's slices.
+            let mut unused = vec![0.0; D * self.points()];
+            self.decide::<false>(u, None, &on, None, &mut unused);
+        }
+    }
+
+    fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        let mut padded = Padded::new(&self.layout, self.stencil.farthest_shift());
+        padded.fill(&self.layout, direction);
+        let direction = self.grid(&padded);
+        out.fill(0.0);
+        self.sweep::<D>(u, &On::All, out, |grid, block, intact, out| {
+            tangent_chunks::<L, D>(self.instruction_set, grid, &direction, block, intact, out);
+        });
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.blocks.iter().map(|block| block.tally.dissipated).sum()
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        let directed: u64 = self.blocks.iter().map(|block| block.tally.broken).sum();
+        directed / 2
+    }
+
+    fn can_break(&self) -> bool {
+        self.critical_stretch.is_finite()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        let volumes = self.stencil.volumes();
+        let mut whole = vec![0.0; self.points()];
+        out.fill(0.0);
+        for (sums, all) in [(&mut whole[..], true), (&mut *out, false)] {
+            self.for_each_block(sums, |first, number, intact, sums| {
+                self.for_each_counted(number, intact, |point, offset, intact| {
+                    if intact || all {
+                        let weight = if self.damage.count {
+                            1.0
+                        } else {
+                            volumes[offset]
+                        };
+                        sums[point - first] += weight;
+                    }
+                });
+            });
+        }
+        for (damage, whole) in out.iter_mut().zip(whole) {
+            *damage = if whole > 0.0 {
+                1.0 - *damage / whole
+            } else {
+                0.0
+            };
+        }
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.directed_bonds
+    }
+
+    fn bytes(&self) -> usize {
+        let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
+        let padded = Padded::<D>::bytes_for(&self.layout, self.stencil.farthest_shift());
+        masks
+            + padded
+            + self.layout.bytes()
+            + self.held.as_ref().map_or(0, Vec::len)
+            + size_of_val(&self.precut[..])
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    fn as_linear(&self) -> Option<&dyn LinearOperator> {
+        L::LINEAR.then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        Some(self)
+    }
+
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        Some(self)
+    }
+}
+
+impl<L: GridLaw, const D: usize> GridForce<L, D> {
+    /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
+    fn for_each_block(
+        &self,
+        values: &mut [f64],
+        visit: impl Fn(usize, usize, &[u8], &mut [f64]) + Sync,
+    ) {
+        let m = self.stencil.len();
+        let mut nothing = vec![(); self.blocks.len()];
+        for_each_part(
+            components_mut::<1>(values, self.points()),
+            &mut nothing,
+            &|block| self.layout.first_point(block),
+            &|block, [values], ()| {
+                let first = self.layout.first_point(block);
+                let intact = self.blocks[block].intact.chunks(m);
+                for (number, intact) in self.layout.chunks_of(block).zip(intact) {
+                    visit(first, number, intact, values);
+                }
+            },
+        );
+    }
+}
+
+impl<L: GridLaw, const D: usize> LinearOperator for GridForce<L, D> {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.add_force(0.0, u, On::All, out);
+    }
+}
+
+impl<L: GridLaw, const D: usize> Saved for GridForce<L, D> {
+    fn save(&self, archive: &mut Archive) {
+        let intact = self.blocks.iter().flat_map(|block| &block.intact);
+        archive.put(
+            "operator/grid/intact",
+            Values::U8(intact.copied().collect()),
+        );
+        let broken = self.blocks.iter().map(|block| block.tally.broken);
+        archive.put("operator/grid/broken", Values::U64(broken.collect()));
+        let dissipated = self.blocks.iter().map(|block| block.tally.dissipated);
+        archive.put(
+            "operator/grid/dissipated",
+            Values::F64(dissipated.collect()),
+        );
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let bytes = self.blocks.iter().map(|block| block.intact.len()).sum();
+        let mut intact = vec![0; bytes];
+        let mut broken = vec![0; self.blocks.len()];
+        let mut dissipated = vec![0.0; self.blocks.len()];
+        archive.u8_into("operator/grid/intact", &mut intact)?;
+        archive.u64_into("operator/grid/broken", &mut broken)?;
+        archive.f64_into("operator/grid/dissipated", &mut dissipated)?;
+        let mut rest = &intact[..];
+        for (k, block) in self.blocks.iter_mut().enumerate() {
+            let (own, after) = rest.split_at(block.intact.len());
+            block.intact.copy_from_slice(own);
+            rest = after;
+            block.tally.broken = broken[k];
+            block.tally.dissipated = dissipated[k];
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,224 @@
+//! Eight numbers in registers of x86-64's vector extensions.
+//!
+//! These types may only be used in functions compiled for their set, which `for_each_instruction_set` sees to: it alone
+//! names them, and calls such a function only after [`super::InstructionSet::detect`] has found the set.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::lanes::{Lanes, Real};
+use crate::family::LANES;
+
+/// Eight numbers in one 512-bit register.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx512x8(__m512d);
+
+/// Eight numbers in two 256-bit registers.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx2x8(__m256d, __m256d);
+
+macro_rules! arithmetic {
+    ($trait:ident, $method:ident, $wide:ident, $half:ident) => {
+        impl $trait for Avx512x8 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: used in functions compiled for AVX-512 only.
+                Self(unsafe { $wide(self.0, other.0) })
+            }
+        }
+
+        impl $trait for Avx2x8 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: used in functions compiled for AVX2 only.
+                unsafe { Self($half(self.0, other.0), $half(self.1, other.1)) }
+            }
+        }
+    };
+}
+arithmetic!(Add, add, _mm512_add_pd, _mm256_add_pd);
+arithmetic!(Sub, sub, _mm512_sub_pd, _mm256_sub_pd);
+arithmetic!(Mul, mul, _mm512_mul_pd, _mm256_mul_pd);
+arithmetic!(Div, div, _mm512_div_pd, _mm256_div_pd);
+
+impl Neg for Avx512x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: used in functions compiled for AVX-512 (DQ) only.
+        Self(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
+    }
+}
+
+impl Neg for Avx2x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: used in functions compiled for AVX2 only.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_xor_pd(self.0, sign), _mm256_xor_pd(self.1, sign))
+        }
+    }
+}
+
+impl Real for Avx512x8 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: used in functions compiled for AVX-512 only.
+        Self(unsafe { _mm512_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { _mm512_sqrt_pd(self.0) })
+    }
+}
+
+impl Real for Avx2x8 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: used in functions compiled for AVX2 only.
+        unsafe { Self(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+    }
+}
+
+impl Lanes for Avx512x8 {
+    #[inline(always)]
+    fn load(numbers: &[f64], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        // SAFETY: the slice holds eight numbers.
+        Self(unsafe { _mm512_loadu_pd(numbers.as_ptr()) })
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut numbers = [0.0; LANES];
+        // SAFETY: the array holds eight numbers.
+        unsafe { _mm512_storeu_pd(numbers.as_mut_ptr(), self.0) };
+        numbers
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: used in functions compiled for AVX-512 only; so below.
+        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see mul_add.
+        Self(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see mul_add.
+        Self(unsafe { _mm512_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn masked(self, mask: u8) -> Self {
+        // SAFETY: see mul_add.
+        Self(unsafe { _mm512_maskz_mov_pd(mask, self.0) })
+    }
+    #[inline(always)]
+    fn greater(self, other: Self) -> u8 {
+        // SAFETY: see mul_add.
+        unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, other.0) }
+    }
+}
+
+/// Four words, all bits set where the index has a bit.
+static NIBBLES: [[u64; 4]; 16] = {
+    let mut table = [[0; 4]; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let mut k = 0;
+        while k < 4 {
+            if bits >> k & 1 == 1 {
+                table[bits][k] = u64::MAX;
+            }
+            k += 1;
+        }
+        bits += 1;
+    }
+    table
+};
+
+/// The half of a register that a nibble keeps.
+#[inline(always)]
+fn kept(half: __m256d, nibble: u8) -> __m256d {
+    let words = &NIBBLES[usize::from(nibble)];
+    // SAFETY: four words are loaded; used in functions compiled for AVX2 only.
+    unsafe { _mm256_and_pd(half, _mm256_loadu_pd(words.as_ptr().cast())) }
+}
+
+impl Lanes for Avx2x8 {
+    #[inline(always)]
+    fn load(numbers: &[f64], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        // SAFETY: the slice holds eight numbers.
+        unsafe {
+            Self(
+                _mm256_loadu_pd(numbers.as_ptr()),
+                _mm256_loadu_pd(numbers.as_ptr().add(LANES / 2)),
+            )
+        }
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut numbers = [0.0; LANES];
+        // SAFETY: the array holds eight numbers.
+        unsafe {
+            _mm256_storeu_pd(numbers.as_mut_ptr(), self.0);
+            _mm256_storeu_pd(numbers.as_mut_ptr().add(LANES / 2), self.1);
+        }
+        numbers
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: used in functions compiled for AVX2 with FMA only; so below.
+        unsafe {
+            Self(
+                _mm256_fmadd_pd(self.0, factor.0, addend.0),
+                _mm256_fmadd_pd(self.1, factor.1, addend.1),
+            )
+        }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see mul_add.
+        unsafe {
+            Self(
+                _mm256_max_pd(self.0, other.0),
+                _mm256_max_pd(self.1, other.1),
+            )
+        }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see mul_add.
+        unsafe {
+            Self(
+                _mm256_min_pd(self.0, other.0),
+                _mm256_min_pd(self.1, other.1),
+            )
+        }
+    }
+    #[inline(always)]
+    fn masked(self, mask: u8) -> Self {
+        Self(kept(self.0, mask & 0xF), kept(self.1, mask >> 4))
+    }
+    #[inline(always)]
+    fn greater(self, other: Self) -> u8 {
+        // SAFETY: see mul_add.
+        unsafe {
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(self.0, other.0));
+            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(self.1, other.1));
+            (low | high << 4) as u8
+        }
+    }
+}

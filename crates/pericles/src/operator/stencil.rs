@@ -1,0 +1,160 @@
+//! The family of a lattice's node, once for all nodes.
+
+use super::grid_law::Offset;
+use crate::space::Lattice;
+
+/// The bonds of a node within reach, in ascending order of the neighbour's number; with offset k also its opposite, offset `len() − 1 − k`.
+///
+/// Offsets that no two nodes of the lattice's box are apart are left out, so that small bodies have small stencils.
+#[derive(Debug, Clone)]
+pub(super) struct Stencil<const D: usize> {
+    /// Neighbour less node, in spacings.
+    cells: Vec<[i32; 3]>,
+    /// |ξ|, m.
+    lengths: Vec<f64>,
+    /// κ V of the neighbour, m³.
+    volumes: Vec<f64>,
+    offsets: Vec<Offset<D>>,
+}
+
+/// What the stencil's entries are made of.
+pub(super) struct BondRule<'a> {
+    /// Largest length of a bond, m.
+    pub reach: f64,
+    /// κ V of a bond of a given length, m³.
+    pub volume: &'a dyn Fn(f64) -> f64,
+    /// c α of a bond of a given length.
+    pub stiffness: &'a dyn Fn(f64) -> f64,
+}
+
+impl<const D: usize> Stencil<D> {
+    /// The stencil of a lattice whose nodes are stored with the given strides (per axis).
+    pub fn new(lattice: &Lattice, strides: [usize; 3], rule: &BondRule<'_>) -> Self {
+        let mut stencil = Self {
+            cells: Vec::new(),
+            lengths: Vec::new(),
+            volumes: Vec::new(),
+            offsets: Vec::new(),
+        };
+        let most = (rule.reach / lattice.spacing).floor() as i64;
+        let range = |c: usize| {
+            let n = most.min(lattice.shape[c] as i64 - 1) as i32;
+            -n..=n
+        };
+        for z in range(2) {
+            for y in range(1) {
+                for x in range(0) {
+                    let cell = [x, y, z];
+                    let xi = cell.map(|steps| f64::from(steps) * lattice.spacing);
+                    let length = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
+                    if cell != [0; 3] && length <= rule.reach {
+                        stencil.push(cell, xi, length, strides, rule);
+                    }
+                }
+            }
+        }
+        stencil
+    }
+
+    fn push(
+        &mut self,
+        cell: [i32; 3],
+        xi: [f64; 3],
+        length: f64,
+        strides: [usize; 3],
+        rule: &BondRule<'_>,
+    ) {
+        let volume = (rule.volume)(length);
+        let stiffness = (rule.stiffness)(length) * volume;
+        let shift = (0..3).map(|c| cell[c] as isize * strides[c] as isize).sum();
+        self.cells.push(cell);
+        self.lengths.push(length);
+        self.volumes.push(volume);
+        self.offsets.push(Offset {
+            shift,
+            xi: std::array::from_fn(|c| xi[c]),
+            twice_xi: std::array::from_fn(|c| xi[c] + xi[c]),
+            inverse_square: 1.0 / (length * length),
+            stiffness,
+            factor: stiffness / length,
+        });
+    }
+
+    /// Number of offsets.
+    pub fn len(&self) -> usize {
+        self.offsets.len()
+    }
+
+    /// The offset from the neighbour back to the node.
+    pub fn opposite(&self, k: usize) -> usize {
+        self.len() - 1 - k
+    }
+
+    /// Neighbour less node, in spacings.
+    pub fn cells(&self) -> &[[i32; 3]] {
+        &self.cells
+    }
+
+    /// Reference lengths, m.
+    pub fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// κ V of the neighbours, m³.
+    pub fn volumes(&self) -> &[f64] {
+        &self.volumes
+    }
+
+    /// What the loops need.
+    pub fn offsets(&self) -> &[Offset<D>] {
+        &self.offsets
+    }
+
+    /// The farthest a neighbour's place is from the node's.
+    pub fn farthest_shift(&self) -> usize {
+        let shift = |offset: &Offset<D>| offset.shift.unsigned_abs();
+        self.offsets.iter().map(shift).max().unwrap_or(0)
+    }
+
+    /// The farthest a neighbour is along an axis, in spacings.
+    pub fn farthest(&self, axis: usize) -> usize {
+        let steps = |cell: &[i32; 3]| cell[axis].unsigned_abs() as usize;
+        self.cells.iter().map(steps).max().unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stencil(shape: [usize; 3], reach: f64) -> Stencil<3> {
+        let lattice = Lattice {
+            spacing: 1.0,
+            shape,
+            node: vec![],
+        };
+        let strides = [1, shape[0], shape[0] * shape[1]];
+        let rule = BondRule {
+            reach,
+            volume: &|_| 1.0,
+            stiffness: &|_| 1.0,
+        };
+        Stencil::new(&lattice, strides, &rule)
+    }
+
+    #[test]
+    fn counts_and_opposites() {
+        assert_eq!(stencil([9, 9, 9], 3.015).len(), 122);
+        assert_eq!(stencil([9, 9, 1], 3.015).len(), 28);
+        // Two by two by two: the seven others, seen from either side.
+        assert_eq!(stencil([2, 2, 2], 3.015).len(), 26);
+        let stencil = stencil([9, 8, 7], 3.3);
+        for k in 0..stencil.len() {
+            let back = stencil.cells()[stencil.opposite(k)];
+            assert_eq!(stencil.cells()[k].map(|steps| -steps), back);
+        }
+        // To (0, 1, 3), as (0, 0, 3) and (1, 0, 3) are nearer in memory.
+        assert_eq!(stencil.farthest_shift(), 3 * 72 + 9);
+        assert_eq!(stencil.farthest(2), 3);
+    }
+}
