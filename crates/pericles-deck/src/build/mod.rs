@@ -2,6 +2,7 @@
 
 mod area;
 mod conditions;
+mod scheme;
 mod step;
 
 use std::sync::Arc;
@@ -9,9 +10,9 @@ use std::sync::Arc;
 use pericles::family::BondList;
 use pericles::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::{BondForce, DamageMeasure, ForceOperator};
+use pericles::operator::{BondForce, Breaking, DamageMeasure, ForceOperator};
 use pericles::space::{PointCloud, PointSet};
-use pericles::time::{HighestFrequency, Integrator, State, VelocityVerlet};
+use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use crate::caution::Caution;
@@ -21,7 +22,6 @@ use crate::fault::Fault;
 use crate::finding::{Finding, Subject, Warning};
 use crate::reader::Path;
 use crate::set::ALL;
-use crate::time::Scheme;
 
 /// Sets of points by name.
 pub type Sets = Vec<(String, PointSet)>;
@@ -44,7 +44,7 @@ pub struct Model {
     pub state: State,
     /// The scheme.
     pub integrator: Box<dyn Integrator>,
-    /// The highest frequency at the start; none if nothing resists motion, and the deck gives the step.
+    /// The frequency that limits the step at the start, the highest unless the scheme has two time steps; none if nothing resists motion, and the deck gives the step.
     pub frequency: Option<HighestFrequency>,
     /// The time step, s.
     pub dt: f64,
@@ -98,8 +98,11 @@ impl Deck {
             bonds,
             material,
             &constants,
-            &no_fail,
-            self.material.damage,
+            &Extras {
+                no_fail: &no_fail,
+                damage: self.material.damage,
+                stiffness: &self.stiffness(&cloud, &sets)?,
+            },
         );
         let density = PointScalar::Uniform(material.density);
         let mut system = System::new(Arc::clone(&cloud), operator, density)
@@ -108,10 +111,9 @@ impl Deck {
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
-        let integrator: Box<dyn Integrator> = match self.time.scheme {
-            Scheme::VelocityVerlet => Box::new(VelocityVerlet),
-        };
+        let integrator = self.integrator(&system, &sets)?;
         let steps = self.steps(&system, &state, &*integrator, &mut warnings)?;
+        self.judge_two_steps(&*integrator, &steps, &mut warnings);
         Ok(Model {
             cloud,
             sets,
@@ -183,6 +185,26 @@ impl Deck {
         points.sort_unstable();
         points.dedup();
         Ok(points)
+    }
+
+    /// Stiffness of each point over the material's; empty without inclusions.
+    fn stiffness(&self, cloud: &PointCloud, sets: &Sets) -> Result<Vec<f64>, DeckError> {
+        let inclusions = &self.material.inclusions;
+        let mut stiffness = vec![
+            1.0;
+            if inclusions.is_empty() {
+                0
+            } else {
+                cloud.len()
+            }
+        ];
+        for (k, inclusion) in inclusions.iter().enumerate() {
+            let path = Path::from("material.inclusion").index(k);
+            for &i in self.members(sets, &inclusion.set, &path)? {
+                stiffness[i as usize] = inclusion.stiffness;
+            }
+        }
+        Ok(stiffness)
     }
 
     fn bonds(
@@ -266,24 +288,47 @@ impl Deck {
     }
 }
 
+/// What an operator needs beside its material.
+struct Extras<'a> {
+    no_fail: &'a [u32],
+    damage: DamageMeasure,
+    /// Stiffness of each point over the material's; empty if all are the same.
+    stiffness: &'a [f64],
+}
+
 fn operator(
     cloud: &Arc<PointCloud>,
     bonds: BondList,
     material: &BondMaterial,
     constants: &BondConstants,
-    no_fail: &[u32],
-    damage: DamageMeasure,
+    extras: &Extras<'_>,
 ) -> Box<dyn ForceOperator> {
+    let Extras {
+        no_fail,
+        damage,
+        stiffness,
+    } = *extras;
+    let breaking = Breaking {
+        critical_stretch: constants.critical_stretch,
+        no_fail,
+    };
+    let of_pair = |i: usize, j: usize, r: f64| {
+        let mean = 0.5 * (stiffness[i] + stiffness[j]);
+        mean * constants.micromodulus * material.influence.alpha(r, material.horizon)
+    };
     macro_rules! bond_force {
         ($law:ty, $dimension:literal) => {
-            Box::new(BondForce::<$law, $dimension>::new(
-                Arc::clone(cloud),
-                bonds,
-                material,
-                constants,
-                no_fail,
-                damage,
-            ))
+            Box::new(if stiffness.is_empty() {
+                let cloud = Arc::clone(cloud);
+                BondForce::<$law, $dimension>::new(
+                    cloud, bonds, material, constants, no_fail, damage,
+                )
+            } else {
+                let cloud = Arc::clone(cloud);
+                BondForce::<$law, $dimension>::with_pair_stiffness(
+                    cloud, bonds, of_pair, breaking, damage,
+                )
+            })
         };
     }
     match (material.law, cloud.dimension()) {
