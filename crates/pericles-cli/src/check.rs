@@ -58,10 +58,11 @@ fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
         (
             "bonds",
             format!(
-                "{} ({} directed, {} per point)",
+                "{} ({} directed, {} per point), kept as a {}",
                 count(facts.bonds),
                 count(facts.directed_bonds),
-                significant(facts.directed_bonds as f64 / facts.points as f64, 3)
+                significant(facts.directed_bonds as f64 / facts.points as f64, 3),
+                facts.operator
             ),
         ),
         ("memory", format!("about {}", bytes(facts.memory_estimate))),

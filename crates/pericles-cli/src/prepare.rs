@@ -24,6 +24,8 @@ pub(crate) struct Facts {
     pub(crate) bonds: u64,
     pub(crate) directed_bonds: u64,
     pub(crate) precut_bonds: u64,
+    /// How the bonds are kept: grid or list.
+    pub(crate) operator: &'static str,
     pub(crate) youngs_modulus: f64,
     pub(crate) micromodulus: f64,
     /// None if bonds never break.
@@ -62,6 +64,7 @@ impl Facts {
             bonds: directed_bonds / 2,
             directed_bonds,
             precut_bonds: model.precut_bonds,
+            operator: model.form.name(),
             youngs_modulus: constants.young,
             micromodulus: constants.micromodulus,
             critical_stretch: finite(constants.critical_stretch),

@@ -153,7 +153,7 @@ fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
     }
     if metadata.instruction_set != facts.instruction_set {
         doubts.push(format!(
-            "the run was begun with instruction set {} and goes on with {}; all sets are meant to give the same bits",
+            "the run was begun with instruction set {} and goes on with {}: it may not be the same bit for bit",
             metadata.instruction_set, facts.instruction_set
         ));
     }

@@ -72,6 +72,7 @@
 //! fracture_energy = "135 J/m2"           # [Gc, G0], or critical_stretch [s0]; neither: bonds never break
 //! no_fail = ["top", "left"]              # sets whose bonds never break; default none
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
+//! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only
 //! [[material.inclusion]]                 # a part of other stiffness; any number, later ones before earlier ones
 //! set = "left"
 //! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's

@@ -5,7 +5,7 @@ use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::DamageMeasure;
+use pericles::operator::{BondForm, DamageMeasure};
 
 use crate::body::BodyRead;
 use crate::quantity::Quantity;
@@ -26,6 +26,8 @@ pub struct Material {
     pub inclusions: Vec<Inclusion>,
     /// How damage is measured.
     pub damage: DamageMeasure,
+    /// How bonds are kept: a matter of speed only.
+    pub form: BondForm,
 }
 
 /// A part of other stiffness.
@@ -74,6 +76,15 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         .map(|table| inclusion(table, sets))
         .collect();
     let damage = damage(&table);
+    let form = table.choice_or_first(
+        "bonds",
+        "form of bonds",
+        &[
+            ("fastest", BondForm::Fastest),
+            ("grid", BondForm::Grid),
+            ("list", BondForm::List),
+        ],
+    );
     table.finish();
     Some(Material {
         name: name?,
@@ -89,6 +100,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         no_fail: no_fail?,
         inclusions: inclusions.into_iter().collect::<Option<_>>()?,
         damage: damage?,
+        form: form?,
     })
 }
 

@@ -246,7 +246,7 @@ fn defaults_are_filled_in_and_recorded() {
         "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0 },
         "material": {
             "model": "bond-stretch", "density": 7850.0, "youngs_modulus": 210e9, "modulus": "continuum",
-            "horizon": 0.03, "volume_correction": "extended",
+            "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended",
             "influence": { "function": "constant", "acts_on": "stretch" },
             "damage": { "measure": "volume", "count_precut": false },
         },

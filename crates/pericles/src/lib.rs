@@ -49,12 +49,15 @@
 //! ```
 
 mod accounts;
+pub mod analysis;
 mod archive;
+pub mod bench;
 pub mod boundary;
 mod error;
 pub mod family;
 pub mod kernel;
 pub mod material;
+mod noise;
 pub mod observe;
 pub mod operator;
 pub mod parallel;

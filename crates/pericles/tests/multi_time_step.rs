@@ -488,7 +488,7 @@ fn small_plate(stiffness: f64, core: f64) -> Problem {
     };
     let micromodulus = 9.0 * 2e11 / (PI * horizon.powi(3));
     let factor = |i: usize| if stiff[i] { stiffness } else { 1.0 };
-    let pair = |i: usize, j: usize, _: f64| 0.5 * micromodulus * (factor(i) + factor(j));
+    let pair = |i: usize, j: usize, _: [f64; 3]| 0.5 * micromodulus * (factor(i) + factor(j));
     let operator = BondForce::<LinearBond, 2>::with_pair_stiffness(
         cloud.clone(),
         bonds,

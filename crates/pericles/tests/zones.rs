@@ -92,6 +92,7 @@ impl Body {
             constants: &constants,
             cracks: &self.cracks,
             no_fail: &self.no_fail,
+            stiffness: &[],
             damage: DamageMeasure::default(),
         };
         body.operator(form).unwrap().operator

@@ -7,10 +7,9 @@ mod step;
 
 use std::sync::Arc;
 
-use pericles::family::BondList;
-use pericles::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
+use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::{BondForce, Breaking, DamageMeasure, ForceOperator};
+use pericles::operator::{AssembledBonds, BondBody, BondForm};
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
@@ -34,6 +33,8 @@ pub struct Model {
     pub sets: Sets,
     /// The constants of the bonds.
     pub constants: BondConstants,
+    /// How the bonds are kept.
+    pub form: BondForm,
     /// Bonds that pre-cracks cut.
     pub precut_bonds: u64,
     /// The pre-cracks in the order of the deck, for following their tips.
@@ -91,21 +92,20 @@ impl Deck {
             .constants(&cloud, self.body.state)
             .map_err(|error| self.at_material(error))?;
         let mut warnings = Vec::new();
-        let (bonds, cracks, precut_bonds) = self.bonds(&cloud, &mut warnings)?;
         let no_fail = self.no_fail(&sets)?;
-        let operator = operator(
-            &cloud,
-            bonds,
+        let stiffness = self.stiffness(&cloud, &sets)?;
+        let body = BondBody {
+            cloud: &cloud,
             material,
-            &constants,
-            &Extras {
-                no_fail: &no_fail,
-                damage: self.material.damage,
-                stiffness: &self.stiffness(&cloud, &sets)?,
-            },
-        );
+            constants: &constants,
+            cracks: &[],
+            no_fail: &no_fail,
+            stiffness: &stiffness,
+            damage: self.material.damage,
+        };
+        let (bonds, cracks) = self.bonds(body, &mut warnings)?;
         let density = PointScalar::Uniform(material.density);
-        let mut system = System::new(Arc::clone(&cloud), operator, density)
+        let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
         let state = self.initial_state(&cloud, &sets)?;
         self.add_loads(&mut system, &cloud, &sets)?;
@@ -118,7 +118,8 @@ impl Deck {
             cloud,
             sets,
             constants,
-            precut_bonds,
+            form: bonds.form,
+            precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
             cracks,
             system,
             state,
@@ -207,31 +208,43 @@ impl Deck {
         Ok(stiffness)
     }
 
+    /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
-        cloud: &PointCloud,
+        body: BondBody<'_>,
         warnings: &mut Vec<Warning>,
-    ) -> Result<(BondList, Vec<TrackedCrack>, u64), DeckError> {
-        let material = &self.material.bonds;
-        let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction)
+    ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
+        let crack = |k| Path::from("crack").index(k);
+        for (k, pre_crack) in self.cracks.iter().enumerate() {
+            // The library tells what is wrong with a crack, not with which.
+            pre_crack
+                .surface
+                .cutter(pre_crack.ends, 0.0)
+                .map_err(|error| self.at_path(&crack(k), error.into()))?;
+        }
+        let surfaces: Vec<_> = self
+            .cracks
+            .iter()
+            .map(|crack| (crack.surface.clone(), crack.ends))
+            .collect();
+        let body = BondBody {
+            cracks: &surfaces,
+            ..body
+        };
+        let assembled = body
+            .operator(self.material.form)
             .map_err(|error| self.at_material(error))?;
         let mut tracked = Vec::new();
-        let mut total = 0;
-        for (k, crack) in self.cracks.iter().enumerate() {
-            let path = Path::from("crack").index(k);
-            let cut = bonds
-                .cut(cloud, &crack.surface, crack.ends)
-                .map_err(|error| self.at_path(&path, error.into()))?;
-            total += cut.bonds;
+        for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {
-                warnings.push(self.finding(&path, Caution::CrackCutsNothing));
+                warnings.push(self.finding(&crack(k), Caution::CrackCutsNothing));
             }
             tracked.push(TrackedCrack {
-                crack: crack.surface.clone(),
-                points: cut.points,
+                crack: surface,
+                points: cut.points.clone(),
             });
         }
-        Ok((bonds, tracked, total))
+        Ok((assembled, tracked))
     }
 
     /// The points of a set. A deck read from a text names only sets it defines; one changed by a program may not.
@@ -285,58 +298,5 @@ impl Deck {
     fn finding<S: Subject>(&self, path: &Path, subject: S) -> Finding<S> {
         let place = self.record.place(path);
         Finding::new(subject, self.record.sources.locate(place))
-    }
-}
-
-/// What an operator needs beside its material.
-struct Extras<'a> {
-    no_fail: &'a [u32],
-    damage: DamageMeasure,
-    /// Stiffness of each point over the material's; empty if all are the same.
-    stiffness: &'a [f64],
-}
-
-fn operator(
-    cloud: &Arc<PointCloud>,
-    bonds: BondList,
-    material: &BondMaterial,
-    constants: &BondConstants,
-    extras: &Extras<'_>,
-) -> Box<dyn ForceOperator> {
-    let Extras {
-        no_fail,
-        damage,
-        stiffness,
-    } = *extras;
-    let breaking = Breaking {
-        critical_stretch: constants.critical_stretch,
-        no_fail,
-    };
-    let of_pair = |i: usize, j: usize, r: f64| {
-        let mean = 0.5 * (stiffness[i] + stiffness[j]);
-        mean * constants.micromodulus * material.influence.alpha(r, material.horizon)
-    };
-    macro_rules! bond_force {
-        ($law:ty, $dimension:literal) => {
-            Box::new(if stiffness.is_empty() {
-                let cloud = Arc::clone(cloud);
-                BondForce::<$law, $dimension>::new(
-                    cloud, bonds, material, constants, no_fail, damage,
-                )
-            } else {
-                let cloud = Arc::clone(cloud);
-                BondForce::<$law, $dimension>::with_pair_stiffness(
-                    cloud, bonds, of_pair, breaking, damage,
-                )
-            })
-        };
-    }
-    match (material.law, cloud.dimension()) {
-        (PairLaw::Linear, 1) => bond_force!(LinearBond, 1),
-        (PairLaw::Linear, 2) => bond_force!(LinearBond, 2),
-        (PairLaw::Linear, _) => bond_force!(LinearBond, 3),
-        (PairLaw::BondStretch, 1) => bond_force!(BondStretch, 1),
-        (PairLaw::BondStretch, 2) => bond_force!(BondStretch, 2),
-        (PairLaw::BondStretch, _) => bond_force!(BondStretch, 3),
     }
 }

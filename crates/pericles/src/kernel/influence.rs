@@ -1,7 +1,7 @@
-//! The functions, where they act, and their moments.
+//! The functions and where they act.
 
-use gauss_quad::GaussLegendre;
-
+use super::ClassTable;
+use super::moments::{cosines, interpolate};
 use crate::error::{PericlesError, Result, positive};
 
 /// The shape g(r) of an influence function; δ is the horizon.
@@ -30,6 +30,15 @@ pub enum InfluenceFunction {
         /// Ascending r (m) with values.
         table: Vec<(f64, f64)>,
     },
+    /// g = a₀ + Σ_j a_j cos(j wavenumber r).
+    Cosines {
+        /// The wavenumber of the first cosine, rad/m.
+        wavenumber: f64,
+        /// a₀, a₁ …
+        coefficients: Vec<f64>,
+    },
+    /// A number per class of a lattice's bonds, as tuned against dispersion; it need not be a function of r.
+    Classes(ClassTable),
 }
 
 /// What the function multiplies.
@@ -78,10 +87,26 @@ impl Influence {
                 }
             }
             InfluenceFunction::Tabulated { table } => interpolate(table, r),
+            InfluenceFunction::Cosines {
+                wavenumber,
+                coefficients,
+            } => cosines(coefficients, wavenumber * r),
+            InfluenceFunction::Classes(table) => interpolate(table.chord(), r),
         };
         match self.acts_on {
             ActsOn::Stretch => shape,
             ActsOn::Displacement => shape * r,
+        }
+    }
+
+    /// α of a bond with reference vector ξ (m): what operators use. Differs from [`Influence::alpha`] at |ξ| for tables per class only, where two
+    /// classes may have one length.
+    pub fn alpha_of(&self, xi: [f64; 3], horizon: f64) -> f64 {
+        let r = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
+        match (&self.function, self.acts_on) {
+            (InfluenceFunction::Classes(table), ActsOn::Stretch) => table.value(xi),
+            (InfluenceFunction::Classes(table), ActsOn::Displacement) => table.value(xi) * r,
+            _ => self.alpha(r, horizon),
         }
     }
 
@@ -116,6 +141,19 @@ impl Influence {
                     );
                 }
             }
+            InfluenceFunction::Cosines {
+                wavenumber,
+                coefficients,
+            } => {
+                positive("the wavenumber of the cosines", *wavenumber)?;
+                if coefficients.is_empty() || coefficients.iter().any(|a| !a.is_finite()) {
+                    return refuse("cosines need at least the coefficient a₀, all finite".into());
+                }
+            }
+            InfluenceFunction::Classes(table) => {
+                // Its modulus is a lattice sum, which only the body knows.
+                return table.check_dimension(dimension);
+            }
             _ => {}
         }
         let (exponent, _) = self.leading_power();
@@ -134,50 +172,37 @@ impl Influence {
     }
 
     /// Whether α is negative anywhere within the horizon: such bonds store energy with the wrong sign and must not break.
-    pub fn is_signed(&self) -> bool {
+    pub fn is_signed(&self, horizon: f64) -> bool {
         match &self.function {
             InfluenceFunction::Tabulated { table } => table.iter().any(|(_, g)| *g < 0.0),
+            InfluenceFunction::Classes(table) => table.is_signed(),
+            InfluenceFunction::Cosines { .. } => {
+                // Twenty samples to a period of the highest cosine.
+                let samples = 20 * self.cosine_waves(horizon).ceil() as usize;
+                (0..=samples)
+                    .any(|k| self.alpha(horizon * k as f64 / samples as f64, horizon) < 0.0)
+            }
             _ => false,
         }
     }
 
-    /// The moment m_q = ∫₀^δ α(r) r^q dr, by closed form for powers and by Gauss–Legendre quadrature (exact to round-off) for
-    /// the Gaussian and the pieces of a table.
-    pub fn moment(&self, q: f64, horizon: f64) -> f64 {
-        // ∫₀^δ r^p dr
-        let power = |p: f64| horizon.powf(p + 1.0) / (p + 1.0);
-        let q = q + self.shift();
+    /// Periods of the highest cosine within the horizon, at least one.
+    pub(super) fn cosine_waves(&self, horizon: f64) -> f64 {
         match &self.function {
-            InfluenceFunction::Constant => power(q),
-            InfluenceFunction::Conical => power(q) - power(q + 1.0) / horizon,
-            InfluenceFunction::Inverse => power(q - 1.0),
-            InfluenceFunction::Power { exponent } => power(q + exponent) / horizon.powf(*exponent),
-            InfluenceFunction::Gaussian { length, cutoff } => {
-                let end = cutoff.unwrap_or(horizon).min(horizon);
-                // Beyond 7 lengths the integrand is below round-off; a piece per length keeps the quadrature exact.
-                let end = end.min(7.0 * length + 7.0 * length * q.max(0.0).sqrt());
-                let pieces = (end / length).ceil().max(1.0) as usize;
-                let breaks: Vec<f64> = (0..=pieces)
-                    .map(|k| end * k as f64 / pieces as f64)
-                    .collect();
-                quadrature(&breaks, |r| (-(r / length).powi(2)).exp() * r.powf(q))
+            InfluenceFunction::Cosines {
+                wavenumber,
+                coefficients,
+            } => {
+                let highest = wavenumber * coefficients.len() as f64;
+                // Beyond a thousand periods no deck means it.
+                (highest * horizon / std::f64::consts::TAU).clamp(1.0, 1e3)
             }
-            InfluenceFunction::Tabulated { table } => {
-                let mut breaks = vec![0.0];
-                breaks.extend(
-                    table
-                        .iter()
-                        .map(|(r, _)| *r)
-                        .filter(|r| *r > 0.0 && *r < horizon),
-                );
-                breaks.push(horizon);
-                quadrature(&breaks, |r| interpolate(table, r) * r.powf(q))
-            }
+            _ => 1.0,
         }
     }
 
     /// 1 where α carries an extra factor r.
-    fn shift(&self) -> f64 {
+    pub(super) fn shift(&self) -> f64 {
         match self.acts_on {
             ActsOn::Stretch => 0.0,
             ActsOn::Displacement => 1.0,
@@ -193,26 +218,6 @@ impl Influence {
         };
         (exponent + self.shift(), 1.0)
     }
-}
-
-fn interpolate(table: &[(f64, f64)], r: f64) -> f64 {
-    let after = table.partition_point(|(x, _)| *x <= r);
-    match (after.checked_sub(1).map(|k| table[k]), table.get(after)) {
-        (Some((x0, g0)), Some(&(x1, g1))) => g0 + (g1 - g0) * (r - x0) / (x1 - x0),
-        (Some((_, g)), None) => g,
-        (None, Some(&(_, g))) => g,
-        (None, None) => 0.0,
-    }
-}
-
-/// Gauss–Legendre with 32 nodes on each piece.
-fn quadrature(breaks: &[f64], integrand: impl Fn(f64) -> f64) -> f64 {
-    const NODES: std::num::NonZeroUsize = std::num::NonZeroUsize::new(32).unwrap();
-    let rule = GaussLegendre::new(NODES);
-    breaks
-        .windows(2)
-        .map(|piece| rule.integrate(piece[0], piece[1], &integrand))
-        .sum()
 }
 
 #[cfg(test)]

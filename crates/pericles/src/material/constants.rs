@@ -1,10 +1,11 @@
 //! Bond constants from engineering constants.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use crate::error::{PericlesError, Result, positive};
 use crate::family::VolumeCorrection;
-use crate::kernel::Influence;
+use crate::kernel::{ClassOffset, ClassTable, Influence, InfluenceFunction, class_of};
 use crate::space::PointCloud;
 
 use super::PairLaw;
@@ -108,8 +109,11 @@ pub enum Calibration {
     /// The integrals, as in the continuum; the grid's own error remains.
     #[default]
     Continuum,
-    /// The sums over the lattice's bonds, so that the bulk modulus of the grid is exact.
+    /// The sums over the lattice's bonds, so that the bulk modulus of the grid is exact. A table per class is always taken so: it has no
+    /// integrals.
     Lattice,
+    /// The integrals of α ≡ 1 whatever α is: for functions made to carry the modulus themselves.
+    Unmodified,
 }
 
 /// The modulus with the way it enters.
@@ -184,18 +188,25 @@ impl BondMaterial {
         positive("the density", self.density)?;
         positive("the horizon", self.horizon)?;
         self.influence.check(dimension, self.horizon)?;
-        if self.influence.is_signed() && self.fracture != Fracture::Unbreakable {
+        if self.influence.is_signed(self.horizon) && self.fracture != Fracture::Unbreakable {
             return Err(PericlesError::BadInfluence {
                 reason: "a function with negative values cannot be used with bonds that break: a negative bond gains energy as it \
                          stretches; leave out the fracture energy and critical stretch, or use a positive function"
                     .into(),
             });
         }
+        self.check_classes(cloud)?;
         let young = self.modulus.value.young(state)?;
         let section = cloud.section();
         let moment = |q: usize| self.influence.moment(q as f64, self.horizon);
         let integral = moment(dimension);
         let lattice = self.lattice_moment(dimension, cloud.spacing());
+        if lattice <= 0.0 && self.influence.is_signed(self.horizon) {
+            return Err(PericlesError::BadInfluence {
+                reason: "its modulus, the sum of α |ξ| over the lattice's bonds, must be positive"
+                    .into(),
+            });
+        }
         if lattice <= 0.0 {
             return Err(PericlesError::HorizonTooSmall {
                 horizon: self.horizon,
@@ -203,8 +214,14 @@ impl BondMaterial {
             });
         }
         let modulus_moment = match self.modulus.calibration {
+            _ if self.class_table().is_some() => lattice,
             Calibration::Continuum => integral,
             Calibration::Lattice => lattice,
+            // ∫₀^δ r^dimension dr
+            Calibration::Unmodified => {
+                let power = dimension as i32 + 1;
+                self.horizon.powi(power) / f64::from(power)
+            }
         };
         let micromodulus = match state {
             StressState::Uniaxial => young / (section * modulus_moment),
@@ -236,29 +253,91 @@ impl BondMaterial {
 
     /// The sum over an interior point's bonds that becomes m_dimension as the spacing goes to zero: Σ κ α r Δx^D over 2, 2π, 4π.
     fn lattice_moment(&self, dimension: usize, spacing: f64) -> f64 {
-        let reach = self.volume_correction.reach(self.horizon, spacing);
-        let n = (reach / spacing).floor() as i64;
-        let range = |active: bool| if active { -n..=n } else { 0..=0 };
         let mut sum = 0.0;
+        self.for_each_offset(dimension, spacing, |_, xi, r| {
+            let kappa = self.volume_correction.factor(r, self.horizon, spacing);
+            sum += kappa * self.influence.alpha_of(xi, self.horizon) * r;
+        });
+        sum * spacing.powi(dimension as i32) / [2.0, 2.0 * PI, 4.0 * PI][dimension - 1]
+    }
+
+    /// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
+    fn for_each_offset(
+        &self,
+        dimension: usize,
+        spacing: f64,
+        mut visit: impl FnMut([i32; 3], [f64; 3], f64),
+    ) {
+        let reach = self.volume_correction.reach(self.horizon, spacing);
+        let n = (reach / spacing).floor() as i32;
+        let range = |active: bool| if active { -n..=n } else { 0..=0 };
         for z in range(dimension > 2) {
             for y in range(dimension > 1) {
                 for x in range(true) {
-                    let r = ((x * x + y * y + z * z) as f64).sqrt() * spacing;
+                    let r = f64::from(x * x + y * y + z * z).sqrt() * spacing;
                     if r > 0.0 && r <= reach {
-                        let kappa = self.volume_correction.factor(r, self.horizon, spacing);
-                        sum += kappa * self.influence.alpha(r, self.horizon) * r;
+                        let xi = [x, y, z].map(|c| f64::from(c) * spacing);
+                        visit([x, y, z], xi, r);
                     }
                 }
             }
         }
-        sum * spacing.powi(dimension as i32) / [2.0, 2.0 * PI, 4.0 * PI][dimension - 1]
+    }
+
+    fn class_table(&self) -> Option<&ClassTable> {
+        match &self.influence.function {
+            InfluenceFunction::Classes(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// A table per class must belong to the body's lattice and name exactly the classes within reach.
+    fn check_classes(&self, cloud: &PointCloud) -> Result<()> {
+        let Some(table) = self.class_table() else {
+            return Ok(());
+        };
+        let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
+        let spacing = cloud.spacing();
+        if cloud.lattice().is_none() {
+            return refuse("a table per class needs points on a regular grid".into());
+        }
+        if (table.spacing() / spacing - 1.0).abs() > 1e-9 {
+            return refuse(format!(
+                "the table per class was made for a spacing of {} m, the grid has {spacing} m",
+                table.spacing()
+            ));
+        }
+        let mut within = BTreeSet::new();
+        self.for_each_offset(cloud.dimension(), spacing, |offset, _, _| {
+            within.insert(class_of(offset));
+        });
+        let name = |class: ClassOffset| format!("({}, {}, {})", class[0], class[1], class[2]);
+        if let Some(missing) = within.iter().find(|class| table.lookup(**class).is_none()) {
+            return refuse(format!(
+                "the table has no value for the class {} that lies within reach; it needs all {} classes (with the extended volume \
+                 correction the reach is half a spacing more than the horizon)",
+                name(*missing),
+                within.len()
+            ));
+        }
+        match table
+            .entries()
+            .iter()
+            .find(|(class, _)| !within.contains(class))
+        {
+            Some((class, _)) => refuse(format!(
+                "the table has a value for the class {}, which lies beyond the reach of bonds",
+                name(*class)
+            )),
+            None => Ok(()),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{ActsOn, InfluenceFunction};
+    use crate::kernel::ActsOn;
     use crate::space::{Grid, Shape};
 
     fn body(dimension: usize, section: f64) -> PointCloud {

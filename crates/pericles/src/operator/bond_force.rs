@@ -74,31 +74,32 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
             no_fail,
         };
         let stiffness =
-            |r: f64| constants.micromodulus * material.influence.alpha(r, material.horizon);
+            |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
         Self::with_stiffness(cloud, bonds, stiffness, breaking, damage)
     }
 
-    /// An operator whose bonds have the stiffness c α(r) given as a function of their reference length r.
+    /// An operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m; missing components are zero.
+    /// It must be the same for ξ and −ξ.
     ///
     /// # Panics
     /// If the cloud has another dimension than D.
     pub fn with_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
-        stiffness_of_length: impl Fn(f64) -> f64,
+        stiffness_of_bond: impl Fn([f64; 3]) -> f64,
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
         Self::with_pair_stiffness(
             cloud,
             bonds,
-            |_, _, r| stiffness_of_length(r),
+            |_, _, xi| stiffness_of_bond(xi),
             breaking,
             damage,
         )
     }
 
-    /// An operator whose bonds have the stiffness c α(i, j, r) given for each pair of points and their distance r; it must be the same from both
+    /// An operator whose bonds have the stiffness c α(i, j, ξ) given for each pair of points and the vector ξ from one to the other; it must be the same from both
     /// ends.
     ///
     /// # Panics
@@ -106,7 +107,7 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
     pub fn with_pair_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
-        stiffness_of_pair: impl Fn(usize, usize, f64) -> f64,
+        stiffness_of_pair: impl Fn(usize, usize, [f64; 3]) -> f64,
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
@@ -115,8 +116,7 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         let mut stiffness = vec![0.0; bonds.neighbours().len()];
         for i in 0..n {
             for (entry, j) in bonds.family(i) {
-                let r = bonds.length(&cloud, i, j);
-                stiffness[entry] = stiffness_of_pair(i, j, r)
+                stiffness[entry] = stiffness_of_pair(i, j, bonds.vector(&cloud, i, j))
                     * bonds.volume_factor(&cloud, i, j)
                     * cloud.volumes()[j];
             }

@@ -111,7 +111,9 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         let rule = BondRule {
             reach: correction.reach(material.horizon, spacing),
             volume: &|r| correction.factor(r, material.horizon, spacing) * volume,
-            stiffness: &|r| constants.micromodulus * material.influence.alpha(r, material.horizon),
+            stiffness: &|xi| {
+                constants.micromodulus * material.influence.alpha_of(xi, material.horizon)
+            },
         };
         let layout = GridLayout::new(lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);

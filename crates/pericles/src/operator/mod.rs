@@ -25,7 +25,8 @@ mod grid_padded;
 mod grid_zoned;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
-mod lanes_x86;
+pub(crate) mod lanes_x86;
+pub mod linear;
 mod stencil;
 mod zoned;
 
@@ -36,6 +37,7 @@ pub use bond_force::{BondForce, Breaking, DamageMeasure};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
+pub use linear::{ConvolutionForce, CostComparison, Ends, Route, Toeplitz};
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;

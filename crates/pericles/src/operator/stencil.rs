@@ -23,8 +23,8 @@ pub(super) struct BondRule<'a> {
     pub reach: f64,
     /// κ V of a bond of a given length, m³.
     pub volume: &'a dyn Fn(f64) -> f64,
-    /// c α of a bond of a given length.
-    pub stiffness: &'a dyn Fn(f64) -> f64,
+    /// c α of a bond of a given reference vector.
+    pub stiffness: &'a dyn Fn([f64; 3]) -> f64,
 }
 
 impl<const D: usize> Stencil<D> {
@@ -65,7 +65,7 @@ impl<const D: usize> Stencil<D> {
         rule: &BondRule<'_>,
     ) {
         let volume = (rule.volume)(length);
-        let stiffness = (rule.stiffness)(length) * volume;
+        let stiffness = (rule.stiffness)(xi) * volume;
         let shift = (0..3).map(|c| cell[c] as isize * strides[c] as isize).sum();
         self.cells.push(cell);
         self.lengths.push(length);

@@ -1,6 +1,7 @@
 //! The highest frequency of a body, which limits explicit time steps.
 
 use crate::error::{PericlesError, Result};
+use crate::noise::noise;
 use crate::parallel::ordered_sum;
 use crate::system::System;
 
@@ -82,7 +83,7 @@ fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<High
     let mass = |entry: usize| system.cloud().volumes()[entry % n] * density(entry % n);
     let inner = |x: &[f64], y: &[f64]| ordered_sum(x.len(), |k| mass(k) * x[k] * y[k]);
 
-    let mut current = start_vector(u.len());
+    let mut current = noise(u.len(), 0x9E37_79B9_7F4A_7C15);
     hold(&mut current);
     let norm = inner(&current, &current).sqrt();
     if norm == 0.0 || bound == 0.0 {
@@ -131,20 +132,6 @@ fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<High
 
 fn scale(x: &mut [f64], factor: f64) {
     x.iter_mut().for_each(|x| *x *= factor);
-}
-
-/// Pseudo-random numbers in (−1, 1) that are the same on every machine (SplitMix64).
-fn start_vector(len: usize) -> Vec<f64> {
-    let mut seed = 0x9E37_79B9_7F4A_7C15u64;
-    (0..len)
-        .map(|_| {
-            seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let mut z = seed;
-            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        })
-        .collect()
 }
 
 /// The largest eigenvalue of a symmetric tridiagonal matrix, by bisection, and the last entry of its unit eigenvector, by inverse iteration.

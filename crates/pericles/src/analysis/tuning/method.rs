@@ -1,0 +1,104 @@
+//! Choices: method, combination of branches, weights, bound.
+
+/// Which functionals F_m of the residuals R = ω² − V²|k|² are formed (Alebrahim et al. 2022, section 3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// ∮ R² is minimised.
+    #[default]
+    LeastSquares,
+    /// R at equally spaced points (point collocation).
+    PointCollocation,
+    /// ∫R over equal parts of the contour (sub-domain collocation).
+    Subdomain,
+    /// ∮ w_m R. In 1D with w = 1, b₁ … b_{N−2}, which reproduces the paper's printed numbers; else the shares of the first classes in the trace of M.
+    Galerkin,
+    /// 1D only: ∫ b_m R with m = 1 … N−1, as the paper's equation 46 reads.
+    LiteralGalerkin,
+    /// ∮ |R| is minimised: the error by which tables are compared.
+    Absolute,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 6] = [
+        Self::LeastSquares,
+        Self::PointCollocation,
+        Self::Subdomain,
+        Self::Galerkin,
+        Self::LiteralGalerkin,
+        Self::Absolute,
+    ];
+
+    /// Name as in decks.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LeastSquares => "least-squares",
+            Self::PointCollocation => "point-collocation",
+            Self::Subdomain => "subdomain-collocation",
+            Self::Galerkin => "galerkin",
+            Self::LiteralGalerkin => "galerkin-literal",
+            Self::Absolute => "absolute",
+        }
+    }
+}
+
+/// How the residuals of the branches enter the functionals. The least-squares method has the first only, the absolute method the second only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Combination {
+    /// Σ_m F_m(e_p R_p)² + F_m(e_s R_s)² is minimised.
+    #[default]
+    Separated,
+    /// Σ_m F_m(e_p |R_p| + e_s |R_s|)² is minimised: convex, but not smooth.
+    Absolute,
+    /// F_m(e_p R_p + e_s R_s) = 0. An experiment: the lattices it makes are mostly unstable.
+    SignedSum,
+}
+
+impl Combination {
+    /// All combinations.
+    pub const ALL: [Self; 3] = [Self::Separated, Self::Absolute, Self::SignedSum];
+
+    /// Name as in decks.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Separated => "separated",
+            Self::Absolute => "absolute",
+            Self::SignedSum => "signed-sum",
+        }
+    }
+}
+
+/// Weights of the residuals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Weights {
+    /// e_p.
+    pub pressure: f64,
+    /// e_s.
+    pub shear: f64,
+    /// A wave number κ (rad per spacing): residuals are also weighted with exp(−(|k|/κ)²), so that the corner of the zone, where no lattice can be
+    /// exact, matters less.
+    pub decay: Option<f64>,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self {
+            pressure: 1.0,
+            shear: 1.0,
+            decay: None,
+        }
+    }
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tuning {
+    /// The functionals.
+    pub method: Method,
+    /// How branches are combined.
+    pub combination: Combination,
+    /// Weights.
+    pub weights: Weights,
+    /// No coefficient may be below it. The paper takes 0.5; with none, coefficients of both signs appear, with which bonds cannot break.
+    pub lower_bound: Option<f64>,
+}
