@@ -37,6 +37,19 @@ pub enum Caution {
         /// The step that is surely stable, s.
         limit: f64,
     },
+    /// Two time steps that are one.
+    #[error("with ratio = 1 both time steps are the same")]
+    EqualSteps,
+    /// A predictor with which short waves grow.
+    #[error(
+        "the backward-difference predictor is weakly unstable: ω dt is {omega_dt:.2}, above {quiet}"
+    )]
+    GrowingPredictor {
+        /// The highest frequency times the step.
+        omega_dt: f64,
+        /// Below this the growth does not show.
+        quiet: f64,
+    },
 }
 
 impl Subject for Caution {
@@ -50,6 +63,10 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::EqualSteps => "a plain scheme does the same with less",
+            Self::GrowingPredictor { .. } => {
+                "predictor = \"structured\" is stable; or make dt smaller, or the run short"
+            }
         };
         Some(advice.into())
     }
@@ -59,6 +76,8 @@ impl Subject for Caution {
             Self::CrackCutsNothing => "no effect",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::EqualSteps => "no effect",
+            Self::GrowingPredictor { .. } => "growing waves",
         }
     }
 }

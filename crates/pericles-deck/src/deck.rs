@@ -119,7 +119,7 @@ impl Deck {
         let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
         let time = root
             .required("time")
-            .and_then(|item| time::read(item.table()?));
+            .and_then(|item| time::read(item.table()?, &names));
         let output = root
             .table_or_empty("output")
             .and_then(|table| output::read(table, frame.dimension));

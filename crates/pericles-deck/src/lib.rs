@@ -79,6 +79,9 @@
 //! no_fail = ["top", "left"]              # sets whose bonds never break; default none
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
 //! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only
+//! [[material.inclusion]]                 # a part of other stiffness; any number, later ones before earlier ones
+//! set = "left"
+//! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's
 //!
 //! [sets.top]                             # named sets of points: exactly one region each; "all" is always there
 //! layer = { side = "+y", depth = "0.25 mm" }
@@ -113,7 +116,14 @@
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
 //! safety = 0.95                          # default; only with "auto"
-//! scheme = "velocity-verlet"             # default
+//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa
+//! # rk3, rk3-mts: alpha = 0.75
+//! # dormand-prince: tolerance = 1e-6, of its own sub-steps within dt, which must be given
+//! # rk3-mts, rk4-mts, respa: two time steps, `dt` and `dt`/`ratio`, the smaller one for
+//! # ratio = 4
+//! # fine = ["notch", "inclusion"]        # these sets, which may not overlap; or
+//! # adaptive = { every = 4, threshold = 0.85, layers = 2, hold = 1 }   # the defaults: what is near to breaking, looked for every so many steps
+//! # rk3-mts, rk4-mts: predictor = "structured" (default) | "backward-difference"; interpolant = "hermite" (default) | "stages"
 //! allow_unstable = false                 # default; true: a step known to be unstable is only warned of
 //!
 //! [output]                               # schedules: interval = time | every = steps | count = number over the run
@@ -159,6 +169,7 @@ mod overrides;
 mod quantity;
 mod reader;
 mod region;
+mod scheme;
 mod set;
 mod source;
 mod time;
@@ -174,8 +185,9 @@ pub use deck::Deck;
 pub use error::DeckError;
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
-pub use material::Material;
+pub use material::{Inclusion, Material};
 pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
+pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, NamedSet};
 pub use source::Location;
-pub use time::{Scheme, Time, TimeStep};
+pub use time::{Time, TimeStep};

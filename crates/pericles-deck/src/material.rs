@@ -22,10 +22,21 @@ pub struct Material {
     pub bonds: BondMaterial,
     /// Sets whose bonds never break.
     pub no_fail: Vec<String>,
+    /// Parts that are stiffer or softer, later ones before earlier ones.
+    pub inclusions: Vec<Inclusion>,
     /// How damage is measured.
     pub damage: DamageMeasure,
     /// How bonds are kept: a matter of speed only.
     pub form: BondForm,
+}
+
+/// A part of other stiffness.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inclusion {
+    /// The set.
+    pub set: String,
+    /// Stiffness over the material's; a bond has the mean of its ends.
+    pub stiffness: f64,
 }
 
 pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
@@ -68,6 +79,11 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
     let no_fail = table
         .optional("no_fail")
         .map_or(Some(Vec::new()), |item| sets.references(&item));
+    let inclusions: Vec<Option<Inclusion>> = table
+        .tables("inclusion")
+        .into_iter()
+        .map(|table| inclusion(table, sets))
+        .collect();
     let damage = damage(&table);
     let form = table.choice_or_first(
         "bonds",
@@ -91,8 +107,21 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             fracture: fracture?,
         },
         no_fail: no_fail?,
+        inclusions: inclusions.into_iter().collect::<Option<_>>()?,
         damage: damage?,
         form: form?,
+    })
+}
+
+fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> {
+    let set = table.required("set").and_then(|item| sets.reference(&item));
+    let stiffness = table
+        .required("stiffness")
+        .and_then(|item| item.positive(Quantity::Number));
+    table.finish();
+    Some(Inclusion {
+        set: set?,
+        stiffness: stiffness?,
     })
 }
 

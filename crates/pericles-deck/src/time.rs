@@ -2,6 +2,8 @@
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
+use crate::scheme::{self, Scheme};
+use crate::set::SetNames;
 
 /// The course of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,24 +30,12 @@ pub enum TimeStep {
     Fixed(f64),
 }
 
-/// Schemes of time integration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Scheme {
-    /// Velocity Verlet.
-    VelocityVerlet,
-}
-
-pub(crate) fn read(table: Table<'_>) -> Option<Time> {
+pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
     let end = table
         .required("end")
         .and_then(|item| item.positive(Quantity::Time));
     let step = step(&table);
-    let scheme = table.choice_or_first(
-        "scheme",
-        "scheme",
-        &[("velocity-verlet", Scheme::VelocityVerlet)],
-    );
+    let scheme = scheme::read(&table, names);
     let allow_unstable = table.or("allow_unstable", false, |item| item.boolean());
     table.finish();
     Some(Time {

@@ -29,6 +29,9 @@ pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
 /// A load.
 pub(crate) const LOADS: &[&str] = &["body_force", "traction"];
 
+/// The points with the smaller time step.
+pub(crate) const FINE_REGIONS: &[&str] = &["fine", "adaptive"];
+
 /// The other names of a key.
 pub(crate) fn synonyms(key: &str) -> &'static [&'static str] {
     SYNONYMS
@@ -57,6 +60,7 @@ pub(crate) fn replaces(given: &str, other: &str) -> bool {
         CHECKPOINTS,
         DEPTHS,
         LOADS,
+        FINE_REGIONS,
     ];
     given == other
         || alternatives

@@ -64,6 +64,7 @@ fn forces(cells: usize) -> pericles::Result<()> {
         constants: &material.constants(&cloud, StressState::Spatial)?,
         cracks: &[],
         no_fail: &[],
+        stiffness: &[],
         damage: DamageMeasure::default(),
     };
     let operator = body.operator(case.form)?.operator;

@@ -124,6 +124,7 @@ impl Case {
             constants: &material.constants(&cloud, state)?,
             cracks: &[],
             no_fail: &[],
+            stiffness: &[],
             damage: DamageMeasure::default(),
         };
         let operator = body.operator(self.form)?.operator;

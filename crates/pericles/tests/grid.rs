@@ -158,6 +158,7 @@ fn pair<L: GridLaw, const D: usize>(
         constants: &material.constants(cloud, state(D)).unwrap(),
         cracks,
         no_fail,
+        stiffness: &[],
         damage,
     };
     let (list, cuts) = body.list().unwrap();
@@ -619,6 +620,7 @@ fn the_fastest_form_is_the_grid_where_there_is_one() {
             constants: &material.constants(cloud, state(dimension)).unwrap(),
             cracks: &cracks(dimension),
             no_fail: &[],
+            stiffness: &[],
             damage: DamageMeasure::default(),
         };
         body.operator(form).unwrap()

@@ -2,6 +2,7 @@
 
 mod area;
 mod conditions;
+mod scheme;
 mod step;
 
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
 use pericles::space::{PointCloud, PointSet};
-use pericles::time::{HighestFrequency, Integrator, State, VelocityVerlet};
+use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use crate::caution::Caution;
@@ -20,7 +21,6 @@ use crate::fault::Fault;
 use crate::finding::{Finding, Subject, Warning};
 use crate::reader::Path;
 use crate::set::ALL;
-use crate::time::Scheme;
 
 /// Sets of points by name.
 pub type Sets = Vec<(String, PointSet)>;
@@ -45,7 +45,7 @@ pub struct Model {
     pub state: State,
     /// The scheme.
     pub integrator: Box<dyn Integrator>,
-    /// The highest frequency at the start; none if nothing resists motion, and the deck gives the step.
+    /// The frequency that limits the step at the start, the highest unless the scheme has two time steps; none if nothing resists motion, and the deck gives the step.
     pub frequency: Option<HighestFrequency>,
     /// The time step, s.
     pub dt: f64,
@@ -93,7 +93,17 @@ impl Deck {
             .map_err(|error| self.at_material(error))?;
         let mut warnings = Vec::new();
         let no_fail = self.no_fail(&sets)?;
-        let (bonds, cracks) = self.bonds(&cloud, &constants, &no_fail, &mut warnings)?;
+        let stiffness = self.stiffness(&cloud, &sets)?;
+        let body = BondBody {
+            cloud: &cloud,
+            material,
+            constants: &constants,
+            cracks: &[],
+            no_fail: &no_fail,
+            stiffness: &stiffness,
+            damage: self.material.damage,
+        };
+        let (bonds, cracks) = self.bonds(body, &mut warnings)?;
         let density = PointScalar::Uniform(material.density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
@@ -101,10 +111,9 @@ impl Deck {
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
-        let integrator: Box<dyn Integrator> = match self.time.scheme {
-            Scheme::VelocityVerlet => Box::new(VelocityVerlet),
-        };
+        let integrator = self.integrator(&system, &sets)?;
         let steps = self.steps(&system, &state, &*integrator, &mut warnings)?;
+        self.judge_two_steps(&*integrator, &steps, &mut warnings);
         Ok(Model {
             cloud,
             sets,
@@ -179,12 +188,30 @@ impl Deck {
         Ok(points)
     }
 
+    /// Stiffness of each point over the material's; empty without inclusions.
+    fn stiffness(&self, cloud: &PointCloud, sets: &Sets) -> Result<Vec<f64>, DeckError> {
+        let inclusions = &self.material.inclusions;
+        let mut stiffness = vec![
+            1.0;
+            if inclusions.is_empty() {
+                0
+            } else {
+                cloud.len()
+            }
+        ];
+        for (k, inclusion) in inclusions.iter().enumerate() {
+            let path = Path::from("material.inclusion").index(k);
+            for &i in self.members(sets, &inclusion.set, &path)? {
+                stiffness[i as usize] = inclusion.stiffness;
+            }
+        }
+        Ok(stiffness)
+    }
+
     /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
-        cloud: &Arc<PointCloud>,
-        constants: &BondConstants,
-        no_fail: &[u32],
+        body: BondBody<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
         let crack = |k| Path::from("crack").index(k);
@@ -201,12 +228,8 @@ impl Deck {
             .map(|crack| (crack.surface.clone(), crack.ends))
             .collect();
         let body = BondBody {
-            cloud,
-            material: &self.material.bonds,
-            constants,
             cracks: &surfaces,
-            no_fail,
-            damage: self.material.damage,
+            ..body
         };
         let assembled = body
             .operator(self.material.form)

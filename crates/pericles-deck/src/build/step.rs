@@ -2,7 +2,7 @@
 
 use pericles::PericlesError;
 use pericles::System;
-use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
+use pericles::time::{HighestFrequency, Integrator, State};
 
 use crate::caution::Caution;
 use crate::deck::Deck;
@@ -28,14 +28,19 @@ impl Deck {
         warnings: &mut Vec<Warning>,
     ) -> Result<Steps, DeckError> {
         let end = self.time.end;
-        let frequency = highest_frequency(system, &state.u);
+        let frequency = integrator.limiting_frequency(system, &state.u);
         let limit = integrator.stability_limit();
         match self.time.step {
             TimeStep::Auto { safety } => {
                 let refuse = |error| self.at("time.dt", error);
                 let frequency = frequency.map_err(refuse)?;
                 // A scheme without a limit has no step of its own: accuracy alone must set it.
-                let limit = limit.ok_or(PericlesError::NoStiffness).map_err(refuse)?;
+                let limit = limit
+                    .ok_or(PericlesError::SchemeNotUsable {
+                        scheme: integrator.name(),
+                        reason: "it has no stable step of its own; give dt",
+                    })
+                    .map_err(refuse)?;
                 let stable = frequency.stable_step(limit, safety);
                 let count = self.count(end, stable)?;
                 Ok(Steps {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{BondForce, DamageMeasure, ForceOperator, GridForce, GridLaw};
+use super::{BondForce, Breaking, DamageMeasure, ForceOperator, GridForce, GridLaw};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
 use crate::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
@@ -44,6 +44,8 @@ pub struct BondBody<'a> {
     pub cracks: &'a [(Crack, EndRule)],
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
+    /// Stiffness of each point over the material's; empty if all are the same. A bond has the mean of its ends.
+    pub stiffness: &'a [f64],
     /// How damage weighs bonds.
     pub damage: DamageMeasure,
 }
@@ -65,7 +67,7 @@ impl BondBody<'_> {
     /// The form that is fastest for this body.
     pub fn fastest_form(&self) -> BondForm {
         match self.cloud.lattice() {
-            Some(lattice) => {
+            Some(lattice) if self.stiffness.is_empty() => {
                 let [x, y, z] = lattice.shape;
                 let places = x.next_multiple_of(LANES) * y * z;
                 if places <= SPARSE * self.cloud.len().max(LANES) {
@@ -74,7 +76,7 @@ impl BondBody<'_> {
                     BondForm::List
                 }
             }
-            None => BondForm::List,
+            _ => BondForm::List,
         }
     }
 
@@ -108,6 +110,7 @@ impl BondBody<'_> {
                 let (list, cuts) = self.list::<L, D>()?;
                 (Box::new(list), cuts)
             }
+            _ if !self.stiffness.is_empty() => return Err(PericlesError::OneStencil),
             _ => {
                 let grid = self.grid::<L, D>()?;
                 let cuts = grid.cuts().to_vec();
@@ -121,7 +124,7 @@ impl BondBody<'_> {
         })
     }
 
-    /// The grid operator.
+    /// The grid operator, of the material itself everywhere.
     ///
     /// # Errors
     /// See [`GridForce::new`].
@@ -148,12 +151,22 @@ impl BondBody<'_> {
             .iter()
             .map(|(crack, rule)| bonds.cut(self.cloud, crack, *rule))
             .collect::<Result<_>>()?;
-        let list = BondForce::new(
+        let constants = self.constants;
+        let mean = |i: usize, j: usize| match self.stiffness {
+            [] => 1.0,
+            stiffness => 0.5 * (stiffness[i] + stiffness[j]),
+        };
+        let list = BondForce::with_pair_stiffness(
             self.cloud.clone(),
             bonds,
-            material,
-            self.constants,
-            self.no_fail,
+            |i, j, xi| {
+                let alpha = material.influence.alpha_of(xi, material.horizon);
+                mean(i, j) * (constants.micromodulus * alpha)
+            },
+            Breaking {
+                critical_stretch: constants.critical_stretch,
+                no_fail: self.no_fail,
+            },
             self.damage,
         );
         Ok((list, cuts))

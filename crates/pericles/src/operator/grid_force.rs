@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use super::bond_kernels::Tally;
 use super::grid_block::{ChunkBlock, Wanted};
 use super::grid_breaking::GridBreaking;
 use super::grid_build::{BlockState, bits_of_set, cut, geometric_blocks, precut_bonds};
@@ -9,6 +10,7 @@ use super::grid_kernels::{Grid, accept_chunks};
 use super::grid_law::GridLaw;
 use super::grid_layout::{Chunk, GridLayout};
 use super::grid_padded::Padded;
+use super::grid_zoned::Partners;
 use super::stencil::{BondRule, Stencil};
 use super::{DamageMeasure, ForceOperator, InstructionSet, On};
 use crate::error::{PericlesError, Result};
@@ -255,10 +257,11 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         u: &[f64],
         step: Option<(&[f64], f64)>,
         on: &On<'_>,
+        partners: Option<&Partners>,
         out: &mut [f64],
     ) {
         let n = self.points();
-        let whole = matches!(on, On::All);
+        let whole = matches!(on, On::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
         {
             // Nobody else holds the lock while the operator is borrowed exclusively; a poisoned one only holds old numbers.
@@ -281,16 +284,32 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
                 &mut blocks,
                 &|block| self.layout.first_point(block),
                 &|block, mut out, state| {
-                    if let Some(chunk_block) = self.chunk_block(on, block) {
+                    let Some(chunk_block) = self.chunk_block(on, block) else {
+                        return;
+                    };
+                    let mut accept = |intact: &mut [u8], tally: &mut Tally| {
                         accept_chunks::<L, D, FORCE>(
                             self.instruction_set,
                             &grid,
                             &rule,
                             &chunk_block,
-                            &mut state.intact,
+                            intact,
                             &mut out,
-                            &mut state.tally,
+                            tally,
                         );
+                    };
+                    match partners {
+                        None => accept(&mut state.intact, &mut state.tally),
+                        Some(partners) => {
+                            let before = self.bonds_to(partners, &chunk_block, &state.intact);
+                            let mut after = before.clone();
+                            accept(&mut after, &mut state.tally);
+                            for (intact, (before, after)) in
+                                state.intact.iter_mut().zip(before.iter().zip(&after))
+                            {
+                                *intact &= !(before & !after);
+                            }
+                        }
                     }
                 },
             );
@@ -302,7 +321,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
     }
 
     /// Which of a chunk's bonds of one offset may break.
-    fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
+    pub(super) fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
         let Some(held) = &self.held else { return 0xFF };
         let bits = |chunk: &Chunk| {
             let (number, _) = self.layout.chunk_at(chunk.place as usize * LANES);

@@ -274,6 +274,19 @@ impl GridLayout {
         chunk.point as usize + before.count_ones() as usize
     }
 
+    /// The place of a point.
+    pub fn place_of(&self, point: usize) -> usize {
+        let row = self
+            .row_start
+            .partition_point(|&start| start as usize <= point)
+            - 1;
+        let column = match &self.columns {
+            None => point - self.row_start[row] as usize,
+            Some(columns) => columns[point] as usize,
+        };
+        row * self.stride + column
+    }
+
     /// Copies one component of a vector on points to the padded rows for which `wanted(row)` holds; other places keep what they have.
     pub fn pad(&self, values: &[f64], wanted: impl Fn(usize) -> bool + Sync, padded: &mut [f64]) {
         // Whole rows to a task, or pieces of a very long one.

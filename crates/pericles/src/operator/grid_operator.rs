@@ -4,7 +4,7 @@ use super::grid_force::GridForce;
 use super::grid_kernels::{energy_chunks, force_chunks, tangent_chunks};
 use super::grid_law::GridLaw;
 use super::grid_padded::Padded;
-use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
@@ -58,7 +58,7 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
         if self.can_break() {
             let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide::<true>(accepted.u, step, &on, out);
+            self.decide::<true>(accepted.u, step, &on, None, out);
         } else {
             self.add_force(accepted.t, accepted.u, on, out);
         }
@@ -68,7 +68,7 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
         if self.can_break() {
             // No force is written: any array of the right shape will do for the loop's slices.
             let mut unused = vec![0.0; D * self.points()];
-            self.decide::<false>(u, None, &on, &mut unused);
+            self.decide::<false>(u, None, &on, None, &mut unused);
         }
     }
 
@@ -142,6 +142,14 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        Some(self)
+    }
+
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        Some(self)
     }
 }
 

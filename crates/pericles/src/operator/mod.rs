@@ -22,6 +22,7 @@ mod grid_law;
 mod grid_layout;
 mod grid_operator;
 mod grid_padded;
+mod grid_zoned;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;

@@ -1,0 +1,145 @@
+//! The integrator of a model.
+
+use pericles::time::{
+    AdaptiveRungeKutta, Fine, Integrator, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
+    RungeKutta, Tableau, VelocityVerlet,
+};
+use pericles::{PericlesError, System};
+
+use super::Sets;
+use super::step::Steps;
+use crate::caution::Caution;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::finding::Warning;
+use crate::reader::Path;
+use crate::scheme::{FineRegion, FineStep, Interface, Scheme};
+
+impl Deck {
+    pub(super) fn integrator(
+        &self,
+        system: &System,
+        sets: &Sets,
+    ) -> Result<Box<dyn Integrator>, DeckError> {
+        Ok(match &self.time.scheme {
+            Scheme::VelocityVerlet => Box::new(VelocityVerlet),
+            Scheme::RungeKutta3 { alpha } => {
+                let tableau = Tableau::rk3(*alpha).map_err(|error| self.at("time.alpha", error))?;
+                Box::new(RungeKutta::new(&tableau, system))
+            }
+            Scheme::RungeKutta4 => Box::new(RungeKutta::new(&Tableau::rk4(), system)),
+            Scheme::DormandPrince { tolerance } => Box::new(
+                AdaptiveRungeKutta::new(*tolerance, system)
+                    .map_err(|error| self.at_scheme(error))?,
+            ),
+            Scheme::MultiTimeStep3 {
+                alpha,
+                fine,
+                interface,
+            } => {
+                let tableau = Tableau::rk3(*alpha).map_err(|error| self.at("time.alpha", error))?;
+                self.two_steps(&tableau, fine, *interface, system, sets)?
+            }
+            Scheme::MultiTimeStep4 { fine, interface } => {
+                self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
+            }
+            Scheme::Respa { fine } => {
+                let region = self.fine_points(fine, system, sets)?;
+                Box::new(
+                    Respa::new(fine.ratio, region, system)
+                        .map_err(|error| self.at_scheme(error))?,
+                )
+            }
+        })
+    }
+
+    fn two_steps(
+        &self,
+        tableau: &Tableau,
+        fine: &FineStep,
+        interface: Interface,
+        system: &System,
+        sets: &Sets,
+    ) -> Result<Box<dyn Integrator>, DeckError> {
+        let options = MultiTimeStepOptions {
+            ratio: fine.ratio,
+            fine: self.fine_points(fine, system, sets)?,
+            predictor: interface.predictor,
+            interpolant: interface.interpolant,
+        };
+        let scheme =
+            MultiTimeStep::new(tableau, options, system).map_err(|error| self.at_scheme(error))?;
+        Ok(Box::new(scheme))
+    }
+
+    fn fine_points(
+        &self,
+        fine: &FineStep,
+        system: &System,
+        sets: &Sets,
+    ) -> Result<Fine, DeckError> {
+        match &fine.region {
+            FineRegion::Sets(names) => {
+                let regions: Result<Vec<_>, _> = names
+                    .iter()
+                    .map(|name| self.members(sets, name, &"time.fine".into()).cloned())
+                    .collect();
+                Ok(Fine::Fixed(regions?))
+            }
+            FineRegion::Adaptive(_) if !system.operator().can_break() => {
+                let error = PericlesError::SchemeNotUsable {
+                    scheme: "a fine region that follows damage",
+                    reason: "its bonds never break; give `fine` with names of sets, or a fracture energy",
+                };
+                Err(self.at("time.adaptive", error))
+            }
+            FineRegion::Adaptive(follow) => Ok(Fine::Adaptive(*follow)),
+        }
+    }
+
+    fn at_scheme(&self, error: PericlesError) -> DeckError {
+        let path: Path = match &error {
+            PericlesError::StepRatio { .. } => "time.ratio".into(),
+            PericlesError::FineRegionEmpty { .. }
+            | PericlesError::FineRegionsOverlap { .. }
+            | PericlesError::FineRegionThin { .. } => "time.fine".into(),
+            _ => "time.scheme".into(),
+        };
+        self.at_path(&path, error.into())
+    }
+
+    /// What is odd about two time steps.
+    pub(super) fn judge_two_steps(
+        &self,
+        integrator: &dyn Integrator,
+        steps: &Steps,
+        warnings: &mut Vec<Warning>,
+    ) {
+        let Some(report) = integrator.refinement() else {
+            return;
+        };
+        if report.ratio == 1 {
+            warnings.push(self.finding(&"time.ratio".into(), Caution::EqualSteps));
+        }
+        let interface = match &self.time.scheme {
+            Scheme::MultiTimeStep3 { interface, .. } | Scheme::MultiTimeStep4 { interface, .. } => {
+                interface
+            }
+            _ => return,
+        };
+        let Some(frequency) = steps.frequency else {
+            return;
+        };
+        /// Below it the growth is less than 1e-6 a step.
+        const QUIET: f64 = 0.5;
+        let omega_dt = frequency.estimate * steps.dt;
+        // Equality within round-off is meant to be allowed.
+        if interface.predictor == Predictor::BackwardDifference && omega_dt > QUIET * (1.0 + 1e-9) {
+            let caution = Caution::GrowingPredictor {
+                omega_dt,
+                quiet: QUIET,
+            };
+            warnings.push(self.finding(&"time.predictor".into(), caution));
+        }
+    }
+}

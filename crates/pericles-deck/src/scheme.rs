@@ -1,0 +1,261 @@
+//! The scheme of `[time]` and its parameters.
+
+use pericles::time::{Follow, Interpolant, Predictor};
+
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::set::SetNames;
+use crate::vocabulary::FINE_REGIONS;
+
+/// Schemes of time integration.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Scheme {
+    /// Velocity Verlet.
+    VelocityVerlet,
+    /// Runge–Kutta of order three with the parameter α.
+    RungeKutta3 {
+        /// α.
+        alpha: f64,
+    },
+    /// The classical Runge–Kutta method.
+    RungeKutta4,
+    /// The Dormand–Prince pair: sub-steps within each step, as the tolerance asks for.
+    DormandPrince {
+        /// Relative error of a sub-step.
+        tolerance: f64,
+    },
+    /// Runge–Kutta of order three with two time steps.
+    MultiTimeStep3 {
+        /// α.
+        alpha: f64,
+        /// Where and how fine.
+        fine: FineStep,
+        /// How the two talk.
+        interface: Interface,
+    },
+    /// The classical Runge–Kutta method with two time steps.
+    MultiTimeStep4 {
+        /// Where and how fine.
+        fine: FineStep,
+        /// How the two talk.
+        interface: Interface,
+    },
+    /// r-RESPA.
+    Respa {
+        /// Where and how fine.
+        fine: FineStep,
+    },
+}
+
+/// The smaller of two time steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FineStep {
+    /// Fine steps in a coarse one.
+    pub ratio: u32,
+    /// The points that take them.
+    pub region: FineRegion,
+}
+
+/// The points with the smaller step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FineRegion {
+    /// Those of these sets.
+    Sets(Vec<String>),
+    /// Those near to where bonds break or are about to.
+    Adaptive(Follow),
+}
+
+/// What coarse and fine points know of each other between their steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Interface {
+    /// Of fine points at coarse stages.
+    pub predictor: Predictor,
+    /// Of coarse points at fine stages.
+    pub interpolant: Interpolant,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Verlet,
+    Rk3,
+    Rk4,
+    DormandPrince,
+    Rk3Mts,
+    Rk4Mts,
+    Respa,
+}
+
+pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
+    let kind = table.choice_or_first(
+        "scheme",
+        "scheme",
+        &[
+            ("velocity-verlet", Kind::Verlet),
+            ("rk3", Kind::Rk3),
+            ("rk4", Kind::Rk4),
+            ("dormand-prince", Kind::DormandPrince),
+            ("rk3-mts", Kind::Rk3Mts),
+            ("rk4-mts", Kind::Rk4Mts),
+            ("respa", Kind::Respa),
+        ],
+    );
+    let Some(kind) = kind else {
+        // Which of these belong to the scheme is not known: none of them is an error of its own.
+        for key in [
+            "alpha",
+            "tolerance",
+            "ratio",
+            "fine",
+            "adaptive",
+            "predictor",
+            "interpolant",
+        ] {
+            table.optional(key);
+        }
+        return None;
+    };
+    let alpha = match kind {
+        Kind::Rk3 | Kind::Rk3Mts => alpha(table),
+        _ => {
+            table.forbid("alpha", "α is the parameter of rk3 and rk3-mts");
+            Some(f64::NAN)
+        }
+    };
+    let tolerance = match kind {
+        Kind::DormandPrince => tolerance(table),
+        _ => {
+            table.forbid(
+                "tolerance",
+                "a tolerance belongs to scheme = \"dormand-prince\"",
+            );
+            Some(f64::NAN)
+        }
+    };
+    let two = matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts | Kind::Respa);
+    let fine = if two {
+        fine_step(table, names).map(Some)
+    } else {
+        for key in ["ratio", "fine", "adaptive"] {
+            table.forbid(
+                key,
+                "two time steps need scheme = \"rk3-mts\", \"rk4-mts\" or \"respa\"",
+            );
+        }
+        Some(None)
+    };
+    let interface = if matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts) {
+        interface(table).map(Some)
+    } else {
+        for key in ["predictor", "interpolant"] {
+            table.forbid(key, "it belongs to scheme = \"rk3-mts\" or \"rk4-mts\"");
+        }
+        Some(None)
+    };
+    let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
+    Some(match (kind, fine, interface) {
+        (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
+            alpha,
+            fine,
+            interface,
+        },
+        (Kind::Rk4Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep4 { fine, interface },
+        (Kind::Respa, Some(fine), _) => Scheme::Respa { fine },
+        (Kind::Rk3, ..) => Scheme::RungeKutta3 { alpha },
+        (Kind::Rk4, ..) => Scheme::RungeKutta4,
+        (Kind::DormandPrince, ..) => Scheme::DormandPrince { tolerance },
+        _ => Scheme::VelocityVerlet,
+    })
+}
+
+fn alpha(table: &Table<'_>) -> Option<f64> {
+    /// Heun's method.
+    const HEUN: f64 = 0.75;
+    table.or("alpha", HEUN, |item| {
+        item.within(
+            Quantity::Number,
+            "any number but 0 (0.75 is Heun's method)",
+            |alpha| alpha != 0.0,
+        )
+    })
+}
+
+fn tolerance(table: &Table<'_>) -> Option<f64> {
+    const TOLERANCE: f64 = 1e-6;
+    table.or("tolerance", TOLERANCE, |item| {
+        item.within(
+            Quantity::Number,
+            "a number above 0 and below 1",
+            |tolerance| tolerance > 0.0 && tolerance < 1.0,
+        )
+    })
+}
+
+fn fine_step(table: &Table<'_>, names: &SetNames) -> Option<FineStep> {
+    let ratio = table.required("ratio").and_then(|item| small_count(&item));
+    let region = table
+        .exactly_one(FINE_REGIONS)
+        .and_then(|(key, item)| match key {
+            "fine" => names.references(&item).map(FineRegion::Sets),
+            _ => follow(item.table()?).map(FineRegion::Adaptive),
+        });
+    Some(FineStep {
+        ratio: ratio?,
+        region: region?,
+    })
+}
+
+/// A whole number from 1 to a thousand.
+fn small_count(item: &Item<'_>) -> Option<u32> {
+    const MOST: u64 = 1000;
+    let count = item.count()?;
+    if count <= MOST {
+        Some(count as u32)
+    } else {
+        item.out_of_range("a whole number from 1 to 1000");
+        None
+    }
+}
+
+fn follow(table: Table<'_>) -> Option<Follow> {
+    let default = Follow::default();
+    let every = table.or("every", default.every, |item| small_count(&item));
+    let threshold = table.or("threshold", default.threshold, |item| {
+        item.within(
+            Quantity::Number,
+            "a part of the critical stretch, above 0 and below 1",
+            |part| part > 0.0 && part < 1.0,
+        )
+    });
+    let layers = table.or("layers", default.layers, |item| small_count(&item));
+    let hold = table.or("hold", default.hold, |item| {
+        let looks = item.within(Quantity::Number, "a whole number from 0 to 200", |looks| {
+            (0.0..=200.0).contains(&looks) && looks.fract() == 0.0
+        })?;
+        Some(looks as u32)
+    });
+    table.finish();
+    Some(Follow {
+        every: every?,
+        threshold: threshold?,
+        layers: layers?,
+        hold: hold?,
+    })
+}
+
+fn interface(table: &Table<'_>) -> Option<Interface> {
+    let predictor = table.choice_or_first(
+        "predictor",
+        "predictor",
+        &[Predictor::Structured, Predictor::BackwardDifference].map(|kind| (kind.name(), kind)),
+    );
+    let interpolant = table.choice_or_first(
+        "interpolant",
+        "interpolant",
+        &[Interpolant::Hermite, Interpolant::Stages].map(|kind| (kind.name(), kind)),
+    );
+    Some(Interface {
+        predictor: predictor?,
+        interpolant: interpolant?,
+    })
+}

@@ -1,0 +1,165 @@
+//! [`ZonedForce`] for lattice bodies.
+
+use super::grid_block::{ChunkBlock, scatter};
+use super::grid_force::GridForce;
+use super::grid_kernels::{Grid, force_chunks};
+use super::grid_law::GridLaw;
+use super::grid_layout::Chunk;
+use super::lanes::{InstructionSet, Lanes, for_each_instruction_set};
+use super::{Accepted, ForceOperator, On, ZonedForce};
+use crate::family::LANES;
+
+/// Which points exert a force, one byte per chunk.
+pub(super) struct Partners(Vec<u8>);
+
+impl<L: GridLaw, const D: usize> GridForce<L, D> {
+    fn partners(&self, marks: &[bool]) -> Partners {
+        let bits = |chunk: &Chunk| {
+            chunk
+                .points()
+                .fold(0, |bits, (lane, i)| bits | u8::from(marks[i]) << lane)
+        };
+        Partners(self.layout.chunks().iter().map(bits).collect())
+    }
+
+    /// The bonds of a block's wanted chunks that are left and lead to partners; none of the other chunks'.
+    pub(super) fn bonds_to(
+        &self,
+        partners: &Partners,
+        block: &ChunkBlock<'_>,
+        intact: &[u8],
+    ) -> Vec<u8> {
+        let bits = |chunk: &Chunk| {
+            let (number, _) = self.layout.chunk_at(chunk.place as usize * LANES);
+            partners.0[number]
+        };
+        let mut left = vec![0; intact.len()];
+        let rows = left
+            .chunks_mut(self.stencil.len())
+            .zip(intact.chunks(self.stencil.len()));
+        for (chunk, (left, intact)) in block.chunks.iter().zip(rows) {
+            if block.wanted.lanes(chunk) == 0 {
+                continue;
+            }
+            for (k, &cell) in self.stencil.cells().iter().enumerate() {
+                if intact[k] != 0 {
+                    left[k] = intact[k] & self.layout.neighbour_bits(chunk, cell, bits);
+                }
+            }
+        }
+        left
+    }
+}
+
+impl<L: GridLaw, const D: usize> ZonedForce for GridForce<L, D> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let place = self.layout.place_of(i);
+        let (number, lane) = self.layout.chunk_at(place);
+        let chunk = &self.layout.chunks()[number];
+        let m = self.stencil.len();
+        for (k, &cell) in self.stencil.cells().iter().enumerate() {
+            let mut family = self.layout.neighbours(chunk, cell);
+            let group = (number * m + k) as u64;
+            if let Ok(found) = self
+                .precut
+                .binary_search_by_key(&group, |&(group, _)| group)
+            {
+                family &= !self.precut[found].1;
+            }
+            if family >> lane & 1 == 1 {
+                let there = place.wrapping_add_signed(self.stencil.offsets()[k].shift);
+                visit(self.layout.point_at(there));
+            }
+        }
+    }
+
+    /// Takes a work array of one byte per bond group of the blocks concerned.
+    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+        let partners = self.partners(partners);
+        self.sweep::<D>(u, &on, out, |grid, block, intact, out| {
+            let left = self.bonds_to(&partners, block, intact);
+            force_chunks::<L, D>(self.instruction_set, grid, block, &left, out);
+        });
+    }
+
+    fn accept_and_force_from(
+        &mut self,
+        accepted: Accepted<'_>,
+        on: On<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
+        if self.can_break() {
+            let partners = self.partners(partners);
+            let step = Some((accepted.mean_velocity, accepted.dt));
+            self.decide::<true>(accepted.u, step, &on, Some(&partners), out);
+        } else {
+            self.add_force_from(accepted.t, accepted.u, on, partners, out);
+        }
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if !self.can_break() {
+            return;
+        }
+        let threshold = L::threshold(fraction * self.critical_stretch);
+        let mut found = vec![0.0; self.points()];
+        let breakable = |chunk: &Chunk, offset: usize| self.breakable(chunk, offset);
+        self.sweep::<1>(u, &On::All, &mut found, |grid, block, intact, out| {
+            endangered_chunks::<L, D>(
+                self.instruction_set,
+                grid,
+                threshold,
+                &breakable,
+                block,
+                intact,
+                out,
+            );
+        });
+        for (mark, found) in marks.iter_mut().zip(found) {
+            *mark |= found > 0.0;
+        }
+    }
+}
+
+#[inline(always)]
+fn endangered_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
+    grid: &Grid<'_, D>,
+    threshold: f64,
+    breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
+    block: &ChunkBlock<'_>,
+    intact: &[u8],
+    out: &mut [&mut [f64]; 1],
+) {
+    let m = grid.offsets.len();
+    let threshold = T::splat(threshold);
+    for (number, chunk) in block.chunks.iter().enumerate() {
+        let place = grid.place(chunk);
+        let here = grid.here::<T>(place);
+        let mut endangered = 0;
+        let masks = &intact[number * m..(number + 1) * m];
+        for (k, (offset, &mask)) in grid.offsets.iter().zip(masks).enumerate() {
+            let eta = grid.eta(place, offset.shift, &here);
+            let over = L::strain(offset, eta).greater(threshold) & mask;
+            if over & !endangered != 0 {
+                endangered |= over & breakable(chunk, k);
+            }
+        }
+        if endangered != 0 {
+            let ones = std::array::from_fn(|lane| f64::from(endangered >> lane & 1));
+            scatter(ones, chunk, chunk.lanes, block.first_point, out[0]);
+        }
+    }
+}
+
+for_each_instruction_set! {
+    /// Adds one to the points with a bond that may break and is strained beyond the threshold.
+    fn endangered_chunks [L: GridLaw, const D: usize] <L, D> (
+        grid: &Grid<'_, D>,
+        threshold: f64,
+        breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
+        block: &ChunkBlock<'_>,
+        intact: &[u8],
+        out: &mut [&mut [f64]; 1],
+    ) = endangered_chunks_body on lanes
+}
