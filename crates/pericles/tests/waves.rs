@@ -94,6 +94,7 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         constants: &constants,
         cracks: &[],
         no_fail: &[],
+        stiffness: &[],
         damage: DamageMeasure::default(),
     };
     let grid = body.operator(BondForm::Grid).unwrap().operator;
