@@ -176,7 +176,7 @@ pub(crate) struct ReproduceArgs {
     /// Add the rows that take long
     #[arg(long, conflicts_with = "list")]
     pub(crate) full: bool,
-    /// Folder for the figures [default: ./reproduce-<study>, then -2, -3 …]
+    /// Folder for the figures [default: ./reproduce-STUDY, then -2, -3 …]
     #[arg(long, value_name = "DIR", conflicts_with = "list")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
