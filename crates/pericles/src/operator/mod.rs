@@ -13,6 +13,7 @@
 mod assemble;
 mod bond_force;
 mod bond_kernels;
+pub mod function;
 mod grid_block;
 mod grid_breaking;
 mod grid_build;
@@ -111,6 +112,8 @@ pub struct Accepted<'a> {
 }
 
 /// The internal force density of a body.
+///
+/// Operators whose bonds never break leave out what concerns breaking.
 pub trait ForceOperator: Saved + Send + Sync {
     /// Number of points.
     fn points(&self) -> usize;
@@ -138,22 +141,32 @@ pub trait ForceOperator: Saved + Send + Sync {
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]);
 
     /// The same decision alone, for schemes that do not end on an evaluation: the bond acted until now and dissipates its whole energy.
-    fn advance_history(&mut self, t: f64, u: &[f64], on: On<'_>);
+    fn advance_history(&mut self, t: f64, u: &[f64], on: On<'_>) {
+        let _ = (t, u, on);
+    }
 
     /// The derivative of the force density at `u` in the given direction, for Newton–Krylov methods and frequency estimates.
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]);
 
     /// Energy dissipated by breaking so far, J.
-    fn dissipated(&self) -> f64;
+    fn dissipated(&self) -> f64 {
+        0.0
+    }
 
     /// Bonds broken so far, each counted once.
-    fn broken_bonds(&self) -> u64;
+    fn broken_bonds(&self) -> u64 {
+        0
+    }
 
     /// Whether anything in the body can break.
-    fn can_break(&self) -> bool;
+    fn can_break(&self) -> bool {
+        false
+    }
 
     /// Damage of each point, 0 … 1.
-    fn damage_into(&self, out: &mut [f64]);
+    fn damage_into(&self, out: &mut [f64]) {
+        out.fill(0.0);
+    }
 
     /// Family entries that the loops run over: each bond counts twice.
     fn directed_bonds(&self) -> u64;
@@ -182,4 +195,9 @@ pub trait ForceOperator: Saved + Send + Sync {
 pub trait LinearOperator: Send + Sync {
     /// `out` = force density at `u`.
     fn apply_into(&self, u: &[f64], out: &mut [f64]);
+
+    /// The operator as one whose eigenvectors are known, if it is one.
+    fn as_diagonal(&self) -> Option<&dyn function::Diagonal> {
+        None
+    }
 }

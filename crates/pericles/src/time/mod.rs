@@ -8,6 +8,7 @@ mod refinement;
 mod respa;
 mod runge_kutta;
 mod tableau;
+mod trigonometric;
 mod verlet;
 mod zone;
 mod zones;
@@ -20,6 +21,7 @@ pub use refinement::{Fine, Follow, RefinementReport};
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
+pub use trigonometric::{FunctionMethod, LoadRule, Trigonometric, TrigonometricOptions};
 pub use verlet::VelocityVerlet;
 
 use crate::archive::{Archive, Saved, Values};
