@@ -14,6 +14,7 @@
 //! * [`long_wave_speeds`], [`polar_speeds`] – anisotropy.
 //! * [`tuning`] – coefficients per class of bonds that reduce dispersion.
 //! * [`spectrum`] – frequencies measured in a time-domain run.
+//! * [`exact`] – solutions in one dimension, to measure errors against.
 //!
 //! SI units; wave vectors in rad/m with missing components zero. An evaluation of M costs one sine for every pair ±ξ of bonds.
 //!
@@ -31,6 +32,7 @@
 
 mod branches;
 mod contour;
+pub mod exact;
 mod lattice;
 mod modes;
 pub mod spectrum;

@@ -38,7 +38,9 @@ pub use bond_force::{BondForce, Breaking, DamageMeasure};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
-pub use linear::{ConvolutionForce, CostComparison, Ends, Route, Toeplitz};
+pub use linear::{
+    ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralForce, Symbol, Toeplitz,
+};
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;

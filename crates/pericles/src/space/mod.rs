@@ -8,10 +8,12 @@
 
 mod cloud;
 mod grid;
+mod quadrature;
 mod region;
 
 pub use cloud::{Lattice, PointCloud, PointSet};
 pub use grid::{Grid, Shape};
+pub use quadrature::gauss_bar;
 pub use region::{Face, Region};
 
 /// A point or vector in space; components beyond the body's dimension are zero.

@@ -2,6 +2,7 @@
 
 mod embedded;
 mod frequency;
+mod implicit;
 mod interface;
 mod multi_time_step;
 mod refinement;
@@ -15,6 +16,7 @@ mod zones;
 
 pub use embedded::AdaptiveRungeKutta;
 pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
+pub use implicit::{Implicit, ImplicitRule};
 pub use interface::{Interpolant, Predictor};
 pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
 pub use refinement::{Fine, Follow, RefinementReport};

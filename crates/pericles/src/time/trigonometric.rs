@@ -6,6 +6,7 @@ use super::{Integrator, State};
 use crate::accounts::Completed;
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
+use crate::operator::On;
 use crate::operator::function::{
     Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction,
 };
@@ -176,7 +177,7 @@ impl Trigonometric {
         subtract(change, push);
         if !system.motions().is_empty() {
             push.copy_from_slice(u);
-            system.place_on(t[1], &crate::operator::On::All, push);
+            system.place_on(t[1], &On::All, push);
             subtract(push, u);
             system.vibration_into(&self.reference, push, &mut self.pull);
             system.hold(change);
@@ -191,12 +192,26 @@ impl Trigonometric {
             Term::new(WaveFunction::Sine, tau, u),
             Term::new(WaveFunction::Cosine, tau, v),
         ];
-        apply(&mut self.engine, self.options, system, &self.reference, &self.push, by_velocity)?;
+        apply(
+            &mut self.engine,
+            self.options,
+            system,
+            &self.reference,
+            &self.push,
+            by_velocity,
+        )?;
         let by_force = [
             Term::new(WaveFunction::Versine, tau, u),
             Term::new(WaveFunction::Sine, tau, v),
         ];
-        apply(&mut self.engine, self.options, system, &self.reference, &self.pull, by_force)
+        apply(
+            &mut self.engine,
+            self.options,
+            system,
+            &self.reference,
+            &self.pull,
+            by_force,
+        )
     }
 
     fn loads(&mut self, system: &System, t: f64, tau: f64, u: &[f64]) -> Result<()> {
@@ -216,7 +231,14 @@ impl Trigonometric {
                     Term::times(weight * tau, WaveFunction::Sine, left, u),
                     Term::times(weight * tau, WaveFunction::Cosine, left, v),
                 ];
-                apply(&mut self.engine, self.options, system, &self.reference, &self.change, terms)?;
+                apply(
+                    &mut self.engine,
+                    self.options,
+                    system,
+                    &self.reference,
+                    &self.change,
+                    terms,
+                )?;
             }
         }
         Ok(())
@@ -224,14 +246,17 @@ impl Trigonometric {
 }
 
 fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> Result<Engine> {
-    let diagonal = system.operator().as_linear().and_then(|linear| linear.as_diagonal());
+    let diagonal = system
+        .operator()
+        .as_linear()
+        .and_then(|linear| linear.as_diagonal());
     let uniform = match system.density() {
         PointScalar::Uniform(density) if diagonal.is_some() && system.motions().is_empty() => {
             Some(*density)
         }
         _ => None,
     };
-    let mut product = |x: &[f64], out: &mut [f64]| system.vibration_into(reference, x, out);
+    let product = |x: &[f64], out: &mut [f64]| system.vibration_into(reference, x, out);
     Ok(match (options.functions, uniform) {
         (FunctionMethod::Fastest | FunctionMethod::Fourier, Some(density)) => {
             Engine::Fourier(density)
@@ -243,7 +268,9 @@ fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> 
             });
         }
         (FunctionMethod::Fastest | FunctionMethod::Chebyshev, _) => {
-            let bound = system.operator().frequency_bound(&|i| system.density().at(i));
+            let bound = system
+                .operator()
+                .frequency_bound(&|i| system.density().at(i));
             if !(bound > 0.0 && bound.is_finite()) {
                 return Err(PericlesError::NoStiffness);
             }
@@ -345,7 +372,7 @@ impl Integrator for Trigonometric {
         system.constrain_velocity(t_next, v_next);
         if !self.linear {
             let mut u_next = std::mem::take(&mut self.next[0]);
-            system.free_acceleration(t_next, &u_next, &crate::operator::On::All, &mut self.pull);
+            system.free_acceleration(t_next, &u_next, &On::All, &mut self.pull);
             system.hold(&mut self.pull);
             self.split(system, t_next, &u_next);
             std::mem::swap(&mut self.next[0], &mut u_next);

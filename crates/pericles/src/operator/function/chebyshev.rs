@@ -181,7 +181,10 @@ mod tests {
                         WaveFunction::Versine => 0.5 * tau * tau,
                     };
                     let error = (out[0] - exact).abs() / largest;
-                    assert!(error < 1e-15 * (10.0 + a), "{function:?} {a} {part}: {error:e}");
+                    assert!(
+                        error < 1e-15 * (10.0 + a),
+                        "{function:?} {a} {part}: {error:e}"
+                    );
                 }
             }
         }

@@ -60,7 +60,9 @@ impl MatrixFunction for Lanczos {
             for _ in 0..2 {
                 for vector in &self.basis {
                     let part = self.inner(&next, vector);
-                    next.iter_mut().zip(vector).for_each(|(x, v)| *x -= part * v);
+                    next.iter_mut()
+                        .zip(vector)
+                        .for_each(|(x, v)| *x -= part * v);
                 }
             }
             let size = self.inner(&next, &next).sqrt();
@@ -74,9 +76,11 @@ impl MatrixFunction for Lanczos {
             }
             if diagonal.len() >= MOST {
                 return Err(PericlesError::NotConverged {
-                    method: "Lanczos' method for a function of the stiffness",
-                    residual: size,
+                    solver: "Lanczos' method for a function of the stiffness",
                     iterations: MOST,
+                    residual: size,
+                    tolerance: ENOUGH * norm,
+                    cause: "the step is too long for it; functions = \"chebyshev\" has no limit",
                 });
             }
             off.push(size);
@@ -86,7 +90,10 @@ impl MatrixFunction for Lanczos {
         for (term, weights) in terms.iter_mut().zip(&weights) {
             for (vector, weight) in self.basis.iter().zip(weights) {
                 let factor = norm * weight;
-                term.out.iter_mut().zip(vector).for_each(|(out, v)| *out += factor * v);
+                term.out
+                    .iter_mut()
+                    .zip(vector)
+                    .for_each(|(out, v)| *out += factor * v);
             }
         }
         Ok(())
@@ -108,9 +115,16 @@ fn coefficients(diagonal: &[f64], off: &[f64], terms: &[Term<'_>]) -> Vec<Vec<f6
     terms
         .iter()
         .map(|term| {
-            let value: Vec<f64> = eigenvalues.iter().map(|square| term.value(*square)).collect();
+            let value: Vec<f64> = eigenvalues
+                .iter()
+                .map(|square| term.value(*square))
+                .collect();
             (0..m)
-                .map(|i| (0..m).map(|k| eigenvectors[(i, k)] * value[k] * eigenvectors[(0, k)]).sum())
+                .map(|i| {
+                    (0..m)
+                        .map(|k| eigenvectors[(i, k)] * value[k] * eigenvectors[(0, k)])
+                        .sum()
+                })
                 .collect()
         })
         .collect()
