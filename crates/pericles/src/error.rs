@@ -254,6 +254,9 @@ pub enum PericlesError {
         /// The step, s.
         step: f64,
     },
+    /// A surface that cannot be used.
+    #[error(transparent)]
+    Surface(#[from] crate::space::surface::SurfaceError),
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {
