@@ -257,6 +257,22 @@ pub enum PericlesError {
     /// A surface that cannot be used.
     #[error(transparent)]
     Surface(#[from] crate::space::surface::SurfaceError),
+    /// An iterative solver that did not reach its tolerance.
+    #[error(
+        "{solver} stopped after {iterations} iterations with a residual of {residual:e}, {tolerance:e} was asked for: {cause}; a smaller time step helps"
+    )]
+    NotConverged {
+        /// The solver.
+        solver: &'static str,
+        /// Its iterations.
+        iterations: usize,
+        /// Norm of the last residual.
+        residual: f64,
+        /// Norm asked for.
+        tolerance: f64,
+        /// What stands in the way.
+        cause: &'static str,
+    },
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {
