@@ -14,6 +14,20 @@ pub struct Body {
     pub grid: Grid,
     /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
     pub state: StressState,
+    /// Whether opposite faces are one.
+    pub periodic: bool,
+    /// Where the points of a cell are.
+    pub quadrature: Quadrature,
+}
+
+/// Where the points of a cell are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Quadrature {
+    /// One in its middle.
+    #[default]
+    Midpoint,
+    /// The two Gauss nodes of a bar's cell.
+    Gauss,
 }
 
 /// What other tables need of a body, as far as it could be read.
@@ -81,8 +95,9 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .into_iter()
         .map(|hole| region::read(hole, read.frame))
         .collect();
+    let rules = rules(&table, kind, holes.is_empty());
     table.finish();
-    read.body = assemble(&read, outline, section, holes);
+    read.body = assemble(&read, outline, section, holes, rules);
     read
 }
 
@@ -91,7 +106,9 @@ fn assemble(
     outline: Option<Outline>,
     section: Option<f64>,
     holes: Vec<Option<Region>>,
+    rules: Option<(bool, Quadrature)>,
 ) -> Option<Body> {
+    let (periodic, quadrature) = rules?;
     let outline = outline?;
     let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
     holes.extend(outline.bore);
@@ -103,7 +120,32 @@ fn assemble(
             holes,
         },
         state: read.state?,
+        periodic,
+        quadrature,
     })
+}
+
+/// Periodicity and the place of points in their cells.
+fn rules(table: &Table<'_>, kind: Kind, whole: bool) -> Option<(bool, Quadrature)> {
+    const BOX: &str = "only a bar, plate or block without holes has opposite faces that can be one";
+    const BAR: &str = "only the cells of a bar without holes, and with two ends, have Gauss nodes";
+    let periodic = if matches!(kind, Kind::Bar | Kind::Plate | Kind::Block) && whole {
+        table.or("periodic", false, |item| item.boolean())
+    } else {
+        table.forbid("periodic", BOX);
+        Some(false)
+    };
+    let quadrature = if kind == Kind::Bar && whole && periodic != Some(true) {
+        let rules = [
+            ("midpoint", Quadrature::Midpoint),
+            ("gauss", Quadrature::Gauss),
+        ];
+        table.choice_or_first("quadrature", "quadrature", &rules)
+    } else {
+        table.forbid("quadrature", BAR);
+        Some(Quadrature::Midpoint)
+    };
+    Some((periodic?, quadrature?))
 }
 
 /// A shape and, for tubes and rings, the region left out in its middle.

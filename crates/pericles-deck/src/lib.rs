@@ -54,6 +54,8 @@
 //! plane = "strain"                       # 2D only, and needed there: stress | strain
 //! thickness = "1 mm"                     # 2D only; default 1 m
 //! # area = "1 mm2"                       # 1D only; default 1 m²
+//! # periodic = true                       # bar, plate, block without holes: opposite faces are one; default false
+//! # quadrature = "midpoint"               # default; or gauss: a bar with two Gauss nodes in every cell of `spacing`
 //! [[body.hole]]                          # a region without material; any number
 //! ball = { centre = ["20 mm", "20 mm"], radius = "5 mm" }
 //!
@@ -63,7 +65,7 @@
 //! density = "2440 kg/m3"                 # [rho]
 //! youngs_modulus = "72 GPa"              # [E], or bulk_modulus [K], or shear_modulus [G]: exactly one
 //! poisson_ratio = 0.25                   # [nu] optional; checked against the only one that bonds can have
-//! horizon = "0.75 mm"                    # or horizon_ratio [m] = 3, in spacings: exactly one
+//! horizon = "0.75 mm"                    # or horizon_ratio [m] = 3, in spacings: exactly one; "infinite" for a Gaussian: seven of its lengths
 //! volume_correction = "extended"         # default; or linear, none
 //! modulus = "continuum"                  # default; or lattice: bond constant from the grid's own sums; or unmodified: that of the constant function
 //! influence = { function = "constant", acts_on = "stretch" }   # the defaults; acts_on = stretch | displacement
@@ -78,7 +80,8 @@
 //! fracture_energy = "135 J/m2"           # [Gc, G0], or critical_stretch [s0]; neither: bonds never break
 //! no_fail = ["top", "left"]              # sets whose bonds never break; default none
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
-//! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only
+//! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only; linear unbreakable bodies also
+//!                                         # convolution (grids of any shape and gauss bars; periodic ones, too) and spectral (periodic: the continuum's own forces)
 //! [[material.inclusion]]                 # a part of other stiffness; any number, later ones before earlier ones
 //! set = "left"
 //! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's
@@ -116,7 +119,10 @@
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
 //! safety = 0.95                          # default; only with "auto"
-//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa
+//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, implicit-midpoint, trapezoidal, trigonometric
+//! # implicit-midpoint, trapezoidal, trigonometric: stable for any dt, which must be given
+//! # trigonometric: functions = "fastest" (default) | "chebyshev" | "fourier" | "lanczos" | "eigenvectors"; loads = "gauss" (default, order 4) | "midpoint";
+//! #   regularisation = 0 (default; 1/s², never needed)
 //! # rk3, rk3-mts: alpha = 0.75
 //! # dormand-prince: tolerance = 1e-6, of its own sub-steps within dt, which must be given
 //! # rk3-mts, rk4-mts, respa: two time steps, `dt` and `dt`/`ratio`, the smaller one for
@@ -176,7 +182,7 @@ mod time;
 mod units;
 mod vocabulary;
 
-pub use body::Body;
+pub use body::{Body, Quadrature};
 pub use build::{Model, Sets};
 pub use caution::Caution;
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace};

@@ -1,6 +1,8 @@
 //! The scheme of `[time]` and its parameters.
 
-use pericles::time::{Follow, Interpolant, Predictor};
+use pericles::time::{
+    Follow, FunctionMethod, ImplicitRule, Interpolant, LoadRule, Predictor, TrigonometricOptions,
+};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -41,6 +43,10 @@ pub enum Scheme {
         /// How the two talk.
         interface: Interface,
     },
+    /// The implicit midpoint or the trapezoidal rule.
+    Implicit(ImplicitRule),
+    /// The exact flow of the linear part.
+    Trigonometric(TrigonometricOptions),
     /// r-RESPA.
     Respa {
         /// Where and how fine.
@@ -84,6 +90,8 @@ enum Kind {
     Rk3Mts,
     Rk4Mts,
     Respa,
+    Implicit(ImplicitRule),
+    Trigonometric,
 }
 
 pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
@@ -98,6 +106,15 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             ("rk3-mts", Kind::Rk3Mts),
             ("rk4-mts", Kind::Rk4Mts),
             ("respa", Kind::Respa),
+            (
+                ImplicitRule::Midpoint.name(),
+                Kind::Implicit(ImplicitRule::Midpoint),
+            ),
+            (
+                ImplicitRule::Trapezoidal.name(),
+                Kind::Implicit(ImplicitRule::Trapezoidal),
+            ),
+            ("trigonometric", Kind::Trigonometric),
         ],
     );
     let Some(kind) = kind else {
@@ -110,6 +127,9 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             "adaptive",
             "predictor",
             "interpolant",
+            "functions",
+            "loads",
+            "regularisation",
         ] {
             table.optional(key);
         }
@@ -152,8 +172,20 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         }
         Some(None)
     };
+    let exact = if kind == Kind::Trigonometric {
+        trigonometric(table).map(Some)
+    } else {
+        for key in ["functions", "loads", "regularisation"] {
+            table.forbid(key, "it belongs to scheme = \"trigonometric\"");
+        }
+        Some(None)
+    };
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
+    if let Some(options) = exact? {
+        return Some(Scheme::Trigonometric(options));
+    }
     Some(match (kind, fine, interface) {
+        (Kind::Implicit(rule), ..) => Scheme::Implicit(rule),
         (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
             alpha,
             fine,
@@ -188,6 +220,31 @@ fn tolerance(table: &Table<'_>) -> Option<f64> {
             "a number above 0 and below 1",
             |tolerance| tolerance > 0.0 && tolerance < 1.0,
         )
+    })
+}
+
+fn trigonometric(table: &Table<'_>) -> Option<TrigonometricOptions> {
+    let functions = table.choice_or_first(
+        "functions",
+        "way of computing functions",
+        &FunctionMethod::ALL.map(|method| (method.name(), method)),
+    );
+    let load_rule = table.choice_or_first(
+        "loads",
+        "rule for loads",
+        &[("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)],
+    );
+    let regularisation = table.or("regularisation", 0.0, |item| {
+        item.within(
+            Quantity::Number,
+            "zero (the default, and always right) or a positive number, in 1/s²",
+            |value| value >= 0.0,
+        )
+    });
+    Some(TrigonometricOptions {
+        functions: functions?,
+        load_rule: load_rule?,
+        regularisation: regularisation?,
     })
 }
 

@@ -48,7 +48,13 @@ fn every_entry_arrives() {
         holes: vec![ball, corner],
     };
     let state = StressState::PlaneStrain;
-    assert_eq!(deck.body, Body { grid, state });
+    let body = Body {
+        grid,
+        state,
+        periodic: false,
+        quadrature: Quadrature::Midpoint,
+    };
+    assert_eq!(deck.body, body);
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {

@@ -11,10 +11,11 @@ use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
-use pericles::space::{PointCloud, PointSet};
+use pericles::space::{PointCloud, PointSet, Shape, gauss_bar};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
+use crate::body::Quadrature;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -142,7 +143,15 @@ impl Deck {
     }
 
     fn points(&self) -> Result<PointCloud, DeckError> {
-        self.body.grid.points().map_err(|error| {
+        let grid = &self.body.grid;
+        let points = match (&grid.shape, self.body.quadrature) {
+            (Shape::Box { origin, size }, Quadrature::Gauss) => {
+                gauss_bar(origin[0], size[0], grid.spacing, grid.section)
+            }
+            _ if self.body.periodic => grid.points().and_then(PointCloud::with_periodic_faces),
+            _ => grid.points(),
+        };
+        points.map_err(|error| {
             let side = match &error {
                 PericlesError::NotWholeCells { length, .. } => self.side(*length),
                 PericlesError::TooManyPoints { .. } => "body.spacing".into(),
@@ -281,6 +290,9 @@ impl Deck {
     fn at_material(&self, error: PericlesError) -> DeckError {
         let path = match &error {
             PericlesError::BadInfluence { .. } => "material.influence",
+            PericlesError::BadConvolution { .. }
+            | PericlesError::FormNotUsable { .. }
+            | PericlesError::OneStencil => "material.bonds",
             PericlesError::HorizonTooSmall { .. } => self.horizon_key(),
             _ => "material",
         };

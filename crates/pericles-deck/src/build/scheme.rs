@@ -1,8 +1,8 @@
 //! The integrator of a model.
 
 use pericles::time::{
-    AdaptiveRungeKutta, Fine, Integrator, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
-    RungeKutta, Tableau, VelocityVerlet,
+    AdaptiveRungeKutta, Fine, Implicit, Integrator, MultiTimeStep, MultiTimeStepOptions, Predictor,
+    Respa, RungeKutta, Tableau, Trigonometric, VelocityVerlet,
 };
 use pericles::{PericlesError, System};
 
@@ -43,6 +43,12 @@ impl Deck {
             Scheme::MultiTimeStep4 { fine, interface } => {
                 self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
             }
+            Scheme::Implicit(rule) => {
+                Box::new(Implicit::new(*rule, system).map_err(|error| self.at_scheme(error))?)
+            }
+            Scheme::Trigonometric(options) => Box::new(
+                Trigonometric::new(*options, system).map_err(|error| self.at_scheme(error))?,
+            ),
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
                 Box::new(

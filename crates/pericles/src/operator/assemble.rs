@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{BondForce, Breaking, DamageMeasure, ForceOperator, GridForce, GridLaw};
+use super::{
+    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, ForceOperator,
+    GaussForce, GridForce, GridLaw, SpectralForce,
+};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
 use crate::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
@@ -18,6 +21,10 @@ pub enum BondForm {
     Grid,
     /// A list of every point's bonds ([`BondForce`]).
     List,
+    /// Transforms of a linear body's kernel ([`ConvolutionForce`], or [`GaussForce`] on Gauss nodes).
+    Convolution,
+    /// Plane waves of a linear periodic body ([`SpectralForce`]).
+    Spectral,
 }
 
 impl BondForm {
@@ -27,6 +34,8 @@ impl BondForm {
             Self::Fastest => "fastest",
             Self::Grid => "grid",
             Self::List => "list",
+            Self::Convolution => "convolution",
+            Self::Spectral => "spectral",
         }
     }
 }
@@ -66,6 +75,9 @@ const SPARSE: usize = 8;
 impl BondBody<'_> {
     /// The form that is fastest for this body.
     pub fn fastest_form(&self) -> BondForm {
+        if self.convolution_is_fastest() {
+            return BondForm::Convolution;
+        }
         match self.cloud.lattice() {
             Some(lattice) if self.stiffness.is_empty() => {
                 let [x, y, z] = lattice.shape;
@@ -80,10 +92,74 @@ impl BondBody<'_> {
         }
     }
 
+    /// Periodic bodies have no other form that follows all their bonds; otherwise it is a matter of cost.
+    fn convolution_is_fastest(&self) -> bool {
+        /// What a bond of the list costs over one of the grid, about.
+        const GRID_GAIN: f64 = 5.0;
+        let material = self.material;
+        if self.cloud.is_periodic() {
+            return true;
+        }
+        let possible = material.law == PairLaw::Linear
+            && !self.constants.critical_stretch.is_finite()
+            && self.cracks.is_empty()
+            && self.stiffness.is_empty();
+        if !possible {
+            return false;
+        }
+        if GaussForce::fits(self.cloud) {
+            return true;
+        }
+        let costs = CostComparison::new(self.cloud, material.horizon, material.volume_correction);
+        costs.is_ok_and(|costs| GRID_GAIN * costs.convolution < costs.bond_list)
+    }
+
+    fn transformed<const D: usize>(&self, form: BondForm) -> Result<Box<dyn ForceOperator>> {
+        let refuse = |reason| {
+            Err(PericlesError::FormNotUsable {
+                form: form.name(),
+                reason,
+            })
+        };
+        if !self.stiffness.is_empty() {
+            return refuse(
+                "parts of other stiffness are no convolution; use \"list\", or leave the inclusions out",
+            );
+        }
+        if !self.cracks.is_empty() {
+            return refuse(
+                "pre-cracks cut single bonds, which it cannot; use \"list\" or \"grid\"",
+            );
+        }
+        let (cloud, periodic) = (self.cloud.clone(), self.cloud.is_periodic());
+        Ok(match form {
+            BondForm::Spectral if !periodic => {
+                return refuse(
+                    "Fourier series need a body whose opposite faces are one: set body.periodic = true, or use \"convolution\"",
+                );
+            }
+            BondForm::Spectral => Box::new(SpectralForce::<D>::new(
+                cloud,
+                self.material,
+                self.constants,
+            )?),
+            _ if GaussForce::fits(&cloud) => {
+                Box::new(GaussForce::new(cloud, self.material, self.constants)?)
+            }
+            _ => Box::new(ConvolutionForce::<D>::new(
+                cloud,
+                self.material,
+                self.constants,
+                &[],
+                [periodic; D],
+            )?),
+        })
+    }
+
     /// The operator.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack, [`BondForm::Grid`] without a lattice.
+    /// A horizon that reaches no neighbour, an unusable crack, [`BondForm::Grid`] without a lattice; a form that does not fit.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         match (self.material.law, self.cloud.dimension()) {
             (PairLaw::Linear, 1) => self.operator_of::<LinearBond, 1>(form),
@@ -106,6 +182,15 @@ impl BondBody<'_> {
             chosen => chosen,
         };
         let (operator, cuts): (Box<dyn ForceOperator>, _) = match form {
+            BondForm::Convolution | BondForm::Spectral => {
+                (self.transformed::<D>(form)?, Vec::new())
+            }
+            BondForm::Grid | BondForm::List if self.cloud.is_periodic() => {
+                return Err(PericlesError::FormNotUsable {
+                    form: form.name(),
+                    reason: "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",
+                });
+            }
             BondForm::List => {
                 let (list, cuts) = self.list::<L, D>()?;
                 (Box::new(list), cuts)

@@ -44,6 +44,7 @@ pub struct PointCloud {
     section: f64,
     spacing: f64,
     lattice: Option<Lattice>,
+    periodic: bool,
 }
 
 impl PointCloud {
@@ -93,7 +94,27 @@ impl PointCloud {
             section,
             spacing,
             lattice: None,
+            periodic: false,
         })
+    }
+
+    /// The same points with opposite faces of their box as one: what leaves at one side comes in at the other.
+    ///
+    /// # Errors
+    /// Points that are no full box of cells.
+    pub fn with_periodic_faces(self) -> Result<Self> {
+        match &self.lattice {
+            Some(lattice) if lattice.shape.iter().product::<usize>() == self.len() => Ok(Self {
+                periodic: true,
+                ..self
+            }),
+            _ => Err(PericlesError::NotPeriodic),
+        }
+    }
+
+    /// Whether opposite faces are one.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic
     }
 
     /// A cloud on a lattice whose node (0, 0, 0) has its centre at `origin`.

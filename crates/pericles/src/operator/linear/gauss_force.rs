@@ -37,6 +37,11 @@ struct Work {
 }
 
 impl GaussForce {
+    /// Whether points are the two Gauss nodes of equal cells of a bar.
+    pub fn fits(cloud: &PointCloud) -> bool {
+        cell_of(cloud).is_some()
+    }
+
     /// The operator of a material on a bar.
     ///
     /// # Errors
@@ -164,7 +169,7 @@ fn cell_of(cloud: &PointCloud) -> Option<f64> {
     let cell = 2.0 * cloud.spacing();
     let between = cell / 3.0f64.sqrt();
     let n = cloud.len();
-    if cloud.dimension() != 1 || cloud.lattice().is_some() || n < 2 || n % 2 != 0 {
+    if cloud.dimension() != 1 || cloud.lattice().is_some() || n < 2 || !n.is_multiple_of(2) {
         return None;
     }
     let x = cloud.axis(0);
