@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use pericles::Simulation;
 use pericles::observe::{CrackTracker, Schedule};
-use pericles_deck::{Deck, Model, Precision};
+use pericles_deck::{Deck, ExactReference, Model, Precision};
 use pericles_io::OutputFolder;
 use pericles_io::observers::{
-    Cracks, FieldSeries, History, PictureOf, Pictures, Probes, Reactions,
+    Cracks, Errors, FieldSeries, History, PictureOf, Pictures, Probes, Reactions,
 };
 use serde::Serialize;
 
@@ -106,7 +106,7 @@ pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
 /// Sub-folders that cannot be made.
 pub(crate) fn simulation(
     deck: &Deck,
-    model: Model,
+    mut model: Model,
     folder: &OutputFolder,
 ) -> Result<Simulation, CliError> {
     let (cloud, output) = (model.cloud.clone(), &deck.output);
@@ -115,6 +115,7 @@ pub(crate) fn simulation(
     let reactions = (!model.system.motions().is_empty())
         .then(|| Reactions::new(folder.file("reactions.csv"), model.system.motions()));
     let (probes, cracks) = (model.probes.clone(), model.cracks.clone());
+    let exact = model.exact.take();
     let mut simulation = model.simulation();
 
     let history = History::new(folder.file("history.csv"), dimension);
@@ -125,6 +126,10 @@ pub(crate) fn simulation(
     if !probes.is_empty() {
         let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
         simulation.observe(output.history, Box::new(probes));
+    }
+    if let Some(ExactReference { solution, points }) = exact {
+        let errors = Errors::new(folder.file("errors.csv"), solution, points);
+        simulation.observe(output.history, Box::new(errors));
     }
     if can_break && !cracks.is_empty() {
         let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);

@@ -37,6 +37,18 @@ pub enum Caution {
         /// The step that is surely stable, s.
         limit: f64,
     },
+    /// A period that waves cross within the run.
+    #[error(
+        "the period of {period:e} m is short for this run: at its end the waves of the next period are about {estimate:.1e} of the pulse within {window:e} m of its middle"
+    )]
+    ShortPeriod {
+        /// The period, m.
+        period: f64,
+        /// Their size over the amplitude.
+        estimate: f64,
+        /// Where, m.
+        window: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -63,6 +75,9 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::ShortPeriod { .. } => {
+                "a longer body, a shorter run or a smaller exact.window brings it down"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -76,6 +91,7 @@ impl Subject for Caution {
             Self::CrackCutsNothing => "no effect",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::ShortPeriod { .. } => "short period",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }

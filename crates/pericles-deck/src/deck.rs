@@ -9,6 +9,7 @@ use crate::conditions::{self, Initial, Load, Prescribe, Probe};
 use crate::crack::{self, PreCrack};
 use crate::document;
 use crate::error::DeckError;
+use crate::exact::{self, Exact};
 use crate::material::{self, Material};
 use crate::output::{self, Checkpoint, Output};
 use crate::overrides;
@@ -38,6 +39,8 @@ pub struct Deck {
     pub loads: Vec<Load>,
     /// `[[probe]]`
     pub probes: Vec<Probe>,
+    /// `[exact]`
+    pub exact: Option<Exact>,
     /// `[time]`
     pub time: Time,
     /// `[output]`
@@ -117,6 +120,9 @@ impl Deck {
             conditions::load(table, frame.dimension, &names)
         });
         let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
+        let exact = root.maybe("exact", |item| {
+            exact::read(item.table()?, frame.dimension, material.as_ref())
+        });
         let time = root
             .required("time")
             .and_then(|item| time::read(item.table()?, &names));
@@ -137,6 +143,7 @@ impl Deck {
             prescribe: prescribe?,
             loads: loads?,
             probes: probes?,
+            exact: exact?,
             time: time?,
             output: output?,
             checkpoint: checkpoint?,

@@ -170,6 +170,12 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
+    /// An exact solution of another problem.
+    #[error("this exact solution does not belong to this deck: {reason}")]
+    NoExactSolution {
+        /// Why.
+        reason: &'static str,
+    },
     /// The library refuses the value.
     #[error(transparent)]
     Model(#[from] PericlesError),
@@ -215,6 +221,7 @@ impl Subject for Fault {
                 "a set needs at least one cell centre; make the region larger (a layer is at least half a spacing deep)".into()
             }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
+            Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::Model(_) => return None,
         })
     }
@@ -243,6 +250,7 @@ impl Subject for Fault {
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } => "no points here",
             Self::UnknownArea { .. } => "which area?",
+            Self::NoExactSolution { .. } => "of another problem",
             Self::Model(_) => "refused",
         }
     }

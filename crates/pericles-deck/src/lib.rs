@@ -115,6 +115,13 @@
 //! name = "middle"
 //! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
 //!
+//! [exact]                                # a bar whose solution is known: the distance from it goes to errors.csv, as often as the history; optional
+//! solution = "nonlocal-pulse"            # u = amplitude exp(−((x − centre)/width)²) at rest, on the line with a Gaussian micromodulus; or
+//! width = "1 m"                          #   local-pulse (the same on the local string), stretched-bar (strain, length: held at 0, free at length),
+//! amplitude = "1 m"                      #   bar-mode (amplitude, length)
+//! centre = 0                             # default
+//! window = "3 m"                         # default all: only points so near to the centre count
+//!
 //! [time]
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
@@ -165,6 +172,7 @@ mod crack;
 mod deck;
 mod document;
 mod error;
+mod exact;
 mod fault;
 mod finding;
 mod influence;
@@ -183,12 +191,13 @@ mod units;
 mod vocabulary;
 
 pub use body::{Body, Quadrature};
-pub use build::{Model, Sets};
+pub use build::{ExactReference, Model, Sets};
 pub use caution::Caution;
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace};
 pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
+pub use exact::{Exact, KnownSolution, Pulse};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};

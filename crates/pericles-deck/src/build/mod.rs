@@ -2,8 +2,11 @@
 
 mod area;
 mod conditions;
+mod exact;
 mod scheme;
 mod step;
+
+pub use exact::ExactReference;
 
 use std::sync::Arc;
 
@@ -55,6 +58,8 @@ pub struct Model {
     pub steps: u64,
     /// Where the motion is read.
     pub probes: Vec<PointProbe>,
+    /// A known solution to compare with.
+    pub exact: Option<ExactReference>,
     /// What is odd.
     pub warnings: Vec<Warning>,
 }
@@ -122,6 +127,7 @@ impl Deck {
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
+        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
         let steps = self.steps(&system, &state, &*integrator, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
         Ok(Model {
@@ -138,6 +144,7 @@ impl Deck {
             dt: steps.dt,
             steps: steps.count,
             probes,
+            exact,
             warnings,
         })
     }

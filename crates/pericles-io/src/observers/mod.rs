@@ -48,6 +48,7 @@
 //! ```
 
 mod cracks;
+mod errors;
 mod fields;
 mod history;
 mod pictures;
@@ -56,6 +57,7 @@ mod reactions;
 mod table;
 
 pub use cracks::Cracks;
+pub use errors::Errors;
 pub use fields::FieldSeries;
 pub use history::History;
 pub use pictures::{PictureOf, Pictures};
