@@ -14,6 +14,8 @@ pub struct Exact {
     pub solution: KnownSolution,
     /// Points that count: those within this distance of the pulse's middle or of the origin, m; all if none.
     pub window: Option<f64>,
+    /// Whether the body starts as the solution does.
+    pub start: bool,
 }
 
 /// Solutions of bars and lines; modulus, density and micromodulus are those of the material.
@@ -135,8 +137,10 @@ pub(crate) fn read(
         }
     };
     let window = table.maybe("window", |item| item.positive(Quantity::Length));
+    let start = table.or("start", false, |item| item.boolean());
     table.finish();
     Some(Exact {
+        start: start?,
         solution: solution?,
         window: window?,
     })

@@ -121,6 +121,7 @@
 //! amplitude = "1 m"                      #   bar-mode (amplitude, length)
 //! centre = 0                             # default
 //! window = "3 m"                         # default all: only points so near to the centre count
+//! start = true                           # default false: the body starts as the solution, whatever [[initial]] says of the displacement
 //!
 //! [time]
 //! end = "46 us"

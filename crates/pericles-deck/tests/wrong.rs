@@ -222,7 +222,9 @@ fn the_right_deck_is_right() {
 
 #[test]
 fn every_wrong_deck_is_explained() {
-    explained(RIGHT, WRONG, &|text| Deck::parse(text, "plate.toml", &[]).map(|_| ()));
+    explained(RIGHT, WRONG, &|text| {
+        Deck::parse(text, "plate.toml", &[]).map(|_| ())
+    });
 }
 
 #[test]

@@ -122,12 +122,17 @@ impl Deck {
         let density = PointScalar::Uniform(material.density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
-        let state = self.initial_state(&cloud, &sets)?;
+        let mut state = self.initial_state(&cloud, &sets)?;
+        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
+        if let (Some(exact), Some(true)) = (&exact, self.exact.map(|exact| exact.start)) {
+            exact
+                .solution
+                .displacement_into(0.0, cloud.axis(0), &mut state.u);
+        }
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
-        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
         let steps = self.steps(&system, &state, &*integrator, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
         Ok(Model {
