@@ -291,6 +291,9 @@ pub enum PericlesError {
         /// The largest step that converges in as many iterations, s.
         safe: f64,
     },
+    /// A surface that cannot be used.
+    #[error(transparent)]
+    Surface(#[from] crate::space::surface::SurfaceError),
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

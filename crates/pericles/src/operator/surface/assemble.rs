@@ -65,8 +65,7 @@ impl SurfaceBody<'_> {
             [] => 1.0,
             stiffness => 0.5 * (stiffness[i] + stiffness[j]),
         };
-        let factor =
-            |i: usize, j: usize, d: f64| mean(i, j) * self.material.weight(d) * areas[j];
+        let factor = |i: usize, j: usize, d: f64| mean(i, j) * self.material.weight(d) * areas[j];
         let bonds = SurfaceBonds::new(self.pairs, factor, self.self_cells(&mean));
         let limits = self
             .material

@@ -80,7 +80,8 @@ impl Breaking {
             }
             self.dissipated += step.areas[i] * weight * energy;
             self.cut(bonds, entry);
-            if let Some((back, _)) = bonds.row(j).find(|&(_, other)| other == i) {
+            let back = bonds.row(j).find(|&(_, other)| other == i);
+            if let Some((back, _)) = back {
                 self.cut(bonds, back);
             }
         }
@@ -109,7 +110,10 @@ impl Breaking {
         for &entry in entries {
             if entry as usize >= self.limits.len() {
                 return Err(PericlesError::BadArchive {
-                    reason: format!("it breaks bond {entry}, the model has {}", self.limits.len()),
+                    reason: format!(
+                        "it breaks bond {entry}, the model has {}",
+                        self.limits.len()
+                    ),
                 });
             }
             self.cut(bonds, entry as usize);

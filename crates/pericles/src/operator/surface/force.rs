@@ -169,9 +169,8 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
                 .map(|(entry, _)| self.bonds.weights()[entry].abs())
                 .sum()
         };
-        let largest = (0..self.points()).fold(0.0_f64, |largest, i| {
-            largest.max(2.0 * row(i) / density(i))
-        });
+        let largest =
+            (0..self.points()).fold(0.0_f64, |largest, i| largest.max(2.0 * row(i) / density(i)));
         (largest * self.law.stiffness_at_rest()).sqrt()
     }
 
@@ -260,9 +259,7 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
     }
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        self.law
-            .is_linear()
-            .then_some(self as &dyn LinearOperator)
+        self.law.is_linear().then_some(self as &dyn LinearOperator)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Forces of bonds on a surface: powers of the relative displacement.
 
-use crate::operator::lanes::{Lanes, Real, dot, vector};
+use crate::operator::lanes::{Lanes, dot, vector};
 
 /// r ↦ r^(p−2), of the square of r.
 pub trait Exponent: Copy + Send + Sync + 'static {
@@ -53,7 +53,11 @@ impl Exponent for AnyExponent {
         let mut numbers = square.to_array();
         let half = 0.5 * self.0 - 1.0;
         for number in &mut numbers {
-            *number = if *number > 0.0 { number.powf(half) } else { 0.0 };
+            *number = if *number > 0.0 {
+                number.powf(half)
+            } else {
+                0.0
+            };
         }
         T::load(&numbers, 0)
     }

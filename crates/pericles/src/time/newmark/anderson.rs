@@ -122,7 +122,9 @@ mod tests {
         let factors = [0.5, -3.0, 1.8];
         let n = 30;
         let g = |x: &[f64]| -> Vec<f64> {
-            (0..n).map(|i| factors[i % 3] * x[i] + (i as f64).cos()).collect()
+            (0..n)
+                .map(|i| factors[i % 3] * x[i] + (i as f64).cos())
+                .collect()
         };
         let mut x = vec![0.0; n];
         let mut anderson = Anderson::new(5, n);

@@ -38,7 +38,7 @@ pub struct DiscreteGradient {
 }
 
 /// Corrections of c in a step.
-const MOST: usize = 30;
+const MOST: usize = 60;
 /// Newton steps for each.
 const NEWTON: usize = 40;
 /// A residual that is rounding and nothing else, over the size of its terms.
@@ -108,7 +108,13 @@ impl DiscreteGradient {
             pull: (c != 0.0).then_some((2.0 * theta * c, &state.u[..])),
             work: &mut self.vectors,
         };
-        let solved = newton_krylov(&mut equation, &mut self.scaled, scale, &limits, &mut self.work)?;
+        let solved = newton_krylov(
+            &mut equation,
+            &mut self.scaled,
+            scale,
+            &limits,
+            &mut self.work,
+        )?;
         *newton += solved.iterations as u64;
         let n = system.points();
         for k in 0..self.scaled.len() {
@@ -138,10 +144,14 @@ impl DiscreteGradient {
         Ok((balanced, missing - c * shape))
     }
 
-    /// Finds c by secants on c − balanced(c).
+    /// Finds the c that balances the energy: by secants, kept between values that gain and lose it.
+    ///
+    /// The energy that a step gains falls as c grows: c is a drag. Below −1/(2θ) the equation is no longer positive definite.
     fn balance(&mut self, system: &System, state: &State, step: Step) -> Result<f64> {
         let allowed = self.tolerance * (step.kinetic + step.elastic);
-        let (mut c, mut newton) = (self.correction, 0);
+        let unit = 2.0 / (step.dt * step.dt);
+        let (mut c, mut newton) = (self.correction.max(-0.5 * unit), 0);
+        let (mut gains, mut loses) = (-0.95 * unit, f64::INFINITY);
         let mut before: Option<(f64, f64)> = None;
         let mut missing = f64::INFINITY;
         for _ in 0..MOST {
@@ -151,15 +161,25 @@ impl DiscreteGradient {
                 self.iterations.count(newton, missing.abs());
                 return Ok(c);
             }
-            let defect = balanced - c;
+            if missing > 0.0 {
+                gains = c;
+            } else {
+                loses = c;
+            }
             let next = match before {
-                Some((c_before, defect_before)) if defect != defect_before => {
-                    c - defect * (c - c_before) / (defect - defect_before)
+                Some((c_before, missing_before)) if missing != missing_before => {
+                    c - missing * (c - c_before) / (missing - missing_before)
                 }
                 _ => balanced,
             };
-            before = Some((c, defect));
-            c = next;
+            before = Some((c, missing));
+            c = if next > gains && next < loses && (next - c).abs() < 4.0 * unit {
+                next
+            } else if loses.is_finite() {
+                0.5 * (gains + loses)
+            } else {
+                gains + unit
+            };
         }
         Err(PericlesError::NotConverged {
             solver: "the balance of energy",

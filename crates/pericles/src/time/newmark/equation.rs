@@ -69,7 +69,12 @@ impl StepEquation<'_> {
 }
 
 /// The mass-weighted mean of component c.
-pub(super) fn centre(root_mass: &[f64], c: usize, n: usize, x: &(impl Fn(usize) -> f64 + Sync)) -> f64 {
+pub(super) fn centre(
+    root_mass: &[f64],
+    c: usize,
+    n: usize,
+    x: &(impl Fn(usize) -> f64 + Sync),
+) -> f64 {
     let mass = |i: usize| root_mass[c * n + i].powi(2);
     ordered_sum(n, |i| mass(i) * x(c * n + i)) / ordered_sum(n, mass)
 }

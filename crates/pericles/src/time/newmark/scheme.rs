@@ -226,10 +226,8 @@ impl Newmark {
             .plus(self.options.gamma * dt, a)
             .onto(&self.predicted[1], &self.zone, n, v);
         system.drive_on(t, &On::All, v);
-        self.iterations.count(
-            solved.iterations as u64,
-            solved.residual * velocity / least,
-        );
+        self.iterations
+            .count(solved.iterations as u64, solved.residual * velocity / least);
         Ok(())
     }
 
