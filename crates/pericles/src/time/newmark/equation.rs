@@ -7,7 +7,7 @@ use crate::parallel::{BLOCK, ordered_sum};
 use crate::solve::Nonlinear;
 use crate::system::System;
 
-/// u − known − θ f(u)/ρ + φ P (u − base) = 0, with P the projection along rigid translations that is orthogonal in the masses.
+/// u − known − θ f̄(u)/ρ + φ P (u − base) = 0, with f̄ = Σ weight · f(base + node · (u − base)), the mean force on the way from the base, and P the projection along rigid translations that is orthogonal in the masses.
 ///
 /// The unknowns are y = √m u, the residual is scaled the same way: the derivative is then 1 − θ M^(−1/2) T M^(−1/2) + φ P, symmetric as the
 /// solver wants it, and positive definite where the tangent T is negative semi-definite.
@@ -18,10 +18,14 @@ pub(super) struct StepEquation<'a> {
     pub(super) root_mass: &'a [f64],
     pub(super) known: &'a [f64],
     pub(super) theta: f64,
-    /// φ and the base from which it pulls.
-    pub(super) pull: Option<(f64, &'a [f64])>,
-    /// Displacement, direction and force of an evaluation.
-    pub(super) work: &'a mut [Vec<f64>; 3],
+    /// Where the step starts.
+    pub(super) base: &'a [f64],
+    /// Places between base and end, 0 to 1, with weights that sum to one.
+    pub(super) nodes: &'a [(f64, f64)],
+    /// φ.
+    pub(super) pull: f64,
+    /// Displacement, direction, force, and the displacement and tangent of a node.
+    pub(super) work: &'a mut [Vec<f64>; 5],
 }
 
 impl StepEquation<'_> {
@@ -30,7 +34,7 @@ impl StepEquation<'_> {
         let n = self.system.points();
         let force = &self.work[2];
         let known = |k: usize| if affine { self.known[k] } else { 0.0 };
-        let (phi, base) = self.pull.unwrap_or((0.0, &[]));
+        let (phi, base) = (self.pull, self.base);
         let from = |k: usize| if affine { x[k] - base[k] } else { x[k] };
         let mean: [f64; 3] = std::array::from_fn(|c| {
             if phi == 0.0 || c >= self.system.dimension() {
@@ -79,22 +83,66 @@ pub(super) fn centre(
     ordered_sum(n, |i| mass(i) * x(c * n + i)) / ordered_sum(n, mass)
 }
 
+impl StepEquation<'_> {
+    /// Puts the displacement of a scaled unknown into `work[0]`.
+    pub(super) fn displace(&mut self, y: &[f64]) {
+        self.unscale(y, 0);
+    }
+
+    /// f̄ at the displacement in `work[0]`, into `work[2]`.
+    pub(super) fn mean_force(&mut self) {
+        let [u, _, mean, at_node, force] = &mut *self.work;
+        mean.fill(0.0);
+        for &(node, weight) in self.nodes {
+            between(self.base, u, node, at_node);
+            force.fill(0.0);
+            self.system
+                .operator()
+                .add_force(self.t, at_node, On::All, force);
+            add(weight, force, mean);
+        }
+    }
+
+    /// Its derivative in the direction in `work[1]`, into `work[2]`.
+    fn mean_tangent(&mut self) {
+        let [u, direction, mean, at_node, tangent] = &mut *self.work;
+        mean.fill(0.0);
+        for &(node, weight) in self.nodes {
+            between(self.base, u, node, at_node);
+            self.system
+                .operator()
+                .tangent_into(self.t, at_node, direction, tangent);
+            add(weight * node, tangent, mean);
+        }
+    }
+}
+
+fn between(from: &[f64], to: &[f64], node: f64, out: &mut [f64]) {
+    if node == 1.0 {
+        return out.copy_from_slice(to);
+    }
+    for ((out, from), to) in out.iter_mut().zip(from).zip(to) {
+        *out = from + node * (to - from);
+    }
+}
+
+fn add(factor: f64, x: &[f64], out: &mut [f64]) {
+    for (out, x) in out.iter_mut().zip(x) {
+        *out += factor * x;
+    }
+}
+
 impl Nonlinear for StepEquation<'_> {
     fn residual_into(&mut self, y: &[f64], out: &mut [f64]) {
         self.unscale(y, 0);
-        let [u, _, force] = &mut *self.work;
-        force.fill(0.0);
-        self.system.operator().add_force(self.t, u, On::All, force);
+        self.mean_force();
         self.scale_into(&self.work[0], true, out);
     }
 
     fn derivative_into(&mut self, y: &[f64], direction: &[f64], out: &mut [f64]) {
         self.unscale(y, 0);
         self.unscale(direction, 1);
-        let [u, direction, force] = &mut *self.work;
-        self.system
-            .operator()
-            .tangent_into(self.t, u, direction, force);
+        self.mean_tangent();
         self.scale_into(&self.work[1], false, out);
     }
 }

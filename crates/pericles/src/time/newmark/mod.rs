@@ -13,7 +13,7 @@
 //! β = 1/4, γ = 1/2 is the trapezoidal rule: second order, no dissipation, stable for any step once the equation is solved. For γ = 1/2 and linear forces
 //! ½ v·Mv + ½ u·Ku + (β − 1/4) dt²/2 a·Ma is conserved (Hughes 1987, section 9.1.2).
 //!
-//! [`DiscreteGradient`] conserves energy for any elastic forces, by Gonzalez' (1996) correction of the midpoint rule.
+//! [`DiscreteGradient`] conserves energy for any elastic forces, for any step where the elastic energy is convex.
 
 mod anderson;
 mod discrete_gradient;

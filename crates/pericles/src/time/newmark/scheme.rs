@@ -34,7 +34,7 @@ enum Inner {
 struct NewtonKrylov {
     root_mass: Vec<f64>,
     work: Work,
-    vectors: [Vec<f64>; 3],
+    vectors: [Vec<f64>; 5],
     /// What the equation knows, and the scaled unknown.
     known: Vec<f64>,
     scaled: Vec<f64>,
@@ -210,7 +210,9 @@ impl Newmark {
             root_mass,
             known,
             theta,
-            pull: None,
+            base: &state.u,
+            nodes: &[(1.0, 1.0)],
+            pull: 0.0,
             work: vectors,
         };
         let solved = newton_krylov(&mut equation, scaled, scale, &limits, work)?;
