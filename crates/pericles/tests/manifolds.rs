@@ -604,7 +604,8 @@ fn bonds_break_once_and_dissipate_their_energy() {
 fn implicit_schemes_go_on_from_a_checkpoint() {
     let sphere = Sphere::standard();
     let material = material(3.0, 0.5);
-    let schemes: [&dyn Fn(&System) -> Box<dyn Integrator>; 2] = [
+    type Make<'a> = &'a dyn Fn(&System) -> Box<dyn Integrator>;
+    let schemes: [Make<'_>; 2] = [
         &|system| {
             Box::new(Newmark::new(newmark(InnerSolver::Anderson { depth: 3 }), system).unwrap())
         },
