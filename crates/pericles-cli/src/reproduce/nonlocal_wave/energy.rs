@@ -77,7 +77,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let mut rows = Vec::new();
     let mut drawn = Vec::new();
     for (name, method, h, expected) in [
-        ("MSV, h = 0.1", Method::Msv, 0.1, -1.666e-2),
+        ("MSV, h = 0.1", Method::Msv, 0.1, -1.666e-2_f64),
         ("MT with A + h^2.4, h = 0.1", MT, 0.1, 2.041e-2),
         ("MSV, h = 0.05", Method::Msv, 0.05, -8.36e-3),
         ("MT with A + h^2.4, h = 0.05", MT, 0.05, 6.82e-3),

@@ -54,7 +54,7 @@ mod cost;
 mod fourier;
 mod gauss_force;
 mod lattice_bonds;
-mod pool;
+pub(super) mod pool;
 mod spectral;
 mod tensor_kernel;
 mod tensor_spectra;
