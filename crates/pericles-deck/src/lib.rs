@@ -61,7 +61,7 @@
 //!
 //! [material]
 //! name = "soda-lime glass"               # for people; optional
-//! model = "bond-stretch"                 # default; or linear
+//! model = "bond-stretch"                 # default; or linear, green-strain (force by the Green strain of bonds), literal57 (bars: a softening law as printed by Coclite et al. 2020)
 //! density = "2440 kg/m3"                 # [rho]
 //! youngs_modulus = "72 GPa"              # [E], or bulk_modulus [K], or shear_modulus [G]: exactly one
 //! poisson_ratio = 0.25                   # [nu] optional; checked against the only one that bonds can have

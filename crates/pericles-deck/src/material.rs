@@ -49,6 +49,8 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         &[
             ("bond-stretch", PairLaw::BondStretch),
             ("linear", PairLaw::Linear),
+            ("green-strain", PairLaw::GreenStrain),
+            ("literal57", PairLaw::Literal57),
         ],
     );
     let density = table

@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use super::{
     BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, ForceOperator,
-    GaussForce, GridForce, GridLaw, SpectralForce,
+    GaussForce, GridForce, GridLaw, SpectralCubicForce, SpectralForce,
 };
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
-use crate::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
+use crate::material::{
+    BondConstants, BondMaterial, BondStretch, GreenBond, LinearBond, LiteralBond, PairForce,
+    PairLaw,
+};
 use crate::space::PointCloud;
 
 /// How bonds are kept.
@@ -168,11 +171,65 @@ impl BondBody<'_> {
             (PairLaw::BondStretch, 1) => self.operator_of::<BondStretch, 1>(form),
             (PairLaw::BondStretch, 2) => self.operator_of::<BondStretch, 2>(form),
             (PairLaw::BondStretch, 3) => self.operator_of::<BondStretch, 3>(form),
+            (PairLaw::GreenStrain, 1) if form == BondForm::Spectral => self.cubic(),
+            (PairLaw::GreenStrain, 1) => self.listed::<GreenBond, 1>(form),
+            (PairLaw::GreenStrain, 2) => self.listed::<GreenBond, 2>(form),
+            (PairLaw::GreenStrain, 3) => self.listed::<GreenBond, 3>(form),
+            (PairLaw::Literal57, 1) => self.listed::<LiteralBond, 1>(form),
+            (PairLaw::Literal57, dimension) => Err(PericlesError::WrongDimension {
+                what: "the law of equation 57 as printed",
+                needed: "1",
+                dimension,
+            }),
             (_, dimension) => Err(PericlesError::WrongDimension {
                 what: "a bond-based material",
                 needed: "1, 2 or 3",
                 dimension,
             }),
+        }
+    }
+
+    fn cubic(&self) -> Result<AssembledBonds> {
+        if !self.stiffness.is_empty() || !self.cracks.is_empty() {
+            return Err(PericlesError::FormNotUsable {
+                form: BondForm::Spectral.name(),
+                reason: "parts of other stiffness and pre-cracks have no Fourier series; use \"list\"",
+            });
+        }
+        let force = SpectralCubicForce::new(self.cloud.clone(), self.material, self.constants)?;
+        Ok(AssembledBonds {
+            operator: Box::new(force),
+            cuts: Vec::new(),
+            form: BondForm::Spectral,
+        })
+    }
+
+    /// Laws that only the list computes.
+    fn listed<L: PairForce, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+        let refuse = |form: BondForm, reason| {
+            Err(PericlesError::FormNotUsable {
+                form: form.name(),
+                reason,
+            })
+        };
+        if self.cloud.is_periodic() {
+            return refuse(
+                form,
+                "bonds through periodic faces are followed for the linear law only; use model = \"linear\"",
+            );
+        }
+        match form {
+            BondForm::Fastest | BondForm::List => {
+                let (list, cuts) = self.list::<L, D>()?;
+                Ok(AssembledBonds {
+                    operator: Box::new(list),
+                    cuts,
+                    form: BondForm::List,
+                })
+            }
+            BondForm::Grid | BondForm::Convolution | BondForm::Spectral => {
+                refuse(form, "this law is kept as a list: \"list\" or \"fastest\"")
+            }
         }
     }
 
@@ -228,7 +285,7 @@ impl BondBody<'_> {
     ///
     /// # Errors
     /// A horizon that reaches no neighbour, an unusable crack.
-    pub fn list<L: GridLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+    pub fn list<L: PairForce, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self

@@ -29,6 +29,7 @@ pub mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;
 pub mod linear;
+mod linearisation;
 mod stencil;
 pub mod surface;
 mod zoned;
@@ -41,8 +42,10 @@ pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
 pub use linear::{
-    ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralForce, Symbol, Toeplitz,
+    ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralCubicForce, SpectralForce,
+    Symbol, Toeplitz,
 };
+pub use linearisation::Linearisation;
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;

@@ -65,7 +65,7 @@ pub use comparison::CostComparison;
 pub use convolution_force::ConvolutionForce;
 pub use cost::Route;
 pub use gauss_force::GaussForce;
-pub use spectral::{SpectralForce, Symbol};
+pub use spectral::{SpectralCubicForce, SpectralForce, Symbol};
 pub use toeplitz::{Ends, Toeplitz};
 
 use crate::error::{PericlesError, Result};

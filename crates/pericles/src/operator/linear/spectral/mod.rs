@@ -6,6 +6,7 @@
 //!
 //! [`SpectralForce`] is a [`ForceOperator`](crate::operator::ForceOperator) for every scheme; functions of it cost two transforms
 //! ([`Diagonal`](crate::operator::function::Diagonal)), so that one step of [`Trigonometric`](crate::time::Trigonometric) reaches any time.
+//! [`SpectralCubicForce`] adds the quadratic and cubic terms of the Green-strain law on a ring.
 //! Cost of a product: 2 D real transforms of the box. Memory: two numbers for each wave number and D + 1 complex fields.
 //!
 //! What happens at the borders of the box is that the body repeats: a wave that leaves at one side comes in at the other. A solution on the line is therefore
@@ -16,8 +17,10 @@
 
 mod box_transform;
 mod cosine_integral;
+mod cubic;
 mod force;
 mod symbol;
 
+pub use cubic::SpectralCubicForce;
 pub use force::SpectralForce;
 pub use symbol::Symbol;

@@ -103,9 +103,31 @@ impl Symbol {
 
     /// The same by quadrature.
     fn integral(&self, k: f64) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        self.nodes(k, |r, weighed| {
+            let [p, s] = angular(self.dimension, k * r);
+            let radial = match self.dimension {
+                1 => weighed / r,
+                2 => weighed,
+                _ => weighed * r,
+            };
+            sums[0] += radial * p;
+            sums[1] += radial * s;
+        });
+        sums.map(|sum| self.factor * sum)
+    }
+
+    /// c A ∫ g(r, α) dr over 0 … δ for a g that is proportional to α and waves with kr.
+    pub(super) fn radial(&self, k: f64, g: impl Fn(f64, f64) -> f64) -> f64 {
+        let mut sum = 0.0;
+        self.nodes(k, |r, weighed| sum += g(r, weighed));
+        self.factor * sum
+    }
+
+    /// Calls `visit(r, weight · α)` for the nodes of a quadrature of integrands that wave with kr.
+    fn nodes(&self, k: f64, mut visit: impl FnMut(f64, f64)) {
         /// Of kr in a piece: 32 nodes integrate twenty radians of a wave to round-off.
         const RADIANS: f64 = 20.0;
-        let mut sums = [0.0; 2];
         for piece in self.pieces.windows(2) {
             let parts = (k * (piece[1] - piece[0]) / RADIANS).ceil().max(1.0);
             let width = (piece[1] - piece[0]) / parts;
@@ -114,18 +136,10 @@ impl Symbol {
                 for (node, weight) in self.rule.as_node_weight_pairs() {
                     let r = from + 0.5 * width * (1.0 + node);
                     let alpha = self.influence.alpha(r, self.horizon);
-                    let [p, s] = angular(self.dimension, k * r);
-                    let radial = match self.dimension {
-                        1 => alpha / r,
-                        2 => alpha,
-                        _ => alpha * r,
-                    };
-                    sums[0] += 0.5 * width * weight * radial * p;
-                    sums[1] += 0.5 * width * weight * radial * s;
+                    visit(r, 0.5 * width * weight * alpha);
                 }
             }
         }
-        sums.map(|sum| self.factor * sum)
     }
 }
 
