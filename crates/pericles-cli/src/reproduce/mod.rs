@@ -8,6 +8,7 @@
 
 mod dispersion;
 mod fracture;
+mod multi_time_step;
 mod row;
 mod table;
 
@@ -37,7 +38,7 @@ pub(crate) struct Study {
 }
 
 /// All studies.
-const STUDIES: [Study; 10] = [
+const STUDIES: [Study; 17] = [
     dispersion::one_dimensional::STUDY,
     dispersion::two_dimensional::STUDY,
     dispersion::three_dimensional::STUDY,
@@ -48,6 +49,13 @@ const STUDIES: [Study; 10] = [
     dispersion::pulse::STUDY,
     fracture::branching::STUDY,
     fracture::inclined::STUDY,
+    multi_time_step::convergence::PLATE,
+    multi_time_step::convergence::PLATE_NONLINEAR,
+    multi_time_step::convergence::BLOCK,
+    multi_time_step::crack::STUDY,
+    multi_time_step::stability::STUDY,
+    multi_time_step::energy::STUDY,
+    multi_time_step::cost::STUDY,
 ];
 
 /// What a study is run with.

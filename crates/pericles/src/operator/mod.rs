@@ -13,6 +13,7 @@
 mod assemble;
 mod bond_force;
 mod bond_kernels;
+mod graded;
 mod grid_block;
 mod grid_breaking;
 mod grid_build;
@@ -34,6 +35,7 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use graded::{EndLaw, GradedBody};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;

@@ -1,0 +1,313 @@
+//! Two time steps in one body: whether they will pay, and whether they did.
+//!
+//! Against the same scheme with the fine step everywhere a scheme with two steps saves evaluations as long as the fine region is small. That is no
+//! reason to use it: on a uniform grid of one material coarse and fine points have the same stable step, and velocity Verlet takes a quarter of the
+//! evaluations of a Runge–Kutta method of order four. So `check` also compares with velocity Verlet, with the fine step and with its own largest one.
+
+use std::time::{Duration, Instant};
+
+use pericles::time::{
+    HighestFrequency, Integrator, RefinementReport, RungeKutta, State, Tableau, VelocityVerlet,
+    highest_frequency,
+};
+use pericles::{PericlesError, System};
+use pericles_deck::{Deck, Model, Scheme};
+use serde::Serialize;
+
+use crate::units::{percent, quantity, significant};
+
+/// What is known of two time steps before the first; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RefinementFacts {
+    /// Fine steps in a coarse one, M.
+    pub(crate) ratio: u32,
+    /// Fraction φ of fine points at the start.
+    pub(crate) fine_fraction: f64,
+    /// The highest frequency of the whole body; that of the model limits the coarse step.
+    pub(crate) body_frequency: Option<f64>,
+    /// The highest frequency that limits the coarse step, times that step.
+    pub(crate) omega_dt: Option<f64>,
+    /// The highest frequency of the whole body times the fine step.
+    pub(crate) omega_dt_fine: Option<f64>,
+    /// Evaluations per point in a coarse step.
+    pub(crate) evaluations: f64,
+    /// Evaluations of the same scheme with the fine step everywhere over those of this one.
+    pub(crate) speed_up: f64,
+    /// The same for velocity Verlet with the fine step everywhere.
+    pub(crate) speed_up_over_verlet: f64,
+    /// The same for velocity Verlet with its own largest stable step; none where no frequency is known.
+    pub(crate) speed_up_over_stable_verlet: Option<f64>,
+}
+
+/// What two time steps did.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RefinementAudit {
+    pub(crate) ratio: u32,
+    /// Mean over the steps.
+    pub(crate) fine_fraction: f64,
+    pub(crate) largest_fine_fraction: f64,
+    /// Coarse steps, and those of them at the start that were fine everywhere.
+    pub(crate) steps: u64,
+    pub(crate) starting_steps: u64,
+    /// Evaluations of the same scheme with the fine step everywhere over those of this one: by the model of its cost, counted, and by the clock.
+    pub(crate) predicted_speed_up: f64,
+    pub(crate) achieved_speed_up: f64,
+    /// Time of evaluating the whole body as often as the scheme with the fine step everywhere would, over the time that this run took, output included; none for
+    /// runs too short to tell.
+    pub(crate) achieved_speed_up_in_time: Option<f64>,
+}
+
+impl RefinementFacts {
+    /// The facts of a model whose scheme has two time steps.
+    pub(crate) fn of(model: &Model) -> Option<Self> {
+        let report = model.integrator.refinement()?;
+        let ratio = f64::from(report.ratio);
+        let body = highest_frequency(&model.system, &model.state.u).ok();
+        let limiting = model.frequency.map(|frequency| frequency.estimate);
+        Some(Self {
+            ratio: report.ratio,
+            fine_fraction: report.mean_fraction,
+            body_frequency: body.map(|body| body.estimate),
+            omega_dt: limiting.map(|omega| omega * model.dt),
+            omega_dt_fine: body.map(|body| body.estimate * model.dt / ratio),
+            evaluations: report.evaluations(),
+            speed_up: report.speed_up(),
+            speed_up_over_verlet: report.speed_up_over_verlet(),
+            speed_up_over_stable_verlet: body
+                .map(|body| model.dt / verlet_step(&body) / report.evaluations()),
+        })
+    }
+}
+
+/// The step that velocity Verlet would take by itself, s.
+fn verlet_step(body: &HighestFrequency) -> f64 {
+    /// The default of decks.
+    const SAFETY: f64 = 0.95;
+    VelocityVerlet
+        .stability_limit()
+        .map_or(f64::INFINITY, |limit| body.stable_step(limit, SAFETY))
+}
+
+impl RefinementAudit {
+    /// The account of a scheme that has evaluated so many points and taken so much time of the clock for `steps` of its steps.
+    pub(crate) fn of(
+        report: &RefinementReport,
+        system: &System,
+        state: &State,
+        clock: Option<SecondsPerStep>,
+    ) -> Self {
+        let everywhere = u64::from(report.ratio * report.stages) * report.points;
+        let steps = report.steps + report.starting_steps;
+        // The evaluation of the initial state belongs to every scheme.
+        let evaluated = system.evaluated_points().saturating_sub(report.points);
+        Self {
+            ratio: report.ratio,
+            fine_fraction: report.mean_fraction,
+            largest_fine_fraction: report.largest_fraction,
+            steps,
+            starting_steps: report.starting_steps,
+            predicted_speed_up: report.speed_up(),
+            achieved_speed_up: (steps * everywhere) as f64 / evaluated as f64,
+            achieved_speed_up_in_time: clock.map(|SecondsPerStep(seconds)| {
+                let whole = seconds_per_evaluation(system, state);
+                f64::from(report.ratio * report.stages) * whole / seconds
+            }),
+        }
+    }
+
+    /// In words.
+    pub(crate) fn line(&self) -> String {
+        let clock = self.achieved_speed_up_in_time.map_or(String::new(), |s| {
+            format!(", about {} by the clock", significant(s, 3))
+        });
+        format!(
+            "two time steps: M = {}, fine {} of the points (at most {}); against the fine step everywhere {} times fewer evaluations{clock} (model: {})",
+            self.ratio,
+            percent(self.fine_fraction),
+            percent(self.largest_fine_fraction),
+            significant(self.achieved_speed_up, 3),
+            significant(self.predicted_speed_up, 3),
+        )
+    }
+}
+
+/// Time of the clock for a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SecondsPerStep(f64);
+
+impl SecondsPerStep {
+    /// The mean over a session; none where it is too short to tell.
+    pub(crate) fn mean(wall_seconds: f64, steps: u64) -> Option<Self> {
+        const SHORTEST: f64 = 0.05;
+        (steps > 0 && wall_seconds > SHORTEST).then(|| Self(wall_seconds / steps as f64))
+    }
+}
+
+/// The least time of a few evaluations of the whole body.
+fn seconds_per_evaluation(system: &System, state: &State) -> f64 {
+    const TRIES: usize = 5;
+    let mut force = vec![0.0; state.u.len()];
+    (0..TRIES)
+        .map(|_| {
+            let began = Instant::now();
+            system.force_density_into(state.t, &state.u, &mut force);
+            began.elapsed().as_secs_f64()
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Times of the clock for one coarse step of the deck's scheme and for the same span of time by schemes with one step, measured on the built body.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Comparison {
+    /// This scheme.
+    pub(crate) seconds: f64,
+    /// The same scheme with the fine step everywhere.
+    uniform: f64,
+    /// Velocity Verlet with the fine step everywhere.
+    verlet: f64,
+}
+
+impl Comparison {
+    /// Measures. The model is worn out by it: its state moves on.
+    ///
+    /// # Errors
+    /// Schemes that do not converge.
+    pub(crate) fn measure(deck: &Deck, model: &mut Model) -> Result<Option<Self>, PericlesError> {
+        let Some(report) = model.integrator.refinement() else {
+            return Ok(None);
+        };
+        let fine_step = model.dt / f64::from(report.ratio);
+        let fine_steps = f64::from(report.ratio);
+        let mut uniform: Box<dyn Integrator> = match &deck.time.scheme {
+            Scheme::MultiTimeStep3 { alpha, .. } => {
+                Box::new(RungeKutta::new(&Tableau::rk3(*alpha)?, &model.system))
+            }
+            Scheme::MultiTimeStep4 { .. } => {
+                Box::new(RungeKutta::new(&Tableau::rk4(), &model.system))
+            }
+            _ => Box::new(VelocityVerlet),
+        };
+        let (system, state, dt) = (&mut model.system, &mut model.state, model.dt);
+        let seconds = seconds_per_step(system, state, &mut *model.integrator, dt)?;
+        let uniform = seconds_per_step(system, state, &mut *uniform, fine_step)? * fine_steps;
+        let verlet = seconds_per_step(system, state, &mut VelocityVerlet, fine_step)? * fine_steps;
+        Ok(Some(Self {
+            seconds,
+            uniform,
+            verlet,
+        }))
+    }
+}
+
+/// The time of the clock for one step of a scheme, from a few on the built body, which moves on.
+///
+/// # Errors
+/// Schemes that do not converge.
+pub(crate) fn seconds_per_step(
+    system: &mut System,
+    state: &mut State,
+    integrator: &mut dyn Integrator,
+    dt: f64,
+) -> Result<f64, PericlesError> {
+    const LONGEST: Duration = Duration::from_millis(500);
+    const MOST: u64 = 500;
+    let mut step = || {
+        let t_next = state.t + dt;
+        integrator.step(system, state, t_next)
+    };
+    // The first step finds cold caches and sleeping threads.
+    step()?;
+    let began = Instant::now();
+    let mut steps = 0;
+    while steps < MOST && began.elapsed() < LONGEST {
+        step()?;
+        steps += 1;
+    }
+    Ok(began.elapsed().as_secs_f64() / steps as f64)
+}
+
+/// What `check` says of two time steps, name and value.
+pub(crate) fn lines(
+    facts: &RefinementFacts,
+    scheme: &str,
+    dt: f64,
+    comparison: &Comparison,
+) -> Vec<(&'static str, String)> {
+    let ratio = f64::from(facts.ratio);
+    let frequencies = match (facts.omega_dt, facts.omega_dt_fine) {
+        (Some(coarse), Some(fine)) => format!("; ω dt {coarse:.2} coarse, {fine:.2} fine"),
+        _ => String::new(),
+    };
+    let plain = plain_name(scheme);
+    vec![
+        (
+            "two time steps",
+            format!(
+                "{} and {} for {} of the points{frequencies}",
+                quantity(dt, "s"),
+                quantity(dt / ratio, "s"),
+                percent(facts.fine_fraction),
+            ),
+        ),
+        (
+            "their cost",
+            format!(
+                "{} evaluations per point and step; {plain} with the fine step everywhere {} times that ({} by the clock), velocity-verlet there {} times ({} by the clock)",
+                significant(facts.evaluations, 3),
+                significant(facts.speed_up, 3),
+                significant(comparison.uniform / comparison.seconds, 3),
+                significant(facts.speed_up_over_verlet, 3),
+                significant(comparison.verlet / comparison.seconds, 3),
+            ),
+        ),
+        ("do they pay", verdict(facts, scheme, comparison)),
+    ]
+}
+
+/// The scheme with one step.
+fn plain_name(scheme: &str) -> &str {
+    match scheme {
+        "respa" => "velocity-verlet",
+        name => name.strip_suffix("-mts").unwrap_or(name),
+    }
+}
+
+fn verdict(facts: &RefinementFacts, scheme: &str, comparison: &Comparison) -> String {
+    let needless = facts
+        .omega_dt_fine
+        .zip(facts.omega_dt)
+        // Whole and coarse frequency within a few percent: nothing in the body asks for the smaller step.
+        .is_some_and(|(fine, coarse)| fine * f64::from(facts.ratio) < 1.05 * coarse);
+    let reason = if needless {
+        "coarse and fine points have the same stable step, so the smaller one serves accuracy only"
+    } else {
+        "the fine points need the smaller step"
+    };
+    let gain = comparison.verlet / comparison.seconds;
+    let own = facts
+        .speed_up_over_stable_verlet
+        .filter(|own| *own < 1.0)
+        .map_or(String::new(), |own| {
+            format!(
+                "; velocity-verlet with its own stable step takes {} of the evaluations",
+                percent(own)
+            )
+        });
+    if gain > 1.0 {
+        format!(
+            "yes: {} times faster than velocity-verlet with the fine step everywhere; {reason}{own}",
+            significant(gain, 3)
+        )
+    } else if comparison.uniform > comparison.seconds && scheme != "respa" {
+        format!(
+            "only for the accuracy of {}: velocity-verlet with the fine step everywhere takes {} of the time; {reason}{own}",
+            plain_name(scheme),
+            percent(gain)
+        )
+    } else {
+        format!(
+            "no: velocity-verlet with the fine step everywhere takes {} of the time; {reason}{own}",
+            percent(gain)
+        )
+    }
+}
