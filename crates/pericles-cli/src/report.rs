@@ -207,7 +207,10 @@ impl Audit {
             broken_bonds: system.operator().broken_bonds(),
             largest_damage: damage.iter().fold(0.0, |most: f64, &d| most.max(d)),
             energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
-            omega_dt: report.model.highest_frequency.map(|omega| omega * report.model.dt),
+            omega_dt: report
+                .model
+                .highest_frequency
+                .map(|omega| omega * report.model.dt),
             evaluated_points: system.evaluated_points(),
             refinement: simulation.integrator().refinement().map(|refinement| {
                 let Span {

@@ -2,18 +2,21 @@
 
 mod area;
 mod conditions;
+mod graded;
 mod scheme;
 mod step;
 
 use std::sync::Arc;
 
+use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
-use pericles::space::{PointCloud, PointSet};
+use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
+use self::graded::Grids;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -85,7 +88,20 @@ impl Deck {
     /// # Errors
     /// What the library refuses, at the entry of the deck that caused it; sets without points; a step that is not stable.
     pub fn build(&self) -> Result<Model, DeckError> {
-        let cloud = Arc::new(self.points()?);
+        self.build_with(&NoCache)
+    }
+
+    /// The same; what is dear to compute and depends on few inputs is taken from the cache if it is there, and stored there if it is not.
+    ///
+    /// # Errors
+    /// As [`Deck::build`].
+    pub fn build_with(&self, _cache: &dyn Cache) -> Result<Model, DeckError> {
+        let GradedCloud {
+            cloud,
+            ratios,
+            grid_of_point,
+        } = self.points()?;
+        let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
         let constants = material
@@ -103,7 +119,11 @@ impl Deck {
             stiffness: &stiffness,
             damage: self.material.damage,
         };
-        let (bonds, cracks) = self.bonds(body, &mut warnings)?;
+        let grids = Grids {
+            ratios: &ratios,
+            of_point: &grid_of_point,
+        };
+        let (bonds, cracks) = self.bonds(body, grids, &mut warnings)?;
         let density = PointScalar::Uniform(material.density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
@@ -132,14 +152,27 @@ impl Deck {
         })
     }
 
-    fn points(&self) -> Result<PointCloud, DeckError> {
-        self.body.grid.points().map_err(|error| {
-            let side = match &error {
+    fn points(&self) -> Result<GradedCloud, DeckError> {
+        let graded = GradedGrid {
+            grid: self.body.grid.clone(),
+            finer: self.body.finer.clone(),
+        };
+        let points = if graded.finer.is_empty() {
+            graded.grid.points().map(GradedCloud::of_one_grid)
+        } else {
+            graded.points()
+        };
+        points.map_err(|error| {
+            let place = match &error {
                 PericlesError::NotWholeCells { length, .. } => self.side(*length),
                 PericlesError::TooManyPoints { .. } => "body.spacing".into(),
+                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
+                    Path::from("body.refine").index(*part)
+                }
+                PericlesError::FinerParts { .. } => "body.refine".into(),
                 _ => "body".into(),
             };
-            self.at_path(&side, error.into())
+            self.at_path(&place, error.into())
         })
     }
 
@@ -212,6 +245,7 @@ impl Deck {
     fn bonds(
         &self,
         body: BondBody<'_>,
+        grids: Grids<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
         let crack = |k| Path::from("crack").index(k);
@@ -231,9 +265,12 @@ impl Deck {
             cracks: &surfaces,
             ..body
         };
-        let assembled = body
-            .operator(self.material.form)
-            .map_err(|error| self.at_material(error))?;
+        let assembled = if grids.ratios.len() > 1 {
+            self.graded_bonds(&body, grids)?
+        } else {
+            body.operator(self.material.form)
+                .map_err(|error| self.at_material(error))?
+        };
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {

@@ -23,6 +23,7 @@ mod grid_law;
 mod grid_layout;
 mod grid_operator;
 mod grid_padded;
+mod grid_wanted;
 mod grid_zoned;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]

@@ -47,6 +47,17 @@ pub struct GradedCloud {
     pub grid_of_point: Vec<u8>,
 }
 
+impl GradedCloud {
+    /// The points of one grid.
+    pub fn of_one_grid(cloud: PointCloud) -> Self {
+        Self {
+            grid_of_point: vec![0; cloud.len()],
+            ratios: vec![1],
+            cloud,
+        }
+    }
+}
+
 /// Grids are numbered by a byte.
 const MOST_PARTS: usize = 200;
 

@@ -1,7 +1,7 @@
 //! Runge–Kutta with small steps where they are needed.
 
-use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
 use super::fine_region::Fine;
+use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
 use super::refinement::{Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::runge_kutta::{Stages, StepForm, start};

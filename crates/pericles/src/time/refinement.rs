@@ -70,12 +70,7 @@ impl Refinement {
     ///
     /// # Errors
     /// A ratio below one; regions that are empty, overlap or are thinner than a horizon; parameters of following out of range; bodies whose force knows no bonds.
-    pub(super) fn new(
-        system: &System,
-        cost: SchemeCost,
-        ratio: u32,
-        fine: Fine,
-    ) -> Result<Self> {
+    pub(super) fn new(system: &System, cost: SchemeCost, ratio: u32, fine: Fine) -> Result<Self> {
         if ratio < 1 {
             return Err(PericlesError::StepRatio { ratio });
         }
@@ -265,4 +260,3 @@ impl Looking {
         grow(force, &mut self.marks, self.follow.layers);
     }
 }
-

