@@ -38,6 +38,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
             &mut model.state,
             &mut *model.integrator,
             facts.dt,
+            refinement::LONGEST,
         )?,
     };
     let seconds = step * facts.steps as f64;

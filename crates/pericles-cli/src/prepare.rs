@@ -82,7 +82,7 @@ impl Facts {
             stable_step: model.stable_step(),
             memory_estimate: (operator.bytes() + numbers * size_of::<f64>()) as u64,
             scheme: model.integrator.name(),
-            refinement: RefinementFacts::of(model),
+            refinement: RefinementFacts::of(deck, model),
             instruction_set: operator.instruction_set().name(),
             warnings: model.warnings.iter().map(|w| w.line()).collect(),
         }

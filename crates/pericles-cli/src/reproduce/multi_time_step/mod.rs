@@ -8,7 +8,10 @@ mod convergence;
 mod cost;
 mod crack;
 mod energy;
+mod inclusion;
 mod stability;
+mod turns;
+mod two_grid;
 
 use pericles::time::{Integrator, RungeKutta, Tableau};
 use pericles::{Control, Simulation};
@@ -19,7 +22,7 @@ use crate::error::CliError;
 use super::Study;
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 7] = [
+pub(super) const STUDIES: [Study; 9] = [
     convergence::PLATE,
     convergence::PLATE_NONLINEAR,
     convergence::BLOCK,
@@ -27,6 +30,8 @@ pub(super) const STUDIES: [Study; 7] = [
     stability::STUDY,
     energy::STUDY,
     cost::STUDY,
+    inclusion::STUDY,
+    two_grid::STUDY,
 ];
 
 const PAPER: &str = "Liu et al. 2024, arXiv 2401.04966";
@@ -38,7 +43,7 @@ struct Problem {
     prepare: fn(&mut Model),
 }
 
-/// A problem of `validation/multi-time-step/`.
+/// A problem of `validation/multi-time-step/`, or of the examples.
 macro_rules! problem {
     ($file:literal) => {
         problem!($file, |_| ())
@@ -47,6 +52,13 @@ macro_rules! problem {
         $crate::reproduce::multi_time_step::Problem {
             file: $file,
             text: include_str!(concat!("../../../../../validation/multi-time-step/", $file)),
+            prepare: $prepare,
+        }
+    };
+    (example $file:literal, $prepare:expr) => {
+        $crate::reproduce::multi_time_step::Problem {
+            file: $file,
+            text: include_str!(concat!("../../../../../examples/multi-time-step/", $file)),
             prepare: $prepare,
         }
     };
@@ -151,13 +163,14 @@ mod tests {
     #[test]
     fn studies_hold() {
         let context = Context::without_figures();
-        let studies: [&Study; 6] = [
+        let studies: [&Study; 7] = [
             &convergence::PLATE,
             &convergence::PLATE_NONLINEAR,
             &convergence::BLOCK,
             &crack::STUDY,
             &stability::STUDY,
             &energy::STUDY,
+            &two_grid::STUDY,
         ];
         for study in studies {
             let rows = (study.run)(&context).unwrap();
