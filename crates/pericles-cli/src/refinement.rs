@@ -69,7 +69,10 @@ impl RefinementFacts {
         Some(Self {
             ratio: report.ratio,
             fine_fraction: report.mean_fraction,
-            follows_damage: matches!(fine_region(&deck.time.scheme), Some(FineRegion::Adaptive(_))),
+            follows_damage: matches!(
+                fine_region(&deck.time.scheme),
+                Some(FineRegion::Adaptive(_))
+            ),
             body_frequency: body.map(|body| body.estimate),
             omega_dt: limiting.map(|omega| omega * model.dt),
             omega_dt_fine: body.map(|body| body.estimate * model.dt / ratio),

@@ -5,6 +5,7 @@ mod fine_region;
 mod frequency;
 mod interface;
 mod multi_time_step;
+mod newmark;
 mod refinement;
 mod refinement_report;
 mod respa;
@@ -19,6 +20,9 @@ pub use fine_region::{Fine, Follow};
 pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
 pub use interface::{Interpolant, Predictor};
 pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
+pub use newmark::{
+    DiscreteGradient, InnerIterations, InnerSolver, Newmark, NewmarkOptions, VelocityNorm,
+};
 pub use refinement_report::RefinementReport;
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
@@ -96,6 +100,11 @@ pub trait Integrator: Saved + Send {
 
     /// What a scheme with two time steps did so far; none for other schemes.
     fn refinement(&self) -> Option<RefinementReport> {
+        None
+    }
+
+    /// What the inner iterations of an implicit scheme did so far; none for other schemes.
+    fn inner_iterations(&self) -> Option<InnerIterations> {
         None
     }
 

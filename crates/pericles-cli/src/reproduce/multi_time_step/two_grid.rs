@@ -1,9 +1,9 @@
 //! A body with smaller cells, and a smaller horizon, in its middle: what the interface does to a uniform strain, what is conserved, and what two time steps save.
 
+use pericles::Control;
 use pericles::operator::On;
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::time::highest_frequency;
-use pericles::Control;
 use pericles_deck::{Deck, Model};
 
 use super::super::row::Row;
@@ -92,7 +92,9 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, CliError> {
         strained[i] = STRAIN * cloud.point(i)[0];
     }
     let mut force = vec![0.0; 2 * n];
-    system.operator().add_force(0.0, &strained, On::All, &mut force);
+    system
+        .operator()
+        .add_force(0.0, &strained, On::All, &mut force);
     // The force density over E e/δ, what a free surface would be pulled with.
     let scale = model.constants.young * STRAIN / deck.material.bonds.horizon;
     let largest = |of: &dyn Fn(usize) -> bool| {
@@ -107,11 +109,23 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, CliError> {
     let error = balanced_error(&model, &strained, &places)?;
     let name = format!("spacing {} mm", 1e3 * spacing);
     Ok(vec![
-        Row::new(format!("{name}: spurious force inside the grids over E e/δ"), "", Some(inside))
-            .within(0.0, 1e-9),
-        Row::new(format!("{name}: spurious force at the interface over E e/δ"), "", Some(interface))
-            .note("a point at the interface sees large cells on one side and small ones on the other"),
-        Row::new(format!("{name}: force at a free surface over E e/δ"), "", Some(surface)),
+        Row::new(
+            format!("{name}: spurious force inside the grids over E e/δ"),
+            "",
+            Some(inside),
+        )
+        .within(0.0, 1e-9),
+        Row::new(
+            format!("{name}: spurious force at the interface over E e/δ"),
+            "",
+            Some(interface),
+        )
+        .note("a point at the interface sees large cells on one side and small ones on the other"),
+        Row::new(
+            format!("{name}: force at a free surface over E e/δ"),
+            "",
+            Some(surface),
+        ),
         Row::new(
             format!("{name}: largest error of the displacement in balance over e L"),
             "",
@@ -131,7 +145,11 @@ fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f6
         out.fill(0.0);
         system.operator().add_force(0.0, u, On::All, out);
         for (entry, x) in out.iter_mut().enumerate() {
-            *x *= if held(entry) { 0.0 } else { -volumes[entry % n] };
+            *x *= if held(entry) {
+                0.0
+            } else {
+                -volumes[entry % n]
+            };
         }
     };
     let mut right = vec![0.0; 2 * n];
@@ -151,7 +169,9 @@ fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f6
         &mut Work::new(2 * n),
     )?;
     let [low, high] = system.cloud().bounds();
-    let most = correction.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let most = correction
+        .iter()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
     Ok(most / (STRAIN * (high[0] - low[0])))
 }
 
@@ -197,7 +217,10 @@ fn conservation() -> Result<Vec<Row>, CliError> {
     .map_err(|error| CliError::of_run(error, || "the study stopped there".into()))?;
     let system = run.system();
     let after = system.momentum(&run.state().v);
-    let apart = (0..3).map(|c| (after[c] - momentum[c]).powi(2)).sum::<f64>().sqrt();
+    let apart = (0..3)
+        .map(|c| (after[c] - momentum[c]).powi(2))
+        .sum::<f64>()
+        .sqrt();
     let size = momentum.iter().map(|p| p * p).sum::<f64>().sqrt();
     Ok(vec![
         Row::new("free body, r-RESPA: change of momentum over momentum", "", Some(apart / size))
@@ -224,9 +247,14 @@ fn speed() -> Result<Vec<Row>, CliError> {
         let cells = model.cloud.len() as f64;
         let large = model.cloud.spacing();
         let [low, high] = model.cloud.bounds();
-        let everywhere = (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(RATIO)).powi(2);
+        let everywhere =
+            (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(RATIO)).powi(2);
         Ok(vec![
-            Row::new("fraction of points with the fine step", "", Some(fine.len() as f64 / cells)),
+            Row::new(
+                "fraction of points with the fine step",
+                "",
+                Some(fine.len() as f64 / cells),
+            ),
             Row::new(
                 "r-RESPA: speed-up against velocity Verlet with the fine step, on the same points",
                 "",
