@@ -159,6 +159,7 @@ mod crack;
 mod deck;
 mod document;
 mod error;
+mod expression;
 mod fault;
 mod finding;
 mod influence;
@@ -183,6 +184,7 @@ pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace}
 pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
+pub use expression::Expression;
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};
