@@ -205,9 +205,8 @@ impl Reader<'_> {
             let variables = self.variables.iter().copied();
             variables.chain(CONSTANTS).chain(FUNCTIONS)
         };
-        let hint = nearest(name, known()).map_or_else(String::new, |near| {
-            format!("; did you mean `{near}`?")
-        });
+        let hint = nearest(name, known())
+            .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         let variables = match self.variables {
             [] => "none".to_owned(),
             names => names.join(", "),

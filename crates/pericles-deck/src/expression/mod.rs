@@ -172,7 +172,10 @@ mod tests {
         ];
         for (text, expected) in cases {
             let found = value(text);
-            assert!((found - expected).abs() < 1e-12, "{text}: {found}, not {expected}");
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{text}: {found}, not {expected}"
+            );
         }
     }
 
@@ -207,7 +210,15 @@ mod tests {
 
     #[test]
     fn rates_are_derivatives() {
-        for text in ["sin(3*t)*x", "exp(-t^2)", "t^3/y", "1/(1+t)", "x", "-t^2", "sqrt(1+t)*cos(t)"] {
+        for text in [
+            "sin(3*t)*x",
+            "exp(-t^2)",
+            "t^3/y",
+            "1/(1+t)",
+            "x",
+            "-t^2",
+            "sqrt(1+t)*cos(t)",
+        ] {
             let f = Expression::parse(text, &VARIABLES).unwrap();
             let rate = f.rate().unwrap();
             let at = |t: f64| f.value([2.0, 3.0, 5.0], t);
@@ -217,7 +228,12 @@ mod tests {
             assert!((found - slope).abs() < 1e-8, "{text}: {found}, {slope}");
             assert!(rate.rate().is_ok());
         }
-        assert!(Expression::parse("step(t)", &["t"]).unwrap().rate().is_err());
+        assert!(
+            Expression::parse("step(t)", &["t"])
+                .unwrap()
+                .rate()
+                .is_err()
+        );
     }
 
     proptest! {
