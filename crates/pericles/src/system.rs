@@ -324,6 +324,13 @@ impl System {
         self.add_loads(t, &On::All, out);
     }
 
+    /// Loads over density at time t, m/s².
+    pub fn external_acceleration_into(&self, t: f64, out: &mut [f64]) {
+        self.zero(&On::All, out);
+        self.add_loads(t, &On::All, out);
+        self.divide_by_density(&On::All, out);
+    }
+
     /// K d / ρ at displacement u, with prescribed entries held: the operator of the linearised free vibration.
     pub fn vibration_into(&self, u: &[f64], direction: &[f64], out: &mut [f64]) {
         self.operator.tangent_into(0.0, u, direction, out);
