@@ -40,11 +40,8 @@ pub fn plate_with<L: PairForce>(load: f64) -> Problem {
         (points(&cloud, |x, _, _| x < spacing), -1.0),
         (points(&cloud, |x, _, _| x > 1.0 - spacing), 1.0),
     ] {
-        system.add_load(Load {
-            points,
-            density: [sign * load * 200e6 / spacing, 0.0, 0.0],
-            function: TimeFunction::Constant,
-        });
+        let density = [sign * load * 200e6 / spacing, 0.0, 0.0];
+        system.add_load(Load::new(points, density, TimeFunction::Constant));
     }
     let fine = points(&cloud, |x, y, _| {
         (x - 0.5).abs() < 0.15 && (y - 0.25).abs() < 0.1
@@ -218,11 +215,7 @@ pub fn pushed_bar(kind: Option<MotionKind>) -> Problem {
     };
     let end = points(&cloud, |x, _, _| x < 0.015);
     match kind {
-        None => system.add_load(Load {
-            points: end,
-            density: [1e10, 0.0, 0.0],
-            function,
-        }),
+        None => system.add_load(Load::new(end, [1e10, 0.0, 0.0], function)),
         Some(kind) => {
             let amplitude = match kind {
                 MotionKind::Displacement => 1e-3,

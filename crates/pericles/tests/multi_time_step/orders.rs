@@ -71,8 +71,8 @@ fn loads_and_prescribed_motion_keep_the_order() {
                 for simulation in [&plain, &zoned] {
                     let state = simulation.state();
                     if let [motion] = simulation.system().motions() {
-                        let g = motion.function;
-                        let amplitude = motion.amplitude[0].unwrap();
+                        let g = &motion.function;
+                        let amplitude = motion.amplitude(0).unwrap();
                         let (u, v) = match motion.kind {
                             MotionKind::Displacement => (g.value(state.t), g.derivative(state.t)),
                             MotionKind::Velocity => (g.integral(state.t), g.value(state.t)),
