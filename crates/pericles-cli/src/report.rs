@@ -13,7 +13,7 @@ use crate::checkpoint::DeckText;
 use crate::error::CliError;
 use crate::machine;
 use crate::prepare::Facts;
-use crate::refinement::{RefinementAudit, SecondsPerStep};
+use crate::refinement::RefinementAudit;
 
 /// How a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -212,16 +212,10 @@ impl Audit {
                 .highest_frequency
                 .map(|omega| omega * report.model.dt),
             evaluated_points: system.evaluated_points(),
-            refinement: simulation.integrator().refinement().map(|refinement| {
-                let Span {
-                    first_step,
-                    last_step,
-                    wall_seconds,
-                    ..
-                } = report.progress;
-                let clock = SecondsPerStep::mean(wall_seconds, last_step - first_step);
-                RefinementAudit::of(&refinement, system, state, clock)
-            }),
+            refinement: simulation
+                .integrator()
+                .refinement()
+                .map(|refinement| RefinementAudit::of(&refinement, system)),
         })
     }
 }
