@@ -11,7 +11,7 @@
 //! Politi (2022) take distances along edges; with these the peridynamic operator does not converge to that of the smooth surface.
 //!
 //! All sources are independent: each is searched by one thread, up to the horizon only, so that the cost is that of the pairs found. Distances are
-//! symmetric to the last bit, and do not depend on the number of threads.
+//! symmetric to the last bit, and do not depend on the number of threads. [`geodesic_pairs_cached`] keeps them from run to run.
 //!
 //! ```
 //! use pericles::family::geodesic::{GeodesicMethod, geodesic_pairs};
@@ -29,11 +29,13 @@ mod exact;
 mod graph;
 mod method;
 mod pairs;
+mod stored;
 mod unfolding;
 
 pub use errors::GeodesicErrors;
 pub use method::{GeodesicMethod, UnknownMethod};
 pub use pairs::GeodesicPairs;
+pub use stored::geodesic_pairs_cached;
 
 use graph::Graph;
 
