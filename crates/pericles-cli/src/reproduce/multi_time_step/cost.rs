@@ -73,7 +73,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let mut curves = Vec::new();
     for (outline, least) in [(Outline::Box, 0.80), (Outline::Ragged, 0.65)] {
         for ratio in [4, 8] {
-            let mut curve = Vec::new();
+            let mut points = Vec::new();
             for fraction in [0.02, 0.06, 0.12, 0.25] {
                 let case = Case {
                     outline,
@@ -83,9 +83,13 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 };
                 let (found, speed_up) = one.install(|| case.rows(&mut bench))?;
                 rows.extend(found);
-                curve.push((fraction, speed_up));
+                points.push((fraction, speed_up));
             }
-            curves.push((outline, ratio, curve));
+            curves.push(SpeedUps {
+                outline,
+                ratio,
+                points,
+            });
         }
     }
     let on_two = two.install(|| -> Result<Vec<Row>, CliError> {
@@ -252,7 +256,14 @@ fn papers_case() -> Result<Vec<Row>, CliError> {
     ])
 }
 
-fn draw(context: &Context<'_>, curves: &[(Outline, u32, Vec<(f64, f64)>)]) -> Result<(), CliError> {
+/// Speed-ups over the fraction of fine points.
+struct SpeedUps {
+    outline: Outline,
+    ratio: u32,
+    points: Vec<(f64, f64)>,
+}
+
+fn draw(context: &Context<'_>, curves: &[SpeedUps]) -> Result<(), CliError> {
     let Some(path) = context.figure("speed-up.png") else {
         return Ok(());
     };
@@ -261,7 +272,12 @@ fn draw(context: &Context<'_>, curves: &[(Outline, u32, Vec<(f64, f64)>)]) -> Re
         Axis::new("speed-up", ""),
     )
     .title("RK4 with two steps against the fine step everywhere");
-    for (outline, ratio, points) in curves {
+    for SpeedUps {
+        outline,
+        ratio,
+        points,
+    } in curves
+    {
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
         let name = format!("{}, M = {ratio}", outline.name());
         chart = chart.curve(Curve::line(name, &x, &y).with_markers());
