@@ -207,6 +207,38 @@ pub enum PericlesError {
         /// The ratio given.
         ratio: u32,
     },
+    /// Smaller cells that are not smaller.
+    #[error("part {part} with smaller cells divides them by {ratio}; allowed: 2 or more")]
+    FinerRatio {
+        /// Which of the parts, from 0.
+        part: usize,
+        /// The division.
+        ratio: u32,
+    },
+    /// A part with smaller cells in which no cell lies.
+    #[error(
+        "part {part} with smaller cells divides none: no cell's centre lies in it, or later parts hide it"
+    )]
+    FinerEmpty {
+        /// Which of the parts, from 0.
+        part: usize,
+    },
+    /// More parts with smaller cells than can be numbered.
+    #[error("{parts} parts with smaller cells; allowed: at most {most}")]
+    FinerParts {
+        /// The number of parts.
+        parts: usize,
+        /// The largest number.
+        most: usize,
+    },
+    /// What bonds between cells of different sizes cannot do.
+    #[error("a body with cells of several sizes cannot have {what}: {reason}")]
+    Graded {
+        /// What was asked for.
+        what: &'static str,
+        /// Why not, and what is possible.
+        reason: &'static str,
+    },
     /// A fine region without points.
     #[error("fine region {region} has no points; each needs at least one")]
     FineRegionEmpty {
@@ -264,6 +296,14 @@ pub enum PericlesError {
         t: f64,
         /// The step, s.
         step: f64,
+    },
+    /// A table in time whose rows cannot be used.
+    #[error(
+        "row {row} of the table in time cannot be used: at least one row is needed, all numbers finite, each time later than the one before"
+    )]
+    BadTimeTable {
+        /// The row, from 0.
+        row: usize,
     },
     /// An iterative solver that did not reach its tolerance.
     #[error(

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
-use pericles::material::{BondConstants, BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, GreenBond, LinearBond, LiteralBond, Modulus, PairForce, PairLaw, StressState};
+use pericles::material::{
+    BondConstants, BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, GreenBond,
+    LinearBond, LiteralBond, Modulus, PairForce, PairLaw, StressState,
+};
 use pericles::operator::{BondForce, DamageMeasure, ForceOperator, InstructionSet, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 

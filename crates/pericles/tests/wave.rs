@@ -431,11 +431,11 @@ fn loads_and_supports_are_of_the_order_promised() {
             start: -1.0,
             duration: 6.0,
         };
-        body.add_load(Load {
-            points: (n as u32 - 5..n as u32).collect(),
-            density: [0.3, 0.0, 0.0],
-            function: pulse,
-        });
+        body.add_load(Load::new(
+            (n as u32 - 5..n as u32).collect(),
+            [0.3, 0.0, 0.0],
+            pulse.clone(),
+        ));
         let motion = PrescribedMotion::new(
             "left".into(),
             (0..3).collect(),
@@ -482,11 +482,11 @@ fn constant_loads_are_exact() {
     let n = cloud.len();
     let run = |count: usize| {
         let mut body = system(&cloud, bonds(&cloud, &gaussian(), BondForm::Grid));
-        body.add_load(Load {
-            points: (0..4).collect(),
-            density: [0.3, 0.0, 0.0],
-            function: TimeFunction::Constant,
-        });
+        body.add_load(Load::new(
+            (0..4).collect(),
+            [0.3, 0.0, 0.0],
+            TimeFunction::Constant,
+        ));
         let mut scheme = trigonometric(FunctionMethod::Fastest, &body);
         let state = start(&body, 0.1);
         let end = steps(&mut body, &mut *scheme, state, 6.0 / count as f64, count);

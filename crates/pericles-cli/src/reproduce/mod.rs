@@ -8,6 +8,7 @@
 
 mod dispersion;
 mod fracture;
+mod multi_time_step;
 mod nonlocal_wave;
 mod row;
 mod table;
@@ -38,9 +39,10 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 3] = [
+const TOPICS: [&[Study]; 4] = [
     &dispersion::STUDIES,
     &fracture::STUDIES,
+    &multi_time_step::STUDIES,
     &nonlocal_wave::STUDIES,
 ];
 

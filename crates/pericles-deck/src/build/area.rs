@@ -7,12 +7,12 @@ use pericles::space::{PointCloud, Region};
 /// The axis normal to the loaded face: that of a layer's face, else that of the load.
 pub(crate) fn normal_axis(
     region: Option<&Region>,
-    traction: &[f64; 3],
+    acts_along: &[bool; 3],
 ) -> Result<usize, &'static str> {
     if let Some(Region::Layer { face, .. }) = region {
         return Ok(face.axis);
     }
-    let mut axes = (0..3).filter(|&c| traction[c] != 0.0);
+    let mut axes = (0..3).filter(|&c| acts_along[c]);
     match (axes.next(), axes.next()) {
         (Some(axis), None) => Ok(axis),
         (None, _) => Err("the traction is zero"),
@@ -27,12 +27,13 @@ pub(crate) fn normal_axis(
 pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
     let dimension = cloud.dimension();
     let dx = cloud.spacing();
+    let [corner, _] = cloud.bounds();
     let columns: BTreeSet<[i64; 3]> = points
         .iter()
         .map(|&i| {
             let place = cloud.point(i as usize);
-            // Cell centres lie whole spacings apart, so that rounding a little off the middle is safe.
-            let cell = |c: usize| ((place[c] - cloud.point(0)[c]) / dx).round() as i64;
+            // Centres of cells, divided ones too, lie well inside the large cells.
+            let cell = |c: usize| ((place[c] - corner[c]) / dx).floor() as i64;
             std::array::from_fn(|c| {
                 if c == axis || c >= dimension {
                     0
@@ -97,9 +98,12 @@ mod tests {
             },
             depth: 1.0,
         };
-        assert_eq!(normal_axis(Some(&layer), &[1.0, 0.0, 0.0]), Ok(1));
-        assert_eq!(normal_axis(Some(&Region::All), &[0.0, -2.0, 0.0]), Ok(1));
-        assert!(normal_axis(None, &[1.0, 1.0, 0.0]).is_err());
-        assert!(normal_axis(None, &[0.0; 3]).is_err());
+        assert_eq!(normal_axis(Some(&layer), &[true, false, false]), Ok(1));
+        assert_eq!(
+            normal_axis(Some(&Region::All), &[false, true, false]),
+            Ok(1)
+        );
+        assert!(normal_axis(None, &[true, true, false]).is_err());
+        assert!(normal_axis(None, &[false; 3]).is_err());
     }
 }

@@ -3,6 +3,8 @@
 mod area;
 mod conditions;
 mod exact;
+mod fields;
+mod graded;
 mod scheme;
 mod step;
 
@@ -14,10 +16,11 @@ use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
-use pericles::space::{PointCloud, PointSet, Shape, gauss_bar};
+use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet, Shape, gauss_bar};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
+use self::graded::Grids;
 use crate::body::Quadrature;
 use crate::caution::Caution;
 use crate::deck::Deck;
@@ -100,7 +103,12 @@ impl Deck {
     /// # Errors
     /// As [`Deck::build`].
     pub fn build_with(&self, _cache: &dyn Cache) -> Result<Model, DeckError> {
-        let cloud = Arc::new(self.points()?);
+        let GradedCloud {
+            cloud,
+            ratios,
+            grid_of_point,
+        } = self.points()?;
+        let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
         let constants = material
@@ -118,7 +126,11 @@ impl Deck {
             stiffness: &stiffness,
             damage: self.material.damage,
         };
-        let (bonds, cracks) = self.bonds(body, &mut warnings)?;
+        let grids = Grids {
+            ratios: &ratios,
+            of_point: &grid_of_point,
+        };
+        let (bonds, cracks) = self.bonds(body, grids, &mut warnings)?;
         let density = PointScalar::Uniform(material.density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
@@ -154,22 +166,35 @@ impl Deck {
         })
     }
 
-    fn points(&self) -> Result<PointCloud, DeckError> {
-        let grid = &self.body.grid;
+    fn points(&self) -> Result<GradedCloud, DeckError> {
+        let graded = GradedGrid {
+            grid: self.body.grid.clone(),
+            finer: self.body.finer.clone(),
+        };
+        let grid = &graded.grid;
         let points = match (&grid.shape, self.body.quadrature) {
             (Shape::Box { origin, size }, Quadrature::Gauss) => {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)
+                    .map(GradedCloud::of_one_grid)
             }
-            _ if self.body.periodic => grid.points().and_then(PointCloud::with_periodic_faces),
-            _ => grid.points(),
+            _ if self.body.periodic => grid
+                .points()
+                .and_then(PointCloud::with_periodic_faces)
+                .map(GradedCloud::of_one_grid),
+            _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
+            _ => graded.points(),
         };
         points.map_err(|error| {
-            let side = match &error {
+            let place = match &error {
                 PericlesError::NotWholeCells { length, .. } => self.side(*length),
                 PericlesError::TooManyPoints { .. } => "body.spacing".into(),
+                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
+                    Path::from("body.refine").index(*part)
+                }
+                PericlesError::FinerParts { .. } => "body.refine".into(),
                 _ => "body".into(),
             };
-            self.at_path(&side, error.into())
+            self.at_path(&place, error.into())
         })
     }
 
@@ -242,6 +267,7 @@ impl Deck {
     fn bonds(
         &self,
         body: BondBody<'_>,
+        grids: Grids<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
         let crack = |k| Path::from("crack").index(k);
@@ -261,9 +287,12 @@ impl Deck {
             cracks: &surfaces,
             ..body
         };
-        let assembled = body
-            .operator(self.material.form)
-            .map_err(|error| self.at_material(error))?;
+        let assembled = if grids.ratios.len() > 1 {
+            self.graded_bonds(&body, grids)?
+        } else {
+            body.operator(self.material.form)
+                .map_err(|error| self.at_material(error))?
+        };
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {

@@ -15,6 +15,7 @@ mod assemble;
 mod bond_force;
 mod bond_kernels;
 pub mod function;
+mod graded;
 mod grid_block;
 mod grid_breaking;
 mod grid_build;
@@ -24,6 +25,7 @@ mod grid_law;
 mod grid_layout;
 mod grid_operator;
 mod grid_padded;
+mod grid_wanted;
 mod grid_zoned;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
@@ -38,6 +40,7 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use graded::{EndLaw, GradedBody};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;

@@ -1,12 +1,14 @@
 //! Time integration: u(t) ↦ u(t + dt), any scheme.
 
 mod embedded;
+mod fine_region;
 mod frequency;
 mod implicit;
 mod interface;
 mod multi_time_step;
 mod newmark;
 mod refinement;
+mod refinement_report;
 mod respa;
 mod runge_kutta;
 mod tableau;
@@ -16,6 +18,7 @@ mod zone;
 mod zones;
 
 pub use embedded::AdaptiveRungeKutta;
+pub use fine_region::{Fine, Follow};
 pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
 pub use implicit::{Implicit, ImplicitRule};
 pub use interface::{Interpolant, Predictor};
@@ -23,7 +26,7 @@ pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
 pub use newmark::{
     DiscreteGradient, InnerIterations, InnerSolver, Newmark, NewmarkOptions, VelocityNorm,
 };
-pub use refinement::{Fine, Follow, RefinementReport};
+pub use refinement_report::RefinementReport;
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
