@@ -600,6 +600,13 @@ fn forms_of_linear_bodies() {
         ("density", "bonds = \"list\"\ndensity"),
     ];
     assert_eq!(form(&list), "list");
+    // Schemes with two steps take the force apart by points.
+    let two = [
+        ("periodic = true", ""),
+        ("dt = 1\n", "dt = 0.5\nratio = 2\nfine = \"all\"\n"),
+        ("\"trigonometric\"", "\"respa\""),
+    ];
+    assert_eq!(form(&two), "grid");
     let gauss = with(&[("periodic = true", "quadrature = \"gauss\"")]);
     assert_eq!((gauss.form.name(), gauss.cloud.len()), ("convolution", 400));
     assert_eq!(gauss.integrator.name(), "trigonometric");

@@ -156,6 +156,11 @@ impl System {
         !self.boundaries.is_empty()
     }
 
+    /// Whether any prescribed motion ends before the run may.
+    pub fn releases_points(&self) -> bool {
+        self.motions.iter().any(|motion| motion.until.is_some())
+    }
+
     /// Number of points.
     pub fn points(&self) -> usize {
         self.cloud.len()

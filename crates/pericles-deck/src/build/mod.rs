@@ -290,7 +290,13 @@ impl Deck {
         let assembled = if grids.ratios.len() > 1 {
             self.graded_bonds(&body, grids)?
         } else {
-            body.operator(self.material.form)
+            let form = match self.material.form {
+                BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
+                    body.fastest_bonds()
+                }
+                form => form,
+            };
+            body.operator(form)
                 .map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();

@@ -81,6 +81,11 @@ impl BondBody<'_> {
         if self.convolution_is_fastest() {
             return BondForm::Convolution;
         }
+        self.fastest_bonds()
+    }
+
+    /// The faster of grid and list, for schemes that take the force apart by points.
+    pub fn fastest_bonds(&self) -> BondForm {
         match self.cloud.lattice() {
             Some(lattice) if self.stiffness.is_empty() => {
                 let [x, y, z] = lattice.shape;

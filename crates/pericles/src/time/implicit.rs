@@ -59,11 +59,19 @@ impl Implicit {
     /// # Errors
     /// Boundaries that have a memory.
     pub fn new(rule: ImplicitRule, system: &System) -> Result<Self> {
-        if system.has_boundaries() {
-            return Err(PericlesError::SchemeNotUsable {
+        let refuse = |reason| {
+            Err(PericlesError::SchemeNotUsable {
                 scheme: rule.name(),
-                reason: "boundaries with a memory are stepped explicitly; use velocity-verlet",
-            });
+                reason,
+            })
+        };
+        if system.has_boundaries() {
+            return refuse("boundaries with a memory are stepped explicitly; use velocity-verlet");
+        }
+        if system.releases_points() {
+            return refuse(
+                "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme",
+            );
         }
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];

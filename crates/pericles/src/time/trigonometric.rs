@@ -133,6 +133,11 @@ impl Trigonometric {
                 "boundaries with a memory act at stages, which it does not have; use velocity-verlet",
             );
         }
+        if system.releases_points() {
+            return refuse(
+                "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme",
+            );
+        }
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let reference = array();
