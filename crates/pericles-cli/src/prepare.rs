@@ -80,7 +80,12 @@ impl Facts {
             memory_estimate: (operator.bytes() + numbers * size_of::<f64>()) as u64,
             scheme: model.integrator.name(),
             instruction_set: operator.instruction_set().name(),
-            warnings: model.warnings.iter().map(|w| w.line()).collect(),
+            warnings: model
+                .warnings
+                .iter()
+                .chain(&deck.judge_waves(model))
+                .map(|w| w.line())
+                .collect(),
         }
     }
 }
