@@ -2,13 +2,14 @@
 
 use pericles::System;
 use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
+use pericles::noise::uniform_in_ball;
 use pericles::observe::Probe as PointProbe;
 use pericles::space::{Point, PointCloud};
 use pericles::time::State;
 
 use super::{Sets, area};
 use crate::caution::Caution;
-use crate::conditions::{LoadAmplitude, ProbePlace};
+use crate::conditions::{LoadAmplitude, ProbePlace, RandomVelocity};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -38,8 +39,35 @@ impl Deck {
                     }
                 }
             }
+            if let Some(random) = initial.random_velocity {
+                if initial.velocity.is_none() {
+                    for c in 0..cloud.dimension() {
+                        for &i in points {
+                            state.v[c * n + i as usize] = 0.0;
+                        }
+                    }
+                }
+                Self::add_random(random, cloud, points, &mut state.v);
+            }
         }
         Ok(state)
+    }
+
+    /// The whole body is drawn, in the user's order, whatever the set: a point's velocity depends on seed and number only.
+    fn add_random(
+        random: RandomVelocity,
+        cloud: &PointCloud,
+        points: &[u32],
+        velocity: &mut [f64],
+    ) {
+        let n = cloud.len();
+        let drawn = uniform_in_ball(cloud.dimension(), random.radius, random.seed, n);
+        for &i in points {
+            let vector = drawn[cloud.user_number(i as usize)];
+            for c in 0..cloud.dimension() {
+                velocity[c * n + i as usize] += vector[c];
+            }
+        }
     }
 
     pub(super) fn add_loads(
@@ -55,6 +83,11 @@ impl Deck {
                 LoadAmplitude::BodyForce(density) => BodyLoad {
                     points,
                     density: *density,
+                    function: load.function,
+                },
+                LoadAmplitude::Traction { traction, .. } if self.surface.is_some() => BodyLoad {
+                    points,
+                    density: *traction,
                     function: load.function,
                 },
                 LoadAmplitude::Traction { traction, area } => {
