@@ -163,7 +163,7 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
                 material.p, material.alpha, material.kappa
             ),
         ),
-        ("distances", surface.method.name().to_owned()),
+        ("distances", surface.method.to_string()),
         ("areas", areas),
         ("own cell", own_cell.into()),
         ("breaking", breaking),

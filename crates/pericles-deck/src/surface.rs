@@ -226,7 +226,20 @@ pub(crate) fn areas(table: &Table<'_>) -> Option<VertexAreas> {
 
 /// `[geodesics]`.
 pub(crate) fn method(table: Table<'_>) -> Option<GeodesicMethod> {
-    let method = table.choice_or_first("method", "method", &[("edge", GeodesicMethod::Edge)]);
+    let method = match table.optional("method") {
+        None => {
+            let method = GeodesicMethod::default();
+            table.record("method", method.to_string());
+            Some(method)
+        }
+        Some(item) => item.text().and_then(|text| {
+            let method = text.parse().ok();
+            if method.is_none() {
+                item.out_of_range(GeodesicMethod::NAMES);
+            }
+            method
+        }),
+    };
     table.finish();
     method
 }

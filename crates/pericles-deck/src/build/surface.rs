@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pericles::PericlesError;
 use pericles::cache::Cache;
-use pericles::family::geodesic::geodesic_pairs;
+use pericles::family::geodesic::geodesic_pairs_cached;
 use pericles::operator::ForceOperator;
 use pericles::operator::surface::SurfaceBody;
 use pericles::space::PointCloud;
@@ -40,14 +40,13 @@ impl Deck {
         surface: &Surface,
         cloud: &Arc<PointCloud>,
         sets: &Sets,
-        _cache: &dyn Cache,
+        cache: &dyn Cache,
     ) -> Result<Box<dyn ForceOperator>, DeckError> {
-        let pairs = geodesic_pairs(surface, deck.material.horizon, deck.method).map_err(
-            |error| match error {
+        let pairs = geodesic_pairs_cached(surface, deck.material.horizon, deck.method, cache)
+            .map_err(|error| match error {
                 PericlesError::HorizonTooSmall { .. } => self.at("material.horizon", error),
                 _ => self.at("geodesics", error),
-            },
-        )?;
+            })?;
         let no_fail = self.union_of(sets, &deck.no_fail)?;
         let stiffness = self.stiffness_of(&deck.inclusions, cloud, sets)?;
         SurfaceBody {
