@@ -254,6 +254,14 @@ pub enum PericlesError {
         /// The step, s.
         step: f64,
     },
+    /// A table in time whose rows cannot be used.
+    #[error(
+        "row {row} of the table in time cannot be used: at least one row is needed, all numbers finite, each time later than the one before"
+    )]
+    BadTimeTable {
+        /// The row, from 0.
+        row: usize,
+    },
     /// An iterative solver that did not reach its tolerance.
     #[error(
         "{solver} stopped after {iterations} iterations with a residual of {residual:e}, {tolerance:e} was asked for: {cause}; a smaller time step helps"

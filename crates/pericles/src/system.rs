@@ -97,7 +97,7 @@ impl System {
     pub fn add_motion(&mut self, motion: PrescribedMotion) -> Result<()> {
         for other in &self.motions {
             for c in 0..3 {
-                if motion.amplitude[c].is_none() || other.amplitude[c].is_none() {
+                if motion.along[c].is_none() || other.along[c].is_none() {
                     continue;
                 }
                 let common = motion

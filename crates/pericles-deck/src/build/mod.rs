@@ -2,6 +2,7 @@
 
 mod area;
 mod conditions;
+mod fields;
 mod scheme;
 mod step;
 mod surface;

@@ -1,9 +1,25 @@
 //! Functions of time that loads and prescribed motions follow.
 
 use std::f64::consts::PI;
+use std::fmt;
+use std::sync::Arc;
+
+use super::TimeTable;
+
+/// A factor g(t) that is not one of the kinds of [`TimeFunction`].
+pub trait TimeCourse: fmt::Debug + Send + Sync {
+    /// g(t).
+    fn value(&self, t: f64) -> f64;
+    /// g'(t); at a kink the derivative from the right.
+    fn derivative(&self, t: f64) -> f64;
+    /// g''(t) without the impulses at kinks.
+    fn second_derivative(&self, t: f64) -> f64;
+    /// ∫₀ᵗ g.
+    fn integral(&self, t: f64) -> f64;
+}
 
 /// A dimensionless factor g(t) with its integral and derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub enum TimeFunction {
     /// g = 1 from the start.
     #[default]
@@ -22,12 +38,44 @@ pub enum TimeFunction {
         /// Length of the pulse, s; positive.
         duration: f64,
     },
+    /// g between given values, linearly.
+    Table(Arc<TimeTable>),
+    /// Any other course.
+    Course(Arc<dyn TimeCourse>),
+}
+
+/// Tables are equal if their numbers are, other courses if they are the same object.
+impl PartialEq for TimeFunction {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Constant, Self::Constant) => true,
+            (
+                &Self::Ramp { start, duration },
+                &Self::Ramp {
+                    start: other_start,
+                    duration: other_duration,
+                },
+            )
+            | (
+                &Self::Pulse { start, duration },
+                &Self::Pulse {
+                    start: other_start,
+                    duration: other_duration,
+                },
+            ) => (start, duration) == (other_start, other_duration),
+            (Self::Table(table), Self::Table(other)) => table == other,
+            (Self::Course(course), Self::Course(other)) => Arc::ptr_eq(course, other),
+            _ => false,
+        }
+    }
 }
 
 impl TimeFunction {
     /// g(t).
     pub fn value(&self, t: f64) -> f64 {
         match *self {
+            Self::Table(ref table) => table.value(t),
+            Self::Course(ref course) => course.value(t),
             Self::Constant => 1.0,
             Self::Ramp { start, duration } => ((t - start) / duration).clamp(0.0, 1.0),
             Self::Pulse { start, duration } => {
@@ -44,6 +92,8 @@ impl TimeFunction {
     /// g'(t); at a kink the derivative from the right.
     pub fn derivative(&self, t: f64) -> f64 {
         match *self {
+            Self::Table(ref table) => table.derivative(t),
+            Self::Course(ref course) => course.derivative(t),
             Self::Constant => 0.0,
             Self::Ramp { start, duration } => {
                 if t >= start && t < start + duration {
@@ -66,7 +116,8 @@ impl TimeFunction {
     /// g''(t) without the impulses at the kinks of a ramp.
     pub fn second_derivative(&self, t: f64) -> f64 {
         match *self {
-            Self::Constant | Self::Ramp { .. } => 0.0,
+            Self::Constant | Self::Ramp { .. } | Self::Table(_) => 0.0,
+            Self::Course(ref course) => course.second_derivative(t),
             Self::Pulse { start, duration } => {
                 let phase = (t - start) / duration;
                 if (0.0..=1.0).contains(&phase) {
@@ -80,12 +131,17 @@ impl TimeFunction {
 
     /// ∫₀ᵗ g.
     pub fn integral(&self, t: f64) -> f64 {
-        self.primitive(t) - self.primitive(0.0)
+        match self {
+            Self::Table(table) => table.integral(t),
+            Self::Course(course) => course.integral(t),
+            _ => self.primitive(t) - self.primitive(0.0),
+        }
     }
 
+    /// For the kinds that have one in closed form.
     fn primitive(&self, t: f64) -> f64 {
         match *self {
-            Self::Constant => t,
+            Self::Constant | Self::Table(_) | Self::Course(_) => t,
             Self::Ramp { start, duration } => {
                 let rise = (t - start).clamp(0.0, duration);
                 0.5 * rise * rise / duration + (t - start - duration).max(0.0)
@@ -114,6 +170,9 @@ mod tests {
                 start: -0.2,
                 duration: 0.9,
             },
+            TimeFunction::Table(Arc::new(
+                TimeTable::new(vec![(-0.1, 2.0), (0.2, 1.0), (0.9, 4.0)]).unwrap(),
+            )),
         ];
         let h = 1e-5;
         for g in functions {
