@@ -73,8 +73,13 @@ impl PictureOf {
         } else {
             ColourMap::Viridis
         };
+        // On a surface densities are per area.
+        let unit = match &self.surface {
+            Some(_) => self.field.unit().replace("/m³", "/m²"),
+            None => self.field.unit().to_owned(),
+        };
         let mut picture = FieldPicture::new(cloud.dimension(), cloud.positions(), &values, cell)
-            .label(self.name(), self.field.unit())
+            .label(self.name(), unit)
             .displacement(&state.u, self.scale)
             .title(&self.title)
             .time(state.t)

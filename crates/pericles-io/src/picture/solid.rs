@@ -59,7 +59,7 @@ impl View {
     /// The light on a surface with this normal, from above the left shoulder; the side towards the eye is seen.
     fn light_on(&self, normal: [f64; 3]) -> f64 {
         /// The light where the lamp does not reach.
-        const AMBIENT: f64 = 0.45;
+        const AMBIENT: f64 = 0.6;
         let lamp: [f64; 3] =
             std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k]);
         let size = (dot(normal, normal) * dot(lamp, lamp)).sqrt();
