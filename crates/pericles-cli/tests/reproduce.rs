@@ -102,6 +102,8 @@ fn all_studies_are_listed() {
         "manifolds/figure-2",
         "manifolds/figure-6",
         "manifolds/convergence",
+        "multi-time-step/plate",
+        "multi-time-step/two-grid",
     ] {
         let named = list
             .lines()

@@ -334,6 +334,7 @@ pub(crate) fn no_grid() -> Body {
             section: 1.0,
             holes: Vec::new(),
         },
+        finer: Vec::new(),
         state: StressState::Spatial,
     }
 }

@@ -50,10 +50,13 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             let changes = [change("material.alpha", alpha), change("body.level", level)];
             let model = STANDARD.deck(&changes)?.build()?;
             let ratio = breathing(&model.system)? / continuum;
-            let case = format!("distances along edges, as in the paper, α = {alpha}, level {level}");
+            let case =
+                format!("distances along edges, as in the paper, α = {alpha}, level {level}");
             let row = Row::new(case, "", Some(ratio));
             rows.push(if level == finest && alpha <= 0.25 {
-                row.within(0.71, 0.02).note("does not converge: distances along edges stay too long, however fine the mesh")
+                row.within(0.71, 0.02).note(
+                    "does not converge: distances along edges stay too long, however fine the mesh",
+                )
             } else {
                 row
             });

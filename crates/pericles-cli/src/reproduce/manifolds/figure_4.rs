@@ -48,7 +48,10 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 );
                 rows.push(
                     Row::new(format!("mean stretch, second half, {case}"), "", Some(mean)).note(
-                        format!("standard deviation over the mean: {:.2}; depends on the random data", spread / mean.abs()),
+                        format!(
+                            "standard deviation over the mean: {:.2}; depends on the random data",
+                            spread / mean.abs()
+                        ),
                     ),
                 );
                 courses.push((format!("α = {alpha}"), course));

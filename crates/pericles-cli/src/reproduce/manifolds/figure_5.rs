@@ -70,14 +70,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             .within(0.13, 0.04)
             .note("printed: stays near its start. A scheme that conserves energy cannot do that while the elastic energy grows"),
     );
-    rows.push(
-        Row::new(
-            "spread of the energy",
-            "",
-            Some(course.energy_spread()),
-        )
-        .within(0.0, 2e-3),
-    );
+    rows.push(Row::new("spread of the energy", "", Some(course.energy_spread())).within(0.0, 2e-3));
     for (reading, t) in readings.iter().zip(["0.15", "0.3", "0.7"]) {
         rows.push(
             Row::new(

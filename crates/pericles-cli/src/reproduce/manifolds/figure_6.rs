@@ -31,8 +31,15 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         let alpha_is = change("material.alpha", alpha);
         let (simulation, course) = run(POLES, std::slice::from_ref(&alpha_is), |_| Ok(()))?;
         if courses.is_empty() {
-            let loaded: usize = simulation.system().loads().iter().map(|load| load.points.len()).sum();
-            rows.push(Row::new("loaded vertices, |z| ≥ 0.95", "", Some(loaded as f64)).within(38.0, 0.0));
+            let loaded: usize = simulation
+                .system()
+                .loads()
+                .iter()
+                .map(|load| load.points.len())
+                .sum();
+            rows.push(
+                Row::new("loaded vertices, |z| ≥ 0.95", "", Some(loaded as f64)).within(38.0, 0.0),
+            );
         }
         rows.push(
             Row::new(format!("peak stretch, |z| ≥ 0.95, α = {alpha}"), "", Some(course.peak()))
@@ -48,9 +55,13 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         ];
         let (_, course) = run(POLES, &changes, |_| Ok(()))?;
         rows.push(
-            Row::new(format!("peak stretch, the two poles, α = {alpha}"), "", Some(course.peak()))
-                .printed(printed)
-                .within_share(narrow, 0.01),
+            Row::new(
+                format!("peak stretch, the two poles, α = {alpha}"),
+                "",
+                Some(course.peak()),
+            )
+            .printed(printed)
+            .within_share(narrow, 0.01),
         );
     }
     let stronger = [

@@ -91,7 +91,10 @@ impl Course {
     }
 
     fn peak(&self) -> f64 {
-        self.stretch.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        self.stretch
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// (max E − min E)/E(0)
