@@ -1,16 +1,15 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
-use std::time::{Duration, Instant};
-
-use pericles::time::{Integrator, State};
-use pericles::{PericlesError, System};
-use pericles_deck::{Deck, Model};
+use pericles::material::SurfaceBond;
+use pericles::space::surface::AreaRule;
+use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
 
 use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::prepare::{self, Facts};
+use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
 use crate::waves::WaveSpeeds;
 
@@ -21,15 +20,33 @@ use crate::waves::WaveSpeeds;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let model = prepare::model(&deck, &args.caching)?;
+    let mut model = prepare::model(&deck, &args.caching)?;
     let facts = Facts::of(&deck, &model);
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
     }
     let mut lines = body(&deck, &facts);
-    lines.extend(material(&deck, &facts));
+    match &deck.surface {
+        Some(surface) => lines.extend(surface_material(surface)),
+        None => lines.extend(material(&deck, &facts)),
+    }
     lines.extend(time(&facts));
-    let seconds = seconds_per_step(model)? * facts.steps as f64;
+    model.integrator.start(&mut model.system, &mut model.state);
+    let comparison = Comparison::measure(&deck, &mut model)?;
+    if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {
+        lines.extend(refinement::lines(two, facts.scheme, facts.dt, comparison));
+    }
+    let step = match comparison {
+        Some(comparison) => comparison.seconds,
+        None => refinement::seconds_per_step(
+            &mut model.system,
+            &mut model.state,
+            &mut *model.integrator,
+            facts.dt,
+            refinement::LONGEST,
+        )?,
+    };
+    let seconds = step * facts.steps as f64;
     lines.push((
         "run time",
         format!(
@@ -51,9 +68,12 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
 type Line = (&'static str, String);
 
 fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
-    let state = deck.body.state.name();
+    let body = match &deck.surface {
+        Some(_) => "surface in 3D".into(),
+        None => format!("{}D, {}", facts.dimension, deck.body.state.name()),
+    };
     let mut lines = vec![
-        ("body", format!("{}D, {state}", facts.dimension)),
+        ("body", body),
         ("points", count(facts.points as u64)),
         (
             "bonds",
@@ -121,6 +141,47 @@ fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
     lines
 }
 
+fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
+    let material = &surface.material;
+    let law = match material.bond {
+        SurfaceBond::Displacement => "κ |η|^(p−2) η / d^(2+αp)",
+        SurfaceBond::Chord => "κ |ℓ−ℓ₀|^(p−2) (ℓ−ℓ₀) n / d^(2+αp), frame-indifferent",
+    };
+    let areas = match surface.areas {
+        VertexAreas::Rule(AreaRule::Barycentric) => "a third of each triangle".into(),
+        VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
+        VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
+    };
+    let own_cell = if material.self_cell {
+        "added"
+    } else if material.alpha >= 0.5 {
+        "left out: for α of 1/2 and more results depend on the mesh"
+    } else {
+        "left out"
+    };
+    let breaking = if material.critical_stretch.is_finite() {
+        format!(
+            "beyond |η|/d = {}",
+            significant(material.critical_stretch, 4)
+        )
+    } else {
+        "never".into()
+    };
+    vec![
+        (
+            "force",
+            format!(
+                "{law}; p = {}, α = {}, κ = {}",
+                material.p, material.alpha, material.kappa
+            ),
+        ),
+        ("distances", surface.method.to_string()),
+        ("areas", areas),
+        ("own cell", own_cell.into()),
+        ("breaking", breaking),
+    ]
+}
+
 fn time(facts: &Facts) -> Vec<Line> {
     let mut lines = Vec::new();
     if let (Some(omega), Some(limit)) = (facts.highest_frequency, facts.stable_step) {
@@ -149,37 +210,4 @@ fn time(facts: &Facts) -> Vec<Line> {
         ),
     ));
     lines
-}
-
-/// The time of the clock for one step of the scheme, from a few on the built model, which is thrown away.
-fn seconds_per_step(model: Model) -> Result<f64, PericlesError> {
-    const LONGEST: Duration = Duration::from_millis(500);
-    const MOST: u64 = 500;
-    let Model {
-        mut system,
-        mut state,
-        mut integrator,
-        dt,
-        ..
-    } = model;
-    integrator.start(&mut system, &mut state);
-    // The first step finds cold caches and sleeping threads.
-    step(&mut system, &mut state, &mut *integrator, dt)?;
-    let began = Instant::now();
-    let mut steps = 0;
-    while steps < MOST && began.elapsed() < LONGEST {
-        step(&mut system, &mut state, &mut *integrator, dt)?;
-        steps += 1;
-    }
-    Ok(began.elapsed().as_secs_f64() / steps as f64)
-}
-
-fn step(
-    system: &mut System,
-    state: &mut State,
-    integrator: &mut dyn Integrator,
-    dt: f64,
-) -> Result<(), PericlesError> {
-    let t_next = state.t + dt;
-    integrator.step(system, state, t_next)
 }

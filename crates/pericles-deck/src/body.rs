@@ -1,17 +1,20 @@
 //! `[body]`: the shape, its grid and its state of stress.
 
 use pericles::material::StressState;
-use pericles::space::{Grid, Region, Shape};
+use pericles::space::{Finer, Grid, Region, Shape};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::region::{self, Frame};
+use crate::surface::{self, SurfaceKind, SurfaceShape, VertexAreas};
 
 /// The body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Shape, spacing, section and holes.
     pub grid: Grid,
+    /// Parts with smaller cells and horizon, later ones before earlier ones.
+    pub finer: Vec<Finer>,
     /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
     pub state: StressState,
 }
@@ -21,6 +24,14 @@ pub(crate) struct BodyRead {
     pub(crate) body: Option<Body>,
     pub(crate) frame: Frame,
     pub(crate) state: Option<StressState>,
+    /// The body if it is a surface.
+    pub(crate) surface: Option<SurfaceRead>,
+}
+
+/// A surface, as far as it could be read.
+pub(crate) struct SurfaceRead {
+    pub(crate) shape: Option<SurfaceShape>,
+    pub(crate) areas: Option<VertexAreas>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,15 +42,21 @@ enum Kind {
     Block,
     Cylinder,
     Ball,
+    Surface(SurfaceKind),
 }
 
-const KINDS: [(&str, Kind); 6] = [
+const KINDS: [(&str, Kind); 11] = [
     ("bar", Kind::Bar),
     ("plate", Kind::Plate),
     ("disc", Kind::Disc),
     ("block", Kind::Block),
     ("cylinder", Kind::Cylinder),
     ("ball", Kind::Ball),
+    ("icosphere", Kind::Surface(SurfaceKind::Icosphere)),
+    ("uv-sphere", Kind::Surface(SurfaceKind::UvSphere)),
+    ("ellipsoid", Kind::Surface(SurfaceKind::Ellipsoid)),
+    ("torus", Kind::Surface(SurfaceKind::Torus)),
+    ("capsule", Kind::Surface(SurfaceKind::Capsule)),
 ];
 
 impl Kind {
@@ -47,7 +64,7 @@ impl Kind {
         match self {
             Self::Bar => 1,
             Self::Plate | Self::Disc => 2,
-            Self::Block | Self::Cylinder | Self::Ball => 3,
+            Self::Block | Self::Cylinder | Self::Ball | Self::Surface(_) => 3,
         }
     }
 }
@@ -60,11 +77,15 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
             spacing: None,
         },
         state: None,
+        surface: None,
     };
     let Some(table) = table else { return read };
     let kind = table
         .required("shape")
         .and_then(|item| item.choice("shape", &KINDS));
+    if let Some(Kind::Surface(kind)) = kind {
+        return surface(table, kind, read);
+    }
     read.frame.spacing = table
         .required("spacing")
         .and_then(|item| item.positive(Quantity::Length));
@@ -81,9 +102,51 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .into_iter()
         .map(|hole| region::read(hole, read.frame))
         .collect();
+    let finer: Vec<Option<Finer>> = table
+        .tables("refine")
+        .into_iter()
+        .map(|part| finer(part, read.frame))
+        .collect();
     table.finish();
-    read.body = assemble(&read, outline, section, holes);
+    read.body = assemble(&read, outline, section, holes, finer);
     read
+}
+
+fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead {
+    let shape = surface::shape(&table, kind);
+    let areas = surface::areas(&table);
+    table.finish();
+    read.frame = Frame {
+        dimension: Some(3),
+        spacing: shape.map(|(_, spacing)| spacing),
+    };
+    read.state = Some(StressState::Spatial);
+    read.body = Some(surface::no_grid());
+    read.surface = Some(SurfaceRead {
+        shape: shape.map(|(shape, _)| shape),
+        areas,
+    });
+    read
+}
+
+fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
+    /// More would make steps that differ as much.
+    const MOST: u64 = 16;
+    let ratio = table.required("ratio").and_then(|item| {
+        let ratio = item.count()?;
+        if (2..=MOST).contains(&ratio) {
+            return Some(ratio as u32);
+        }
+        item.out_of_range(
+            "a whole number from 2 to 16: cells are divided into so many along each axis",
+        );
+        None
+    });
+    let region = region::read(table, frame);
+    Some(Finer {
+        region: region?,
+        ratio: ratio?,
+    })
 }
 
 fn assemble(
@@ -91,6 +154,7 @@ fn assemble(
     outline: Option<Outline>,
     section: Option<f64>,
     holes: Vec<Option<Region>>,
+    finer: Vec<Option<Finer>>,
 ) -> Option<Body> {
     let outline = outline?;
     let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
@@ -102,6 +166,7 @@ fn assemble(
             section: section?,
             holes,
         },
+        finer: finer.into_iter().collect::<Option<_>>()?,
         state: read.state?,
     })
 }
@@ -145,6 +210,8 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
                 bore: inner?.map(|radius| Region::Ball { centre, radius }),
             })
         }
+        // Read by `surface`.
+        Kind::Surface(_) => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
             let axis = region::axis(table);

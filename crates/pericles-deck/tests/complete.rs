@@ -48,7 +48,8 @@ fn every_entry_arrives() {
         holes: vec![ball, corner],
     };
     let state = StressState::PlaneStrain;
-    assert_eq!(deck.body, Body { grid, state });
+    let finer = vec![];
+    assert_eq!(deck.body, Body { grid, finer, state });
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {
@@ -112,11 +113,13 @@ fn conditions_time_and_output_arrive() {
                 set: "all".into(),
                 displacement: None,
                 velocity: Some([0.0, 1.0, 0.0].map(Into::into)),
+                random_velocity: None,
             },
             Initial {
                 set: "top".into(),
                 displacement: Some([1e-6, 0.0, 0.0].map(Into::into)),
                 velocity: Some([0.0, 20.0, 0.0].map(Into::into)),
+                random_velocity: None,
             }
         ]
     );
@@ -192,6 +195,7 @@ fn conditions_time_and_output_arrive() {
         component: None,
         scale: 1.0,
         range: Some([0.0, 1.0]),
+        view: None,
         schedule: Schedule::Count(2),
     };
     let uplift = Picture {
@@ -199,6 +203,7 @@ fn conditions_time_and_output_arrive() {
         component: Some(1),
         scale: 10.0,
         range: Some([-1e-3, 1e-3]),
+        view: None,
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(

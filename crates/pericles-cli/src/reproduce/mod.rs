@@ -8,6 +8,8 @@
 
 mod dispersion;
 mod fracture;
+mod manifolds;
+mod multi_time_step;
 mod row;
 mod table;
 
@@ -37,7 +39,12 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 2] = [&dispersion::STUDIES, &fracture::STUDIES];
+const TOPICS: [&[Study]; 4] = [
+    &dispersion::STUDIES,
+    &fracture::STUDIES,
+    &manifolds::STUDIES,
+    &multi_time_step::STUDIES,
+];
 
 fn studies() -> impl Iterator<Item = &'static Study> {
     TOPICS.into_iter().flatten()

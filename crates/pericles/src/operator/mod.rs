@@ -6,7 +6,7 @@
 //! | form | bodies | bonds | ns per directed bond, 3D |
 //! |---|---|---|---|
 //! | [`BondForce`] | any | listed, 13 bytes each | 6 |
-//! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | 0.8 |
+//! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | see `benches/surface.rs` |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline) |
 //!
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
@@ -14,6 +14,7 @@
 mod assemble;
 mod bond_force;
 mod bond_kernels;
+mod graded;
 mod grid_block;
 mod grid_breaking;
 mod grid_build;
@@ -23,6 +24,7 @@ mod grid_law;
 mod grid_layout;
 mod grid_operator;
 mod grid_padded;
+mod grid_wanted;
 mod grid_zoned;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
@@ -36,6 +38,7 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use graded::{EndLaw, GradedBody};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
