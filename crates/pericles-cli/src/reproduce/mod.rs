@@ -8,6 +8,7 @@
 
 mod dispersion;
 mod fracture;
+mod manifolds;
 mod row;
 mod table;
 
@@ -37,7 +38,11 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 2] = [&dispersion::STUDIES, &fracture::STUDIES];
+const TOPICS: [&[Study]; 3] = [
+    &dispersion::STUDIES,
+    &fracture::STUDIES,
+    &manifolds::STUDIES,
+];
 
 fn studies() -> impl Iterator<Item = &'static Study> {
     TOPICS.into_iter().flatten()

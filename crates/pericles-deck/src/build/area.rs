@@ -98,7 +98,10 @@ mod tests {
             depth: 1.0,
         };
         assert_eq!(normal_axis(Some(&layer), &[true, false, false]), Ok(1));
-        assert_eq!(normal_axis(Some(&Region::All), &[false, true, false]), Ok(1));
+        assert_eq!(
+            normal_axis(Some(&Region::All), &[false, true, false]),
+            Ok(1)
+        );
         assert!(normal_axis(None, &[true, true, false]).is_err());
         assert!(normal_axis(None, &[false; 3]).is_err());
     }

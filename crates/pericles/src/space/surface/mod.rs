@@ -20,6 +20,7 @@ mod half_edges;
 mod measure;
 mod order;
 mod shapes;
+mod weld;
 
 pub use check::{Component, SurfaceCaution, SurfaceChecks, SurfaceReport};
 pub use error::SurfaceError;
