@@ -9,13 +9,14 @@ use super::words::Words;
 const HEADER: usize = 80;
 const TRIANGLE: usize = 50;
 
+/// Bytes that are looked at to tell a text.
+const GLANCE: usize = 1024;
+
 pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
-    // Some binary files begin with "solid" as well; their length tells.
-    let count = content.get(HEADER..HEADER + 4).map(|bytes| {
-        let count = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-        u64::from(count) * TRIANGLE as u64 + HEADER as u64 + 4
-    });
-    if content.starts_with(b"solid") && count != Some(content.len() as u64) {
+    // Some binary files begin with "solid" as well; soon there are bytes that no text has.
+    let begin = &content[..content.len().min(GLANCE)];
+    let is_text = begin.iter().all(|byte| byte.is_ascii() && *byte != 0);
+    if content.starts_with(b"solid") && is_text {
         text(content)
     } else {
         binary(content)

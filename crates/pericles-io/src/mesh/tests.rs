@@ -482,7 +482,8 @@ fn huge_counts_and_wrong_words_are_refused_with_their_place() {
             "<VTKFile><UnstructuredGrid></UnstructuredGrid></VTKFile>",
             vec!["there is no array Points"],
         ),
-        ("vtp", "nothing", vec!["no element VTKFile"]),
+        ("vtp", "</VTKFile>", vec!["no element VTKFile"]),
+        ("vtp", "nothing", vec!["where </VTKFile> should follow"]),
         ("stp", "", vec!["files that end in .obj, .ply"]),
     ] {
         let message = text(ending, content);

@@ -129,6 +129,16 @@ impl<'a> Element<'a> {
 
 impl<'a> File<'a> {
     fn new(content: &'a [u8]) -> Result<Self, Fault> {
+        let last = b"</VTKFile>";
+        if !content
+            .windows(last.len())
+            .rev()
+            .any(|window| window == last)
+        {
+            return Err(Fault::of_file(
+                "the file ends where </VTKFile> should follow",
+            ));
+        }
         let mark = b"<AppendedData";
         let appended = content
             .windows(mark.len())

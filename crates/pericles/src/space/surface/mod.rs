@@ -14,6 +14,7 @@
 //! # Ok::<(), pericles::space::surface::SurfaceError>(())
 //! ```
 
+mod caution;
 mod check;
 mod error;
 mod half_edges;
@@ -22,7 +23,8 @@ mod order;
 mod shapes;
 mod weld;
 
-pub use check::{Component, SurfaceCaution, SurfaceChecks, SurfaceReport};
+pub use caution::SurfaceCaution;
+pub use check::{Component, SurfaceChecks, SurfaceReport};
 pub use error::SurfaceError;
 pub use half_edges::HalfEdges;
 pub use measure::{AreaRule, Cotangents};

@@ -1,7 +1,9 @@
 //! Surfaces with fewer vertices.
 
-use super::check::same_places;
-use super::{Surface, SurfaceError};
+use std::collections::HashMap;
+
+use super::{Surface, SurfaceError, difference, norm};
+use crate::space::Point;
 
 impl Surface {
     /// The surface with vertices nearer to each other than `tolerance` (m) made one, the first of them; triangles that lose a corner by it are left out.
@@ -53,4 +55,37 @@ impl Surface {
         }
         Self::new(positions, triangles)
     }
+}
+
+/// For each point the first one that lies within `tolerance` of it, itself if there is none before it.
+///
+/// Points are sorted into cubes of side `tolerance`, of which 27 are searched.
+pub(super) fn same_places(positions: &[Point], tolerance: f64) -> Vec<u32> {
+    let side = tolerance.max(f64::MIN_POSITIVE);
+    let cell = |x: &Point| x.map(|x| (x / side).floor());
+    let key = |cell: [f64; 3]| cell.map(|c| (c + 0.0).to_bits());
+    let mut cells: HashMap<[u64; 3], Vec<u32>> = HashMap::with_capacity(positions.len());
+    let mut first = Vec::with_capacity(positions.len());
+    for (number, x) in positions.iter().enumerate() {
+        let at = cell(x);
+        let mut found = number as u32;
+        for k in 0..27 {
+            let near = [
+                at[0] + f64::from(k % 3 - 1),
+                at[1] + f64::from(k / 3 % 3 - 1),
+                at[2] + f64::from(k / 9 - 1),
+            ];
+            for &other in cells.get(&key(near)).into_iter().flatten() {
+                let apart = norm(difference(*x, positions[other as usize]));
+                if apart <= tolerance {
+                    found = found.min(other);
+                }
+            }
+        }
+        if found == number as u32 {
+            cells.entry(key(at)).or_default().push(found);
+        }
+        first.push(found);
+    }
+    first
 }
