@@ -16,6 +16,7 @@ mod geodesics;
 mod machine;
 mod prepare;
 mod progress;
+mod refinement;
 mod report;
 mod reproduce;
 mod run;

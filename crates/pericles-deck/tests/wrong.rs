@@ -91,10 +91,10 @@ const WRONG: &[Wrong] = &[
     wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "a section cuts a bar"]),
     wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` has no place in [load.0]", "`traction`"]),
     // Expressions and tables.
-    wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (22, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),
-    wrong("[0, \"12 MPa\"]", "[0, { expression = \"(x\" }]", (26, 32), "\"(x\"", &["a parenthesis is not closed", "SI units"]),
-    wrong("[0, \"12 MPa\"]", "[0, 1]\nfunction = { kind = \"table\", rows = [[1, 0], [1, 2]] }", (27, 37), "[[1, 0]", &["row 1 of the table", "each time later"]),
-    wrong("[0, \"12 MPa\"]", "[0, 1]\nfrom = \"2 us\"\nuntil = \"1 us\"", (28, 9), "\"1 us\"", &["out of range", "later than `from`"]),
+    wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (23, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),
+    wrong("[0, \"12 MPa\"]", "[0, { expression = \"(x\" }]", (27, 31), "\"(x\"", &["a parenthesis is not closed", "SI units"]),
+    wrong("[0, \"12 MPa\"]", "[0, 1]\nfunction = { kind = \"table\", rows = [[1, 0], [1, 2]] }", (28, 37), "[[1, 0]", &["row 1 of the table", "each time later"]),
+    wrong("[0, \"12 MPa\"]", "[0, 1]\nfrom = \"2 us\"\nuntil = \"1 us\"", (29, 9), "\"1 us\"", &["out of range", "later than `from`"]),
     // Schemes.
     wrong("dt = \"auto\"", "scheme = \"rk5\"", (35, 10), "\"rk5\"", &["unknown scheme `rk5`", "did you mean `rk3`?", "\"rk4-mts\"", "\"respa\""]),
     wrong("dt = \"auto\"", "scheme = \"rk4\"\nratio = 4", (36, 1), "ratio", &["`ratio` has no place in [time]", "\"rk4-mts\""]),
@@ -113,6 +113,10 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nadaptive = { after = 2 }", (37, 14), "after", &["unknown key `after` in [time.adaptive]", "`threshold`"]),
     wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nfine = \"top\"\ninterpolant = \"hermit\"", (38, 15), "\"hermit\"", &["did you mean `hermite`?"]),
     wrong("[sets.top]", "[[material.inclusion]]\nset = \"top\"\nstiffness = 0\n[sets.top]", (17, 13), "0", &["a positive number"]),
+    // Smaller cells.
+    wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks `ratio`"]),
+    wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks one of", "`ball`"]),
+    wrong("[material]", "[[body.refine]]\nall = true\nratio = 1\n[material]", (11, 9), "1", &["from 2 to 16"]),
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),

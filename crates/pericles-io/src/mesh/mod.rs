@@ -46,30 +46,67 @@ pub const SURFACE_ENDINGS: [&str; 7] = ["obj", "ply", "stl", "off", "msh", "vtu"
 /// A file that cannot be read, an unknown ending, content that is not what the format says, with its place, and what [`Surface::new`] refuses.
 pub fn read_surface(path: impl AsRef<Path>) -> Result<Surface, MeshError> {
     let path = path.as_ref();
-    let ending = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_lowercase();
-    let parse = match ending.as_str() {
-        "obj" => obj::parse,
-        "ply" => ply::parse,
-        "stl" => stl::parse,
-        "off" => off::parse,
-        "msh" => gmsh::parse,
-        "vtu" | "vtp" => vtk::parse,
-        _ => return Err(MeshError::UnknownFormat { path: path.into() }),
-    };
+    let format = Format::of(path)?;
     let content = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
-    let mesh = parse(&content).map_err(|Fault { place, reason }| MeshError::Content {
-        path: path.into(),
-        place,
-        reason,
-    })?;
-    mesh.surface(&ending).map_err(|source| MeshError::Surface {
-        path: path.into(),
-        source,
-    })
+    format.surface(path, &content)
+}
+
+/// A format by its ending.
+struct Format {
+    parse: fn(&[u8]) -> Result<Mesh, Fault>,
+    /// Corners are given again for every triangle.
+    unwelded: bool,
+    /// Vertices may belong to other things than surfaces.
+    mixed: bool,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, MeshError> {
+        let ending = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
+        let parse = match ending.as_str() {
+            "obj" => obj::parse,
+            "ply" => ply::parse,
+            "stl" => stl::parse,
+            "off" => off::parse,
+            "msh" => gmsh::parse,
+            "vtu" | "vtp" => vtk::parse,
+            _ => return Err(MeshError::UnknownFormat { path: path.into() }),
+        };
+        Ok(Self {
+            parse,
+            unwelded: ending == "stl",
+            mixed: matches!(ending.as_str(), "msh" | "vtu" | "vtp"),
+        })
+    }
+
+    fn surface(&self, path: &Path, content: &[u8]) -> Result<Surface, MeshError> {
+        let mesh = (self.parse)(content).map_err(|Fault { place, reason }| MeshError::Content {
+            path: path.into(),
+            place,
+            reason,
+        })?;
+        self.made(mesh).map_err(|source| MeshError::Surface {
+            path: path.into(),
+            source,
+        })
+    }
+
+    fn made(&self, mesh: Mesh) -> Result<Surface, SurfaceError> {
+        let surface = Surface::new(mesh.positions, mesh.triangles)?;
+        if self.unwelded {
+            let [low, high] = surface.bounds();
+            let side = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+            return surface.welded(WELD * side);
+        }
+        if self.mixed {
+            return surface.without_unreferenced();
+        }
+        Ok(surface)
+    }
 }
 
 /// Vertices and triangles as they are in a file.
@@ -84,19 +121,6 @@ impl Mesh {
     fn polygon(&mut self, corners: &[u32]) {
         for pair in corners.windows(2).skip(1) {
             self.triangles.push([corners[0], pair[0], pair[1]]);
-        }
-    }
-
-    fn surface(self, ending: &str) -> Result<Surface, SurfaceError> {
-        let surface = Surface::new(self.positions, self.triangles)?;
-        match ending {
-            "stl" => {
-                let [low, high] = surface.bounds();
-                let side = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
-                surface.welded(WELD * side)
-            }
-            "msh" | "vtu" | "vtp" => surface.without_unreferenced(),
-            _ => Ok(surface),
         }
     }
 }

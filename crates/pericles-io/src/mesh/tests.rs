@@ -337,10 +337,8 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 fn read(ending: &str, content: &[u8]) -> Result<Surface, MeshError> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(format!("surface.{ending}"));
-    std::fs::write(&path, content).unwrap();
-    read_surface(path)
+    let path = Path::new("surface").with_extension(ending);
+    Format::of(&path)?.surface(&path, content)
 }
 
 #[test]
@@ -533,11 +531,8 @@ proptest! {
             let place = place.index(content.len());
             content[place] = byte;
         }
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(format!("a.{ending}"));
         for length in [content.len(), cut.index(content.len() + 1)] {
-            std::fs::write(&path, &content[..length]).unwrap();
-            if let Ok(surface) = read_surface(&path) {
+            if let Ok(surface) = read(ending, &content[..length]) {
                 let _ = surface.checked(Default::default());
             }
         }
