@@ -49,6 +49,23 @@ pub enum Caution {
         /// Where, m.
         window: f64,
     },
+    /// Waves that the grid does not carry.
+    #[error(
+        "{:.0} % of the energy of this {what} is in waves shorter than {length:.3e} m or faster than a period of {period:.3e} s, which the grid delays by more than {:.0} %",
+        100.0 * share, 100.0 * tolerance
+    )]
+    ShortWaves {
+        /// What sends them out.
+        what: &'static str,
+        /// Their share of the energy.
+        share: f64,
+        /// The deviation of their speed, relative.
+        tolerance: f64,
+        /// The shortest period that the grid carries, s.
+        period: f64,
+        /// The shortest wave that it carries, m.
+        length: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -78,6 +95,9 @@ impl Subject for Caution {
             Self::ShortPeriod { .. } => {
                 "a longer body, a shorter run or a smaller exact.window brings it down"
             }
+            Self::ShortWaves { .. } => {
+                "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -92,6 +112,7 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
             Self::ShortPeriod { .. } => "short period",
+            Self::ShortWaves { .. } => "short waves",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }

@@ -1,9 +1,11 @@
 //! The scheme of `[time]` and its parameters.
 
 use pericles::time::{
-    Follow, FunctionMethod, ImplicitRule, Interpolant, LoadRule, Predictor, TrigonometricOptions,
+    Follow, FunctionMethod, ImplicitRule, Interpolant, LoadRule, NewmarkOptions, Predictor,
+    TrigonometricOptions,
 };
 
+use crate::newmark;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
@@ -47,6 +49,13 @@ pub enum Scheme {
     Implicit(ImplicitRule),
     /// The exact flow of the linear part.
     Trigonometric(TrigonometricOptions),
+    /// Newmark's method.
+    Newmark(NewmarkOptions),
+    /// Discrete gradients, which conserve energy.
+    DiscreteGradient {
+        /// Relative error of the energy in a step.
+        tolerance: f64,
+    },
     /// r-RESPA.
     Respa {
         /// Where and how fine.
@@ -102,6 +111,8 @@ enum Kind {
     Respa,
     Implicit(ImplicitRule),
     Trigonometric,
+    Newmark,
+    DiscreteGradient,
 }
 
 pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
@@ -125,6 +136,8 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
                 Kind::Implicit(ImplicitRule::Trapezoidal),
             ),
             ("trigonometric", Kind::Trigonometric),
+            ("newmark", Kind::Newmark),
+            ("discrete-gradient", Kind::DiscreteGradient),
         ],
     );
     let Some(kind) = kind else {
@@ -140,7 +153,10 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             "functions",
             "loads",
             "regularisation",
-        ] {
+        ]
+        .into_iter()
+        .chain(newmark::KEYS)
+        {
             table.optional(key);
         }
         return None;
@@ -152,12 +168,23 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             Some(f64::NAN)
         }
     };
+    let newmark = if kind == Kind::Newmark {
+        newmark::read(table).map(Some)
+    } else {
+        for key in newmark::KEYS {
+            table.forbid(key, "it belongs to scheme = \"newmark\"");
+        }
+        Some(None)
+    };
     let tolerance = match kind {
         Kind::DormandPrince => tolerance(table),
+        Kind::DiscreteGradient => energy_tolerance(table),
+        // Its own, a velocity.
+        Kind::Newmark => Some(f64::NAN),
         _ => {
             table.forbid(
                 "tolerance",
-                "a tolerance belongs to scheme = \"dormand-prince\"",
+                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\" or \"discrete-gradient\"",
             );
             Some(f64::NAN)
         }
@@ -194,6 +221,9 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
     if let Some(options) = exact? {
         return Some(Scheme::Trigonometric(options));
     }
+    if let Some(options) = newmark? {
+        return Some(Scheme::Newmark(options));
+    }
     Some(match (kind, fine, interface) {
         (Kind::Implicit(rule), ..) => Scheme::Implicit(rule),
         (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
@@ -206,6 +236,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         (Kind::Rk3, ..) => Scheme::RungeKutta3 { alpha },
         (Kind::Rk4, ..) => Scheme::RungeKutta4,
         (Kind::DormandPrince, ..) => Scheme::DormandPrince { tolerance },
+        (Kind::DiscreteGradient, ..) => Scheme::DiscreteGradient { tolerance },
         _ => Scheme::VelocityVerlet,
     })
 }
@@ -255,6 +286,17 @@ fn trigonometric(table: &Table<'_>) -> Option<TrigonometricOptions> {
         functions: functions?,
         load_rule: load_rule?,
         regularisation: regularisation?,
+    })
+}
+
+fn energy_tolerance(table: &Table<'_>) -> Option<f64> {
+    const TOLERANCE: f64 = 1e-10;
+    table.or("tolerance", TOLERANCE, |item| {
+        item.within(
+            Quantity::Number,
+            "a number from 1e-14 to 0.01",
+            |tolerance| (1e-14..1e-2).contains(&tolerance),
+        )
     })
 }
 

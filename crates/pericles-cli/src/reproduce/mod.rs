@@ -8,6 +8,7 @@
 
 mod dispersion;
 mod fracture;
+mod manifolds;
 mod multi_time_step;
 mod nonlocal_wave;
 mod row;
@@ -39,9 +40,10 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 4] = [
+const TOPICS: [&[Study]; 5] = [
     &dispersion::STUDIES,
     &fracture::STUDIES,
+    &manifolds::STUDIES,
     &multi_time_step::STUDIES,
     &nonlocal_wave::STUDIES,
 ];

@@ -1,8 +1,9 @@
 //! The integrator of a model.
 
 use pericles::time::{
-    AdaptiveRungeKutta, Fine, Implicit, Integrator, MultiTimeStep, MultiTimeStepOptions, Predictor,
-    Respa, RungeKutta, Tableau, Trigonometric, VelocityVerlet,
+    AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
+    MultiTimeStepOptions, Newmark, Predictor, Respa, RungeKutta, Tableau, Trigonometric,
+    VelocityVerlet,
 };
 use pericles::{PericlesError, System};
 
@@ -48,6 +49,12 @@ impl Deck {
             }
             Scheme::Trigonometric(options) => Box::new(
                 Trigonometric::new(*options, system).map_err(|error| self.at_scheme(error))?,
+            ),
+            Scheme::Newmark(options) => {
+                Box::new(Newmark::new(*options, system).map_err(|error| self.at_scheme(error))?)
+            }
+            Scheme::DiscreteGradient { tolerance } => Box::new(
+                DiscreteGradient::new(*tolerance, system).map_err(|error| self.at_scheme(error))?,
             ),
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
