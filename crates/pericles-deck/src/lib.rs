@@ -128,13 +128,13 @@
 //! name = "middle"
 //! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
 //!
-//! [exact]                                # a bar whose solution is known: the distance from it goes to errors.csv, as often as the history; optional
-//! solution = "nonlocal-pulse"            # u = amplitude exp(−((x − centre)/width)²) at rest, on the line with a Gaussian micromodulus; or
-//! width = "1 m"                          #   local-pulse (the same on the local string), stretched-bar (strain, length: held at 0, free at length),
-//! amplitude = "1 m"                      #   bar-mode (amplitude, length)
-//! centre = 0                             # default
-//! window = "3 m"                         # default all: only points so near to the centre count
-//! start = true                           # default false: the body starts as the solution, whatever [[initial]] says of the displacement
+//! # [exact]                                # a bar whose solution is known: the distance from it goes to errors.csv, as often as the history; optional
+//! # solution = "nonlocal-pulse"            # u = amplitude exp(−((x − centre)/width)²) at rest, on the line with a Gaussian micromodulus; or
+//! # width = "1 m"                          #   local-pulse (the same on the local string), stretched-bar (strain, length: held at 0, free at length),
+//! # amplitude = "1 m"                      #   bar-mode (amplitude, length)
+//! # centre = 0                             # default
+//! # window = "3 m"                         # default all: only points so near to the centre count
+//! # start = true                           # default false: the body starts as the solution, whatever [[initial]] says of the displacement
 //!
 //! [time]
 //! end = "46 us"

@@ -77,7 +77,7 @@ const fn wrong(
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
     // Keys.
-    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `periodic` and `quadrature`"]),
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "also called `dx`"]),
@@ -198,7 +198,7 @@ scheme = "trigonometric"
 const WRONG_WAVES: &[Wrong] = &[
     wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" does not fit this body", "body.periodic = true"]),
     wrong("bonds = \"spectral\"", "bonds = \"list\"", (14, 9), "\"list\"", &["periodic faces", "\"convolution\""]),
-    wrong("model = \"linear\"", "model = \"bond-stretch\"", (14, 9), "\"spectral\"", &["the linear law only"]),
+    wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["belongs to model = \"linear\""]),
     wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["couple all plane waves"]),
     wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` has no place in [body]", "with two ends"]),
     wrong("shape = \"bar\"\nlength = 20\norigin = -10", "shape = \"plate\"\nsize = [20, 20]\nplane = \"strain\"\nquadrature = \"gauss\"", (5, 1), "quadrature", &["only the cells of a bar"]),
