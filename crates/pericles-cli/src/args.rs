@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use pericles_io::DiskCache;
 
 use crate::exit::Exit;
 
@@ -89,6 +90,8 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]
+    pub(crate) caching: Caching,
+    #[command(flatten)]
     pub(crate) execution: Execution,
 }
 
@@ -98,6 +101,8 @@ pub(crate) struct CheckArgs {
     pub(crate) deck: PathBuf,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) caching: Caching,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }
@@ -148,6 +153,8 @@ pub(crate) struct ResumeArgs {
     /// The folder of the run
     pub(crate) dir: PathBuf,
     #[command(flatten)]
+    pub(crate) caching: Caching,
+    #[command(flatten)]
     pub(crate) execution: Execution,
 }
 
@@ -189,6 +196,28 @@ pub(crate) struct Overrides {
     /// Change the deck, such as time.dt=auto or crack.0.ends=open; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+}
+
+/// Where results that are dear to compute are kept from run to run.
+#[derive(Debug, Args)]
+pub(crate) struct Caching {
+    /// Keep kernels and distances that take long to compute in DIR [default: $XDG_CACHE_HOME/pericles or ~/.cache/pericles]
+    #[arg(long = "cache", value_name = "DIR")]
+    folder: Option<PathBuf>,
+    /// Compute everything anew and keep nothing
+    #[arg(long, conflicts_with = "folder")]
+    no_cache: bool,
+}
+
+impl Caching {
+    /// The cache; none if it is not wanted or the user has no place for one.
+    pub(crate) fn cache(&self) -> Option<DiskCache> {
+        match &self.folder {
+            Some(folder) => Some(DiskCache::new(folder)),
+            None if self.no_cache => None,
+            None => DiskCache::of_user(),
+        }
+    }
 }
 
 /// How to compute and how much to say.

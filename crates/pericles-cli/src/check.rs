@@ -10,7 +10,7 @@ use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::prepare::Facts;
+use crate::prepare::{self, Facts};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
 use crate::waves::WaveSpeeds;
 
@@ -21,7 +21,7 @@ use crate::waves::WaveSpeeds;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let model = deck.build()?;
+    let model = prepare::model(&deck, &args.caching)?;
     let facts = Facts::of(&deck, &model);
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));

@@ -8,9 +8,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use pericles::observe::Schedule;
-use pericles::{Archive, Saved, Simulation, Values};
+use pericles::{Archive, Saved, Simulation};
 use pericles_deck::{Checkpoint, Deck};
-use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder, Section};
+use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
 use crate::error::CliError;
@@ -136,15 +136,10 @@ impl Checkpoints {
         };
         let mut archive = Archive::default();
         simulation.save(&mut archive);
-        let sections = archive
-            .into_arrays()
-            .into_iter()
-            .map(|(name, values)| (name, section(values)))
-            .collect();
-        Ok(Container {
-            metadata: serde_json::to_value(metadata)?,
-            sections,
-        })
+        Ok(Container::from_archive(
+            serde_json::to_value(metadata)?,
+            archive,
+        ))
     }
 }
 
@@ -171,37 +166,14 @@ impl Stored {
             path: latest.path.clone(),
             reason,
         };
-        let metadata = serde_json::from_value(latest.container.metadata)
-            .map_err(|error| unusable(error.to_string()))?;
-        let mut archive = Archive::default();
-        for (name, section) in latest.container.sections {
-            let values = values(section)
-                .ok_or_else(|| unusable(format!("the array \"{name}\" has an unknown type")))?;
-            archive.put(name, values);
-        }
+        let (metadata, archive) = latest.container.into_archive().map_err(unusable)?;
+        let metadata =
+            serde_json::from_value(metadata).map_err(|error| unusable(error.to_string()))?;
         Ok(Self {
             path: latest.path,
             metadata,
             archive,
             refused: latest.refused,
         })
-    }
-}
-
-fn section(values: Values) -> Section {
-    match values {
-        Values::F64(values) => Section::F64(values),
-        Values::U64(values) => Section::U64(values),
-        Values::U8(values) => Section::U8(values),
-    }
-}
-
-/// Archives hold no numbers of 32 bits.
-fn values(section: Section) -> Option<Values> {
-    match section {
-        Section::F64(values) => Some(Values::F64(values)),
-        Section::U64(values) => Some(Values::U64(values)),
-        Section::U8(values) => Some(Values::U8(values)),
-        Section::U32(_) => None,
     }
 }

@@ -11,6 +11,8 @@ use pericles_io::observers::{
 };
 use serde::Serialize;
 
+use crate::args::Caching;
+use crate::console;
 use crate::error::CliError;
 
 /// What is known about a run before its first step; SI units.
@@ -81,6 +83,21 @@ impl Facts {
             warnings: model.warnings.iter().map(|w| w.line()).collect(),
         }
     }
+}
+
+/// The model of a deck; what is dear to compute comes from the cache if it is there.
+///
+/// # Errors
+/// A deck that is refused.
+pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
+    let Some(cache) = caching.cache() else {
+        return Ok(deck.build()?);
+    };
+    let model = deck.build_with(&cache);
+    for note in cache.notes() {
+        console::note(format_args!("{note}"));
+    }
+    Ok(model?)
 }
 
 /// The simulation of a model with the observers the deck asks for, writing into a folder.

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         console::note(format_args!("{}: building the model", text.file));
     }
     // The folder is made once nothing in the deck can be wrong any more.
-    let model = deck.build()?;
+    let model = prepare::model(&deck, &args.caching)?;
     let facts = Facts::of(&deck, &model);
     let folder = match &args.out {
         Some(path) => OutputFolder::create(path, args.force).map_err(|error| match error {
@@ -77,7 +77,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
     }
     let stored = Stored::latest(&folder)?;
     let deck = stored.metadata.deck.read()?;
-    let model = deck.build()?;
+    let model = prepare::model(&deck, &args.caching)?;
     let mut facts = Facts::of(&deck, &model);
     facts.warnings.extend(doubts(&stored, &facts));
     let mut simulation = prepare::simulation(&deck, model, &folder)?;

@@ -7,6 +7,7 @@
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
+//! | cached results | all runs of a user | [`DiskCache`] |
 //! | all of these but checkpoints | a simulation, state by state | [`observers`] |
 //!
 //! But for the observers, everything takes plain slices in the layout of Pericles, one component after the other (`u[c * n + i]`), in SI units, and
@@ -36,6 +37,7 @@
 //! ```
 
 mod atomic;
+mod cache;
 mod checkpoint;
 mod csv;
 mod error;
@@ -45,6 +47,7 @@ mod picture;
 mod vtk;
 
 pub use atomic::write_atomically;
+pub use cache::DiskCache;
 pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
 pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
 pub use error::IoError;

@@ -254,6 +254,22 @@ pub enum PericlesError {
         /// The step, s.
         step: f64,
     },
+    /// An iterative solver that did not reach its tolerance.
+    #[error(
+        "{solver} stopped after {iterations} iterations with a residual of {residual:e}, {tolerance:e} was asked for: {cause}; a smaller time step helps"
+    )]
+    NotConverged {
+        /// The solver.
+        solver: &'static str,
+        /// Its iterations.
+        iterations: usize,
+        /// Norm of the last residual.
+        residual: f64,
+        /// Norm asked for.
+        tolerance: f64,
+        /// What stands in the way.
+        cause: &'static str,
+    },
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

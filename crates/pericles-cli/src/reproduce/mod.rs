@@ -4,7 +4,7 @@
 //! so that they run from any directory. A row is judged if it has an expected number ([`row::Row`]); a printed number known not to reproduce is shown
 //! beside the verified one that is judged, with the reason. The same studies are run by the tests.
 //!
-//! A new study is one file with a `STUDY`, listed in [`STUDIES`].
+//! A new study is one file with a `STUDY`, listed in its topic's `STUDIES`; a new topic is listed in [`TOPICS`].
 
 mod dispersion;
 mod fracture;
@@ -36,19 +36,12 @@ pub(crate) struct Study {
     pub(crate) run: fn(&Context<'_>) -> Result<Vec<Row>, CliError>,
 }
 
-/// All studies.
-const STUDIES: [Study; 10] = [
-    dispersion::one_dimensional::STUDY,
-    dispersion::two_dimensional::STUDY,
-    dispersion::three_dimensional::STUDY,
-    dispersion::spectrum::BARS,
-    dispersion::spectrum::PLATES,
-    dispersion::influence::STUDY,
-    dispersion::critical_stretch::STUDY,
-    dispersion::pulse::STUDY,
-    fracture::branching::STUDY,
-    fracture::inclined::STUDY,
-];
+/// All studies, by topic.
+const TOPICS: [&[Study]; 2] = [&dispersion::STUDIES, &fracture::STUDIES];
+
+fn studies() -> impl Iterator<Item = &'static Study> {
+    TOPICS.into_iter().flatten()
+}
 
 /// What a study is run with.
 pub(crate) struct Context<'a> {
@@ -154,8 +147,8 @@ fn verdict(rows: &[Row]) -> Exit {
 }
 
 fn list() -> Result<Exit, CliError> {
-    let width = STUDIES.iter().map(|study| study.id.len()).max();
-    for study in &STUDIES {
+    let width = studies().map(|study| study.id.len()).max();
+    for study in studies() {
         let Study {
             id, title, paper, ..
         } = study;
@@ -166,25 +159,21 @@ fn list() -> Result<Exit, CliError> {
 }
 
 fn find(id: &str) -> Result<&'static Study, CliError> {
-    const { &STUDIES }
-        .iter()
-        .find(|study| study.id == id)
-        .ok_or_else(|| {
-            let nearest = STUDIES
-                .iter()
-                .map(|study| (strsim::jaro_winkler(id, study.id), study.id))
-                .fold((0.0, ""), |a, b| if b.0 > a.0 { b } else { a });
-            let all = "`pericles reproduce --list` shows all studies";
-            CliError::UnknownStudy {
-                id: id.into(),
-                // Below this the two have little in common.
-                hint: if nearest.0 > 0.6 {
-                    format!("did you mean {}? {all}", nearest.1)
-                } else {
-                    all.into()
-                },
-            }
-        })
+    studies().find(|study| study.id == id).ok_or_else(|| {
+        let nearest = studies()
+            .map(|study| (strsim::jaro_winkler(id, study.id), study.id))
+            .fold((0.0, ""), |a, b| if b.0 > a.0 { b } else { a });
+        let all = "`pericles reproduce --list` shows all studies";
+        CliError::UnknownStudy {
+            id: id.into(),
+            // Below this the two have little in common.
+            hint: if nearest.0 > 0.6 {
+                format!("did you mean {}? {all}", nearest.1)
+            } else {
+                all.into()
+            },
+        }
+    })
 }
 
 fn default_folder(id: &str) -> PathBuf {
@@ -197,7 +186,7 @@ mod tests {
 
     #[test]
     fn studies_are_found_by_name_only() {
-        for study in &STUDIES {
+        for study in studies() {
             assert_eq!(find(study.id).ok().map(|s| s.id), Some(study.id));
         }
         let Err(CliError::UnknownStudy { hint, .. }) = find("fracture/branch") else {
@@ -222,8 +211,8 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_make_folders() {
-        for (k, study) in STUDIES.iter().enumerate() {
-            assert!(STUDIES[..k].iter().all(|other| other.id != study.id));
+        for (k, study) in studies().enumerate() {
+            assert!(studies().take(k).all(|other| other.id != study.id));
             let folder = default_folder(study.id);
             assert_eq!(folder.components().count(), 2, "{}", folder.display());
         }

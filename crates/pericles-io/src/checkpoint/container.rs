@@ -6,6 +6,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crc32fast::Hasher;
+use pericles::{Archive, Values};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -44,6 +45,31 @@ struct Entry {
 }
 
 impl Container {
+    /// A container of the arrays of an archive.
+    pub fn from_archive(metadata: Value, archive: Archive) -> Self {
+        let sections = archive.into_arrays().into_iter();
+        Self {
+            metadata,
+            sections: sections
+                .map(|(name, values)| (name, values.into()))
+                .collect(),
+        }
+    }
+
+    /// The metadata, and the arrays as an archive.
+    ///
+    /// # Errors
+    /// An array of a type that archives do not have, in words.
+    pub fn into_archive(self) -> Result<(Value, Archive), String> {
+        let mut archive = Archive::default();
+        for (name, section) in self.sections {
+            let values = Values::try_from(section)
+                .map_err(|kind| format!("the array {name:?} has the type {kind}"))?;
+            archive.put(name, values);
+        }
+        Ok((self.metadata, archive))
+    }
+
     /// Writes the container, whole or not at all; equal content gives equal bytes.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         write_atomically(path.as_ref(), |out| self.write_into(out))

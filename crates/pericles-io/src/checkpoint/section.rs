@@ -2,6 +2,7 @@
 
 use std::io::{self, Read, Write};
 
+use pericles::Values;
 use serde::{Deserialize, Serialize};
 
 /// Elements that are shuffled together; bounds the memory that coding needs.
@@ -34,6 +35,30 @@ impl PartialEq for Section {
             (Self::U32(a), Self::U32(b)) => a == b,
             (Self::U8(a), Self::U8(b)) => a == b,
             _ => false,
+        }
+    }
+}
+
+impl From<Values> for Section {
+    fn from(values: Values) -> Self {
+        match values {
+            Values::F64(values) => Self::F64(values),
+            Values::U64(values) => Self::U64(values),
+            Values::U8(values) => Self::U8(values),
+        }
+    }
+}
+
+/// Archives hold no numbers of 32 bits; the error names the type.
+impl TryFrom<Section> for Values {
+    type Error = &'static str;
+
+    fn try_from(section: Section) -> Result<Self, Self::Error> {
+        match section {
+            Section::F64(values) => Ok(Self::F64(values)),
+            Section::U64(values) => Ok(Self::U64(values)),
+            Section::U8(values) => Ok(Self::U8(values)),
+            Section::U32(_) => Err("u32"),
         }
     }
 }

@@ -4,13 +4,13 @@
 //! Mechanics (2022). The paper's tables of coefficients are not in print; the expected numbers were computed by separate codes and are kept in
 //! `validation/dispersion-and-fracture/`. Units of the spacing and of √(E/ρ) unless a row says otherwise; full node volumes.
 
-pub(super) mod critical_stretch;
-pub(super) mod influence;
-pub(super) mod one_dimensional;
-pub(super) mod pulse;
-pub(super) mod spectrum;
-pub(super) mod three_dimensional;
-pub(super) mod two_dimensional;
+mod critical_stretch;
+mod influence;
+mod one_dimensional;
+mod pulse;
+mod spectrum;
+mod three_dimensional;
+mod two_dimensional;
 
 use std::path::PathBuf;
 
@@ -21,11 +21,23 @@ use pericles::analysis::tuning::{
 use pericles::family::VolumeCorrection;
 use pericles::material::StressState;
 
-use super::Context;
+use super::{Context, Study};
 use crate::dispersion::curves::{Curves, STEPS, write_classes};
 use crate::error::CliError;
 
 const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
+
+/// The studies of this topic.
+pub(super) const STUDIES: [Study; 8] = [
+    one_dimensional::STUDY,
+    two_dimensional::STUDY,
+    three_dimensional::STUDY,
+    spectrum::BARS,
+    spectrum::PLATES,
+    influence::STUDY,
+    critical_stretch::STUDY,
+    pulse::STUDY,
+];
 
 /// Coefficients with their names.
 type NamedTables = Vec<(String, Vec<f64>)>;

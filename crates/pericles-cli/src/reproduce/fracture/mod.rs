@@ -6,11 +6,16 @@
 //! Definitions. The crack is the set of points with damage above 0.35 that is connected to the pre-crack; its front is looked at every 0.5 µs. Speeds are
 //! least-squares slopes over a window of time, short enough to follow the crack and long enough not to see single points.
 
-pub(super) mod branching;
+mod branching;
 mod figures;
 mod front;
-pub(super) mod inclined;
+mod inclined;
 mod record;
+
+use super::Study;
+
+/// The studies of this topic.
+pub(super) const STUDIES: [Study; 2] = [branching::STUDY, inclined::STUDY];
 
 const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
 
