@@ -108,6 +108,11 @@
 //! area = "100 mm2"                       # optional: else the set as seen along the normal of its layer, or along the load
 //! function = { kind = "ramp", duration = "1 us" }
 //!
+//! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet"
+//! kind = "absorbing"                     # the bar goes on for ever beyond this end, as its outermost points are; exact
+//! side = "-x"                            # or +x
+//! history = "blocked"                    # default; or direct: slow, for comparison
+//!
 //! [[probe]]                              # displacement and velocity in the history
 //! name = "middle"
 //! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
@@ -152,6 +157,7 @@
 //! of which only one may be given: `material.m=4` replaces `horizon`. Errors point into the override.
 
 mod body;
+mod boundary;
 mod build;
 mod caution;
 mod conditions;
@@ -177,6 +183,7 @@ mod units;
 mod vocabulary;
 
 pub use body::Body;
+pub use boundary::{BoundaryCondition, HistoryForm};
 pub use build::{Model, Sets};
 pub use caution::Caution;
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace};

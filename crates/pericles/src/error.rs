@@ -1,5 +1,7 @@
 //! The one error type of the library.
 
+use crate::boundary::absorbing::AbsorbingError;
+
 /// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -270,6 +272,9 @@ pub enum PericlesError {
         /// What stands in the way.
         cause: &'static str,
     },
+    /// No absorbing end can be made.
+    #[error("absorbing end: {0}")]
+    Absorbing(#[from] AbsorbingError),
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

@@ -30,6 +30,9 @@ pub struct AbsorbingEnd {
 }
 
 impl AbsorbingEnd {
+    /// The scheme that the ends are made for.
+    pub const SCHEME: &str = "velocity-verlet";
+
     /// An end whose history gives the ghosts of the layer.
     ///
     /// # Errors
@@ -106,15 +109,11 @@ impl Boundary for AbsorbingEnd {
     }
 
     fn scheme(&self) -> Option<&'static str> {
-        Some("velocity-verlet")
+        Some(Self::SCHEME)
     }
 
     fn steps(&self) -> Option<u64> {
         self.history.steps()
-    }
-
-    fn highest_frequency(&self) -> Option<f64> {
-        Some(self.layer.stencil.highest_frequency())
     }
 }
 

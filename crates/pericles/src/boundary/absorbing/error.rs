@@ -110,9 +110,20 @@ pub enum AbsorbingError {
     },
     /// A law that is not linear.
     #[error(
-        "an exact absorbing end needs linear bonds in the outer layer: there material.model must be \"linear\""
+        "the forces in the outer layer at {side} are not linear in the displacement, at point {point}: an exact absorbing end needs a linear exterior"
     )]
-    NotLinear,
+    NotLinear {
+        /// The side.
+        side: &'static str,
+        /// The point, in the user's numbering.
+        point: usize,
+    },
+    /// Two ends at one side.
+    #[error("there are two absorbing ends at {side}; one is enough")]
+    Twice {
+        /// The side.
+        side: &'static str,
+    },
     /// Bonds that may break in the outer layer.
     #[error(
         "the outer layer at {side} may break: its {needed} outermost points must be in `no_fail`, or the material unbreakable"
@@ -139,8 +150,8 @@ pub enum AbsorbingError {
     },
     /// An initial field that reaches the end.
     #[error(
-        "the initial field reaches the end {side}: point {point} has {found:e}, the largest is {largest:e}; beyond an absorbing end all must be at rest. Move the \
-         end outwards or, where the field is known there, give it by exterior_data"
+        "the initial field reaches the end {side}: point {point} has {found:e}, the largest is {largest:e}; beyond an absorbing end all is at rest, so move the \
+         end outwards"
     )]
     NotAtRest {
         /// The side.

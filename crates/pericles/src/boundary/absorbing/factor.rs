@@ -5,7 +5,7 @@
 //! with G = 1/(dt² w c),
 //!
 //! ```text
-//! G = [1 + Σ h_m²] / [1 − 2(1 − s) w + w²],   s = dt² Σ a_k
+//! G = [1 + Σ h_m²] / [(1 − w)² + 2 s w],   s = dt² Σ a_k
 //! h_k = dt² a_k w G + Σ_m h_m h_{m+k}
 //! ```
 //!
@@ -28,10 +28,12 @@ struct Factor {
     length: usize,
     /// dt² a_k.
     weights: Vec<f64>,
-    /// 2 (1 − s).
-    feedback: f64,
+    /// 2 s.
+    pull: f64,
     h: Vec<Vec<f64>>,
     g: Vec<f64>,
+    /// The last difference of g.
+    slope: f64,
     /// Coefficients of Σ_m h_m h_{m+k}, k = 0 … K − 1, as far as their factors are known.
     sums: Vec<Vec<f64>>,
     levels: Levels,
@@ -51,9 +53,10 @@ impl Factor {
             reach,
             length,
             weights: stencil.weights().iter().map(|a| dt * dt * a).collect(),
-            feedback: 2.0 * (1.0 - dt * dt * stencil.sum()),
+            pull: 2.0 * dt * dt * stencil.sum(),
             h: (0..reach).map(|_| series()).collect(),
             g: series(),
+            slope: 0.0,
             sums: (0..reach).map(|_| series()).collect(),
             heads: Vec::new(),
             blocks: levels.work(reach),
@@ -82,9 +85,11 @@ impl Factor {
                 self.h[k - 1][j] = self.weights[k - 1] * self.g[j - 1] + product;
             }
         }
-        let back = |n: usize| if j >= n { self.g[j - n] } else { 0.0 };
-        let one = if j == 0 { 1.0 } else { 0.0 };
-        self.g[j] = one + self.sums[0][j] + self.feedback * back(1) - back(2);
+        // By increments: 2 g[j − 1] − g[j − 2] would lose digits for small steps.
+        let before = if j > 0 { self.g[j - 1] } else { 0.0 };
+        let source = if j > 0 { self.sums[0][j] } else { 1.0 };
+        self.slope += source - self.pull * before;
+        self.g[j] = before + self.slope;
     }
 
     /// Adds the products of coefficient j that end within its block.

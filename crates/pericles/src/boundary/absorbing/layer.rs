@@ -1,8 +1,10 @@
 //! What the body shows to an absorbing end: its outer layer.
 
 use super::{AbsorbingError, LatticeStencil};
+use crate::operator::On;
 use crate::space::PointCloud;
 use crate::system::System;
+use crate::time::State;
 
 /// An end of a bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,15 +52,16 @@ const ALIKE: f64 = 1e-11;
 const AT_REST: f64 = 1e-12;
 
 impl OuterLayer {
-    /// The outer layer of a body whose initial state is (u, v). The lattice beyond is read off the body's own bonds: those of the outermost point.
+    /// The outer layer of a body with its initial state and the points, ascending, whose bonds never break. The lattice beyond is read off the body's own
+    /// bonds: those of the outermost point.
     ///
     /// # Errors
-    /// Everything that the exterior cannot continue ([`AbsorbingError`]); `at_rest`: also an initial field that reaches the layer.
+    /// Everything that the exterior cannot continue ([`AbsorbingError`]).
     pub fn of(
         system: &System,
         side: Side,
-        [u, v]: [&[f64]; 2],
-        at_rest: bool,
+        start: &State,
+        no_fail: &[u32],
     ) -> Result<Self, AbsorbingError> {
         let cloud = system.cloud();
         check_bar(cloud)?;
@@ -114,13 +117,49 @@ impl OuterLayer {
             points,
             stencil,
         };
+        layer.check_lasting(system, no_fail)?;
+        layer.check_linear(&bonds)?;
         layer.check_free(system)?;
-        if at_rest {
-            for field in [u, v] {
-                layer.check_at_rest(field, cloud)?;
-            }
+        for field in [&start.u, &start.v] {
+            layer.check_at_rest(field, cloud)?;
         }
         Ok(layer)
+    }
+
+    /// No bond of the layer can break.
+    fn check_lasting(&self, system: &System, no_fail: &[u32]) -> Result<(), AbsorbingError> {
+        let held = |i: &usize| no_fail.binary_search(&(*i as u32)).is_ok();
+        if system.operator().can_break() && !self.points.iter().all(held) {
+            return Err(AbsorbingError::LayerBreakable {
+                side: self.side.name(),
+                needed: self.points.len(),
+            });
+        }
+        Ok(())
+    }
+
+    /// The force of a displaced layer is that of its tangent.
+    fn check_linear(&self, bonds: &Bonds<'_>) -> Result<(), AbsorbingError> {
+        let operator = bonds.system.operator();
+        let mut u = bonds.rest.clone();
+        let spacing = bonds.system.cloud().spacing();
+        for (p, &i) in self.points.iter().enumerate() {
+            // No bond turns over.
+            u[i] = spacing * (0.2 - 0.05 * (p % 5) as f64);
+        }
+        let mut tangent = bonds.rest.clone();
+        operator.tangent_into(0.0, &bonds.rest, &u, &mut tangent);
+        let mut force = bonds.rest.clone();
+        operator.add_force(0.0, &u, On::All, &mut force);
+        let scale = tangent.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let miss = |&i: &usize| (force[i] - tangent[i]).abs() > 1e-9 * scale;
+        match self.points.iter().find(|i| miss(i)) {
+            None => Ok(()),
+            Some(&point) => Err(AbsorbingError::NotLinear {
+                side: self.side.name(),
+                point: bonds.system.cloud().user_number(point),
+            }),
+        }
     }
 
     /// No load and no prescribed motion in the layer.

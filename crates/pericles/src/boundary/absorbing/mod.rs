@@ -28,6 +28,7 @@
 //! semi-discrete lattice; the discrete kernels, their factorisation and the fast histories are ours.
 
 mod blocks;
+mod cached;
 mod end;
 mod error;
 mod factor;
@@ -36,6 +37,7 @@ mod kernels;
 mod layer;
 mod stencil;
 
+pub use cached::cached_kernels;
 pub use end::AbsorbingEnd;
 pub use error::AbsorbingError;
 pub use factor::factor_kernels;
