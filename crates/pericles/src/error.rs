@@ -256,6 +256,9 @@ pub enum PericlesError {
         /// The step, s.
         step: f64,
     },
+    /// A surface that cannot be used.
+    #[error(transparent)]
+    Surface(#[from] crate::space::surface::SurfaceError),
     /// An iterative solver that did not reach its tolerance.
     #[error(
         "{solver} stopped after {iterations} iterations with a residual of {residual:e}, {tolerance:e} was asked for: {cause}; a smaller time step helps"

@@ -1,0 +1,441 @@
+//! Is a surface a closed manifold, well enough cut into triangles?
+
+use std::collections::HashMap;
+use std::fmt;
+
+use super::half_edges::{origins, sorted_by_edge};
+use super::{HalfEdges, Surface, SurfaceError};
+use crate::space::Point;
+
+/// The smallest area of a triangle, as a part of the square of the surface's largest side.
+const SMALLEST_AREA: f64 = 1e-12;
+
+/// Vertices nearer to each other than this part of the surface's largest side are one vertex given twice.
+const SAME_PLACE: f64 = 1e-12;
+
+/// What a surface is checked for, besides what is never allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SurfaceChecks {
+    /// Allow edges with one triangle.
+    pub open: bool,
+    /// Allow parts that do not hang together.
+    pub several_components: bool,
+    /// Turn over triangles that run the wrong way, instead of refusing them.
+    pub flip: bool,
+}
+
+/// A part of a surface that hangs together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Component {
+    /// Vertices.
+    pub vertices: usize,
+    /// Edges.
+    pub edges: usize,
+    /// Edges with one triangle.
+    pub boundary_edges: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// The enclosed volume, m³; of an open part without meaning.
+    pub volume: f64,
+}
+
+impl Component {
+    /// The Euler number V − E + F.
+    pub fn euler(&self) -> i64 {
+        self.vertices as i64 - self.edges as i64 + self.triangles as i64
+    }
+
+    /// The number of handles g, from V − E + F = 2 − 2g; of a closed part only.
+    pub fn genus(&self) -> Option<i64> {
+        (self.boundary_edges == 0).then(|| (2 - self.euler()) / 2)
+    }
+}
+
+/// What a checked surface is like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceReport {
+    /// Edges.
+    pub edges: usize,
+    /// Edges with one triangle.
+    pub boundary_edges: usize,
+    /// Triangles that were turned over.
+    pub flipped: usize,
+    /// Parts that hang together, the one with most triangles first.
+    pub components: Vec<Component>,
+    /// The smallest and the largest angle of the triangles, rad.
+    pub angles: [f64; 2],
+    /// The shortest, the median and the longest edge, m.
+    pub edge_lengths: [f64; 3],
+    /// Area of the triangles, m².
+    pub area: f64,
+    /// Enclosed volume, m³.
+    pub volume: f64,
+}
+
+/// Something about the horizon on a surface that a user should know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum SurfaceCaution {
+    /// The horizon is short.
+    ShortHorizon {
+        /// Horizon over median edge.
+        ratio: f64,
+    },
+    /// The horizon is long.
+    LongHorizon {
+        /// Horizon over median edge.
+        ratio: f64,
+    },
+    /// There are few bonds.
+    FewNeighbours {
+        /// Neighbours of a vertex, on average.
+        mean: f64,
+    },
+}
+
+impl fmt::Display for SurfaceCaution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ShortHorizon { ratio } => write!(
+                f,
+                "the horizon is {ratio:.2} median edges; below 2 the directions of bonds are those of the mesh"
+            ),
+            Self::LongHorizon { ratio } => write!(
+                f,
+                "the horizon is {ratio:.1} median edges; above 15 time and memory grow with its square and little is gained"
+            ),
+            Self::FewNeighbours { mean } => write!(
+                f,
+                "vertices have {mean:.1} neighbours on average; with fewer than 12 the sums are coarse"
+            ),
+        }
+    }
+}
+
+impl Surface {
+    /// Checks the surface and says what it is like. In this order: no triangle without area, no two vertices in one place, no vertex without triangle;
+    /// two triangles to every edge; neighbouring triangles run their edge in opposite directions; one fan of triangles to every vertex; one part; outside
+    /// is outside.
+    ///
+    /// # Errors
+    /// The first condition that does not hold, with the number of places where it does not and the first of them.
+    pub fn checked(mut self, checks: SurfaceChecks) -> Result<(Self, SurfaceReport), SurfaceError> {
+        self.check_triangles()?;
+        self.check_vertices()?;
+        self.check_edges(checks.open)?;
+        let mut flipped = if checks.flip { self.orient()? } else { 0 };
+        let half_edges = HalfEdges::new(&self)?;
+        self.check_fans(&half_edges)?;
+        let part = parts(&half_edges);
+        let count = part.iter().max().map_or(0, |&last| last as usize + 1);
+        let volumes = self.volumes(&part, count);
+        if checks.flip {
+            flipped += self.turn_out(&half_edges, &part, &volumes);
+        }
+        let half_edges = HalfEdges::new(&self)?;
+        let components = self.components(&half_edges, &part, count);
+        if let ([first, second, ..], false) = (&components[..], checks.several_components) {
+            return Err(SurfaceError::SeveralComponents {
+                components: components.len(),
+                sizes: [first.triangles, second.triangles],
+            });
+        }
+        let boundary_edges = components.iter().map(|part| part.boundary_edges).sum();
+        let volume = self.volume();
+        if boundary_edges == 0 && volume <= 0.0 {
+            return Err(SurfaceError::InsideOut { volume });
+        }
+        let report = SurfaceReport {
+            edges: components.iter().map(|part| part.edges).sum(),
+            boundary_edges,
+            flipped,
+            components,
+            angles: self.angle_range(),
+            edge_lengths: self.edge_lengths(),
+            area: self.area(),
+            volume,
+        };
+        Ok((self, report))
+    }
+
+    /// What should be known about a horizon (m) that gives vertices this many neighbours on average.
+    pub fn cautions(&self, horizon: f64, mean_neighbours: f64) -> Vec<SurfaceCaution> {
+        let ratio = horizon / self.median_edge();
+        let mut cautions = Vec::new();
+        if ratio < 2.0 {
+            cautions.push(SurfaceCaution::ShortHorizon { ratio });
+        }
+        if ratio > 15.0 {
+            cautions.push(SurfaceCaution::LongHorizon { ratio });
+        }
+        if mean_neighbours < 12.0 {
+            cautions.push(SurfaceCaution::FewNeighbours {
+                mean: mean_neighbours,
+            });
+        }
+        cautions
+    }
+
+    fn largest_side(&self) -> f64 {
+        let [low, high] = self.bounds();
+        (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max)
+    }
+
+    fn check_triangles(&self) -> Result<(), SurfaceError> {
+        let limit = SMALLEST_AREA * self.largest_side().powi(2);
+        let small = |&(_, area): &(usize, f64)| area.is_nan() || area <= limit;
+        let mut degenerate = self.triangle_areas().enumerate().filter(small);
+        let Some((first, area)) = degenerate.next() else {
+            return Ok(());
+        };
+        Err(SurfaceError::Degenerate {
+            triangles: 1 + degenerate.count(),
+            first,
+            area,
+            limit,
+        })
+    }
+
+    fn check_vertices(&self) -> Result<(), SurfaceError> {
+        let mut duplicates = same_places(&self.positions, SAME_PLACE * self.largest_side())
+            .into_iter()
+            .enumerate()
+            .filter(|&(vertex, first)| vertex != first as usize);
+        if let Some((second, first)) = duplicates.next() {
+            return Err(SurfaceError::Duplicate {
+                vertices: 1 + duplicates.count(),
+                first: [first as usize, second].map(|v| self.user_number(v)),
+            });
+        }
+        let mut used = vec![false; self.len()];
+        for &vertex in self.triangles.iter().flatten() {
+            used[vertex as usize] = true;
+        }
+        let mut unused = (0..self.len()).filter(|&vertex| !used[vertex]);
+        match unused.next() {
+            None => Ok(()),
+            Some(first) => Err(SurfaceError::Unreferenced {
+                vertices: 1 + unused.count(),
+                first: self.user_number(first),
+            }),
+        }
+    }
+
+    fn check_edges(&self, open: bool) -> Result<(), SurfaceError> {
+        let name = |edge: [u32; 2]| edge.map(|v| self.user_number(v as usize));
+        let (mut crowded, mut lonely) = (Vec::new(), Vec::new());
+        for group in sorted_by_edge(&origins(self)).chunk_by(|a, b| a.0 == b.0) {
+            match group.len() {
+                1 => lonely.push(group[0].0),
+                2 => {}
+                triangles => crowded.push((group[0].0, triangles)),
+            }
+        }
+        if let Some(&(edge, triangles)) = crowded.first() {
+            return Err(SurfaceError::NonManifoldEdge {
+                edges: crowded.len(),
+                first: name(edge),
+                triangles,
+            });
+        }
+        match lonely.first() {
+            Some(&edge) if !open => Err(SurfaceError::Open {
+                edges: lonely.len(),
+                first: name(edge),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_fans(&self, half_edges: &HalfEdges) -> Result<(), SurfaceError> {
+        let several =
+            |&vertex: &usize| half_edges.fan(vertex).len() < half_edges.around(vertex).len();
+        let mut torn = (0..self.len()).filter(several);
+        match torn.next() {
+            None => Ok(()),
+            Some(first) => Err(SurfaceError::BowTie {
+                vertices: 1 + torn.count(),
+                first: self.user_number(first),
+            }),
+        }
+    }
+
+    /// Turns triangles over until neighbours agree; of the two ways to do so in a part, the one that turns fewer. Returns how many were turned.
+    fn orient(&mut self) -> Result<usize, SurfaceError> {
+        let origin = origins(self);
+        // Neighbours with whether they must be turned against each other.
+        let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); self.triangles.len()];
+        for group in sorted_by_edge(&origin).chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, a), (_, b)] = *group {
+                let against = origin[a as usize] == origin[b as usize];
+                neighbours[a as usize / 3].push((b / 3, against));
+                neighbours[b as usize / 3].push((a / 3, against));
+            }
+        }
+        let mut turned: Vec<Option<bool>> = vec![None; self.triangles.len()];
+        let mut total = 0;
+        for seed in 0..self.triangles.len() {
+            if turned[seed].is_some() {
+                continue;
+            }
+            turned[seed] = Some(false);
+            let mut part = vec![seed];
+            let mut done = 0;
+            while done < part.len() {
+                let triangle = part[done];
+                done += 1;
+                let turn = turned[triangle] == Some(true);
+                for &(other, against) in &neighbours[triangle] {
+                    match turned[other as usize] {
+                        None => {
+                            turned[other as usize] = Some(turn ^ against);
+                            part.push(other as usize);
+                        }
+                        Some(found) if found != turn ^ against => {
+                            return Err(SurfaceError::OneSided);
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+            let many = part.iter().filter(|&&t| turned[t] == Some(true)).count();
+            let other_way = 2 * many > part.len();
+            for &triangle in &part {
+                if (turned[triangle] == Some(true)) != other_way {
+                    self.triangles[triangle].swap(1, 2);
+                    total += 1;
+                }
+            }
+        }
+        Ok(total)
+    }
+
+    fn volumes(&self, part: &[u32], count: usize) -> Vec<f64> {
+        let mut volumes = vec![0.0; count];
+        for (triangle, &part) in self.triangles.iter().zip(part) {
+            let [a, b, c] = self.corners(*triangle);
+            volumes[part as usize] += super::dot(a, super::cross(b, c)) / 6.0;
+        }
+        volumes
+    }
+
+    /// Turns over the closed parts of negative volume.
+    fn turn_out(&mut self, half_edges: &HalfEdges, part: &[u32], volumes: &[f64]) -> usize {
+        let mut closed = vec![true; volumes.len()];
+        for h in 0..half_edges.len() as u32 {
+            if half_edges.twin(h) == HalfEdges::NONE {
+                closed[part[h as usize / 3] as usize] = false;
+            }
+        }
+        let mut turned = 0;
+        for (triangle, &part) in self.triangles.iter_mut().zip(part) {
+            if closed[part as usize] && volumes[part as usize] < 0.0 {
+                triangle.swap(1, 2);
+                turned += 1;
+            }
+        }
+        turned
+    }
+
+    fn components(&self, half_edges: &HalfEdges, part: &[u32], count: usize) -> Vec<Component> {
+        let empty = Component {
+            vertices: 0,
+            edges: 0,
+            boundary_edges: 0,
+            triangles: 0,
+            volume: 0.0,
+        };
+        let mut components = vec![empty; count];
+        for (component, volume) in components.iter_mut().zip(self.volumes(part, count)) {
+            component.volume = volume;
+        }
+        let of = |half_edge: u32| part[half_edge as usize / 3] as usize;
+        for vertex in 0..self.len() {
+            components[of(half_edges.around(vertex)[0])].vertices += 1;
+        }
+        for h in half_edges.edges() {
+            components[of(h)].edges += 1;
+            if half_edges.twin(h) == HalfEdges::NONE {
+                components[of(h)].boundary_edges += 1;
+            }
+        }
+        for &part in part {
+            components[part as usize].triangles += 1;
+        }
+        components.sort_by_key(|component| std::cmp::Reverse(component.triangles));
+        components
+    }
+
+    fn edge_lengths(&self) -> [f64; 3] {
+        let mut lengths: Vec<f64> = self
+            .edges()
+            .iter()
+            .map(|&[a, b]| self.chord(a as usize, b as usize))
+            .collect();
+        lengths.sort_unstable_by(f64::total_cmp);
+        [
+            lengths[0],
+            lengths[lengths.len() / 2],
+            lengths[lengths.len() - 1],
+        ]
+    }
+}
+
+/// The part each triangle belongs to, numbered by first triangle.
+fn parts(half_edges: &HalfEdges) -> Vec<u32> {
+    let triangles = half_edges.len() / 3;
+    let mut part = vec![u32::MAX; triangles];
+    let mut count = 0;
+    let mut open = Vec::new();
+    for seed in 0..triangles {
+        if part[seed] != u32::MAX {
+            continue;
+        }
+        part[seed] = count;
+        open.push(seed as u32);
+        while let Some(triangle) = open.pop() {
+            for h in 3 * triangle..3 * triangle + 3 {
+                let twin = half_edges.twin(h);
+                if twin != HalfEdges::NONE && part[twin as usize / 3] == u32::MAX {
+                    part[twin as usize / 3] = count;
+                    open.push(twin / 3);
+                }
+            }
+        }
+        count += 1;
+    }
+    part
+}
+
+/// For each point the first one that lies within `tolerance` of it, itself if there is none before it.
+///
+/// Points are sorted into cubes of side `tolerance`, of which 27 are searched.
+pub(super) fn same_places(positions: &[Point], tolerance: f64) -> Vec<u32> {
+    let side = tolerance.max(f64::MIN_POSITIVE);
+    let cell = |x: &Point| x.map(|x| (x / side).floor());
+    let key = |cell: [f64; 3]| cell.map(|c| (c + 0.0).to_bits());
+    let mut cells: HashMap<[u64; 3], Vec<u32>> = HashMap::with_capacity(positions.len());
+    let mut first = Vec::with_capacity(positions.len());
+    for (number, x) in positions.iter().enumerate() {
+        let at = cell(x);
+        let mut found = number as u32;
+        for k in 0..27 {
+            let near = [
+                at[0] + f64::from(k % 3 - 1),
+                at[1] + f64::from(k / 3 % 3 - 1),
+                at[2] + f64::from(k / 9 - 1),
+            ];
+            for &other in cells.get(&key(near)).into_iter().flatten() {
+                let apart = super::norm(super::difference(*x, positions[other as usize]));
+                if apart <= tolerance {
+                    found = found.min(other);
+                }
+            }
+        }
+        if found == number as u32 {
+            cells.entry(key(at)).or_default().push(found);
+        }
+        first.push(found);
+    }
+    first
+}
