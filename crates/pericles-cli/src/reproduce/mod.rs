@@ -6,6 +6,7 @@
 //!
 //! A new study is one file with a `STUDY`, listed in its topic's `STUDIES`; a new topic is listed in [`TOPICS`].
 
+mod absorbing_boundaries;
 mod dispersion;
 mod fracture;
 mod row;
@@ -37,7 +38,11 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 2] = [&dispersion::STUDIES, &fracture::STUDIES];
+const TOPICS: [&[Study]; 3] = [
+    &absorbing_boundaries::STUDIES,
+    &dispersion::STUDIES,
+    &fracture::STUDIES,
+];
 
 fn studies() -> impl Iterator<Item = &'static Study> {
     TOPICS.into_iter().flatten()

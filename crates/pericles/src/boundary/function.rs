@@ -22,6 +22,20 @@ pub enum TimeFunction {
         /// Length of the pulse, s; positive.
         duration: f64,
     },
+    /// g = (1 − 2q) exp(−q), q = π² f² (t − delay)²: Ricker's wavelet, its peak 1 at `delay`.
+    Ricker {
+        /// f, the frequency of the largest amplitude, Hz; positive.
+        frequency: f64,
+        /// When the peak is, s.
+        delay: f64,
+    },
+}
+
+/// π² f², the time from the peak, and exp(−q) of Ricker's wavelet.
+fn ricker(frequency: f64, delay: f64, t: f64) -> (f64, f64, f64) {
+    let c = (PI * frequency).powi(2);
+    let tau = t - delay;
+    (c, tau, (-c * tau * tau).exp())
 }
 
 impl TimeFunction {
@@ -37,6 +51,10 @@ impl TimeFunction {
                 } else {
                     0.0
                 }
+            }
+            Self::Ricker { frequency, delay } => {
+                let (c, tau, bell) = ricker(frequency, delay, t);
+                (1.0 - 2.0 * c * tau * tau) * bell
             }
         }
     }
@@ -60,6 +78,10 @@ impl TimeFunction {
                     0.0
                 }
             }
+            Self::Ricker { frequency, delay } => {
+                let (c, tau, bell) = ricker(frequency, delay, t);
+                (4.0 * c * tau * tau - 6.0) * c * tau * bell
+            }
         }
     }
 
@@ -74,6 +96,11 @@ impl TimeFunction {
                 } else {
                     0.0
                 }
+            }
+            Self::Ricker { frequency, delay } => {
+                let (c, tau, bell) = ricker(frequency, delay, t);
+                let q = c * tau * tau;
+                (24.0 * q - 6.0 - 8.0 * q * q) * c * bell
             }
         }
     }
@@ -94,6 +121,10 @@ impl TimeFunction {
                 let phase = ((t - start) / duration).clamp(0.0, 1.0);
                 duration * (0.5 * phase - (2.0 * PI * phase).sin() / (4.0 * PI))
             }
+            Self::Ricker { frequency, delay } => {
+                let (_, tau, bell) = ricker(frequency, delay, t);
+                tau * bell
+            }
         }
     }
 }
@@ -113,6 +144,10 @@ mod tests {
             TimeFunction::Pulse {
                 start: -0.2,
                 duration: 0.9,
+            },
+            TimeFunction::Ricker {
+                frequency: 1.3,
+                delay: 0.6,
             },
         ];
         let h = 1e-5;

@@ -13,6 +13,9 @@ pub enum MotionKind {
     Velocity,
 }
 
+/// Relative error of times that are meant to be equal.
+const TIME_ERROR: f64 = 1e-12;
+
 /// The motion of a set of points along one or more axes, as a closed function of time: displacement and velocity are exact at the end of every
 /// step.
 #[derive(Debug, Clone)]
@@ -27,6 +30,8 @@ pub struct PrescribedMotion {
     pub amplitude: [Option<f64>; 3],
     /// g(t).
     pub function: TimeFunction,
+    /// When the points are released, s; infinite if never.
+    until: f64,
     /// Displacement at the start of the points, per prescribed axis; zero for prescribed displacements.
     start: Vec<f64>,
     /// Force density of the support on the held points at the last accepted state, per prescribed axis.
@@ -59,7 +64,25 @@ impl PrescribedMotion {
             kind,
             amplitude,
             function,
+            until: f64::INFINITY,
         }
+    }
+
+    /// The same, with the points released at a time (s): they go on freely with the displacement and velocity prescribed for it.
+    #[must_use]
+    pub fn until(mut self, release: f64) -> Self {
+        self.until = release;
+        self
+    }
+
+    /// Whether the motion is prescribed at t.
+    fn holds(&self, t: f64) -> bool {
+        t <= self.until * (1.0 + TIME_ERROR)
+    }
+
+    /// Whether it still is right after t.
+    fn goes_on(&self, t: f64) -> bool {
+        t < self.until * (1.0 - TIME_ERROR)
     }
 
     /// The prescribed axes with their amplitudes.
@@ -88,6 +111,9 @@ impl PrescribedMotion {
 
     /// Sets displacements of time t.
     pub(crate) fn place(&self, t: f64, on: &On<'_>, cloud_len: usize, u: &mut [f64]) {
+        if !self.holds(t) {
+            return;
+        }
         let (displacement, _, _) = self.course(t);
         self.for_each(on, cloud_len, |entry, start, amplitude, _| {
             u[entry] = start + amplitude * displacement;
@@ -96,6 +122,9 @@ impl PrescribedMotion {
 
     /// Sets velocities of time t.
     pub(crate) fn drive(&self, t: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
+        if !self.holds(t) {
+            return;
+        }
         let (_, velocity, _) = self.course(t);
         self.for_each(on, cloud_len, |entry, _, amplitude, _| {
             v[entry] = amplitude * velocity
@@ -104,6 +133,9 @@ impl PrescribedMotion {
 
     /// Sets the mean velocities between t and t + dt.
     pub(crate) fn drive_mean(&self, t: f64, dt: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
+        if !self.holds(t + dt) {
+            return;
+        }
         let mean = (self.course(t + dt).0 - self.course(t).0) / dt;
         self.for_each(on, cloud_len, |entry, _, amplitude, _| {
             v[entry] = amplitude * mean
@@ -118,6 +150,9 @@ impl PrescribedMotion {
         cloud_len: usize,
         acceleration: &mut [f64],
     ) {
+        if !self.goes_on(t) {
+            return;
+        }
         let (_, _, rate) = self.course(t);
         self.for_each(on, cloud_len, |entry, _, amplitude, _| {
             acceleration[entry] = amplitude * rate;
@@ -140,6 +175,10 @@ impl PrescribedMotion {
         density: &dyn Fn(usize) -> f64,
         volumes: &[f64],
     ) -> (f64, [f64; 3]) {
+        if !self.holds(t) {
+            self.reaction.fill(0.0);
+            return (0.0, [0.0; 3]);
+        }
         let rate = self.course(t).2;
         let advance = self.course(t).0 - self.course(t - dt).0;
         let (mut work, mut impulse) = (0.0, [0.0; 3]);

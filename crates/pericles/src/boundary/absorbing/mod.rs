@@ -12,6 +12,8 @@
 //! | kernels | of | equal to |
 //! |---|---|---|
 //! | [`factor_kernels`] | the lattice stepped by velocity Verlet | the run on a large body with the same step, to round-off |
+//! | [`semi_discrete_kernels`] | the lattice in continuous time, trapezoidal rule | the exact solution, to second order in dt |
+//! | [`green_functions_closed`], [`trapezoidal_kernels`] | the same from the paper's closed chain | historical: unstable for long runs |
 //!
 //! | history | cost of N steps | memory |
 //! |---|---|---|
@@ -29,18 +31,30 @@
 
 mod blocks;
 mod cached;
+mod contour;
 mod end;
 mod error;
 mod factor;
+mod fit;
+mod green;
+mod historical;
 pub mod history;
 mod kernels;
 mod layer;
+mod rational;
+mod roots;
+mod semi_discrete;
 mod stencil;
 
 pub use cached::cached_kernels;
+pub use contour::contour_kernels;
 pub use end::AbsorbingEnd;
 pub use error::AbsorbingError;
 pub use factor::factor_kernels;
+pub use fit::ExponentialKernels;
+pub use green::green_functions;
+pub use historical::green_functions_closed;
 pub use kernels::GhostKernels;
 pub use layer::{OuterLayer, Side};
+pub use semi_discrete::{semi_discrete_kernels, trapezoidal_kernels};
 pub use stencil::LatticeStencil;

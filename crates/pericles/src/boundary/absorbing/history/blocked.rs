@@ -110,6 +110,11 @@ impl History for BlockedHistory {
         self.push_now();
     }
 
+    fn reset(&mut self) {
+        self.past.steps = 0;
+        self.results.iter_mut().for_each(|result| result.fill(0.0));
+    }
+
     fn save(&self, name: &str, archive: &mut Archive) {
         self.past.save(name, archive);
     }
@@ -117,8 +122,7 @@ impl History for BlockedHistory {
     /// Convolves the stored past again: the same operations in the same order.
     fn restore(&mut self, name: &str, archive: &Archive) -> Result<()> {
         let (stored, steps) = self.past.stored(name, archive)?;
-        self.past.steps = 0;
-        self.results.iter_mut().for_each(|result| result.fill(0.0));
+        self.reset();
         for step in 0..steps {
             for (site, now) in self.now.iter_mut().enumerate() {
                 *now = stored[site * steps + step];

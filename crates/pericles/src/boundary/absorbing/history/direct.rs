@@ -57,6 +57,10 @@ impl History for DirectHistory {
         self.past.push(&self.now);
     }
 
+    fn reset(&mut self) {
+        self.past.steps = 0;
+    }
+
     fn save(&self, name: &str, archive: &mut Archive) {
         self.past.save(name, archive);
     }

@@ -2,10 +2,12 @@
 
 mod blocked;
 mod direct;
+mod exponential;
 mod record;
 
 pub use blocked::BlockedHistory;
 pub use direct::DirectHistory;
+pub use exponential::ExponentialHistory;
 
 use crate::archive::Archive;
 use crate::error::Result;
@@ -26,6 +28,9 @@ pub trait History: Send + Sync {
 
     /// Takes the displacements of a step: of the body's outer points 1 … K and of the ghosts. Allocates nothing.
     fn push(&mut self, own: &[f64], ghosts: &[f64]);
+
+    /// Forgets all.
+    fn reset(&mut self);
 
     /// Puts what is remembered into an archive, under names that begin with `name`.
     fn save(&self, name: &str, archive: &mut Archive);
