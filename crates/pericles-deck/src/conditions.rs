@@ -3,6 +3,8 @@
 use pericles::boundary::{MotionKind, TimeFunction};
 use pericles::space::Point;
 
+use crate::component::{Component, Variables, VectorField, component, vector_field};
+use crate::course::function;
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -15,9 +17,9 @@ pub struct Initial {
     /// The set.
     pub set: String,
     /// Displacement, m.
-    pub displacement: Option<Point>,
+    pub displacement: Option<VectorField>,
     /// Velocity, m/s.
-    pub velocity: Option<Point>,
+    pub velocity: Option<VectorField>,
 }
 
 /// A prescribed motion.
@@ -28,9 +30,11 @@ pub struct Prescribe {
     /// Displacement or velocity.
     pub kind: MotionKind,
     /// Amplitude along each axis, m or m/s; none where the motion is free.
-    pub amplitude: [Option<f64>; 3],
+    pub amplitude: [Option<Component>; 3],
     /// The course over time.
     pub function: TimeFunction,
+    /// The last time at which the points are held, s; none if they are held for good.
+    pub until: Option<f64>,
 }
 
 /// A load.
@@ -42,17 +46,19 @@ pub struct Load {
     pub amplitude: LoadAmplitude,
     /// The course over time.
     pub function: TimeFunction,
+    /// From when to when it acts, s.
+    pub window: [f64; 2],
 }
 
 /// How a load is given.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadAmplitude {
     /// Force per volume, N/m³.
-    BodyForce(Point),
+    BodyForce(VectorField),
     /// Force per area, Pa, spread over the volume of the set.
     Traction {
         /// The traction.
-        traction: Point,
+        traction: VectorField,
         /// The area it acts on, m²; if none, that of the face of the set's bounding box normal to the load.
         area: Option<f64>,
     },
@@ -82,13 +88,17 @@ pub(crate) fn initial(
     sets: &SetNames,
 ) -> Option<Initial> {
     let set = table.or("set", set::ALL.to_owned(), |item| sets.reference(&item));
+    let variables = Variables {
+        dimension,
+        time: false,
+    };
     let displacement = table.maybe("displacement", |item| {
-        item.vector(Quantity::Length, dimension)
+        vector_field(&item, Quantity::Length, variables)
     });
     let velocity = table.maybe("velocity", |item| {
-        item.vector(Quantity::Velocity, dimension)
+        vector_field(&item, Quantity::Velocity, variables)
     });
-    if (displacement, velocity) == (Some(None), Some(None)) {
+    if let (Some(None), Some(None)) = (&displacement, &velocity) {
         table.lacks_one_of(&["displacement", "velocity"]);
     }
     table.finish();
@@ -116,6 +126,7 @@ pub(crate) fn prescribe(
             Some((kind, amplitude(&item, quantity, dimension)?))
         });
     let function = function(&table);
+    let until = table.maybe("until", |item| item.positive(Quantity::Time));
     table.finish();
     let (kind, amplitude) = motion?;
     Some(Prescribe {
@@ -123,6 +134,7 @@ pub(crate) fn prescribe(
         kind,
         amplitude,
         function: function?,
+        until: until?,
     })
 }
 
@@ -131,10 +143,14 @@ fn amplitude(
     item: &Item<'_>,
     quantity: Quantity,
     dimension: Option<usize>,
-) -> Option<[Option<f64>; 3]> {
+) -> Option<[Option<Component>; 3]> {
+    let variables = Variables {
+        dimension,
+        time: true,
+    };
     let expected = format!("{}, or \"free\"", quantity.expected());
     let items = item.components(dimension, &expected)?;
-    let mut amplitude = Some([None; 3]);
+    let mut amplitude = Some([None, None, None]);
     let mut free = 0;
     for (c, entry) in items.iter().enumerate() {
         if entry.word() == Some("free") {
@@ -142,7 +158,7 @@ fn amplitude(
             free += 1;
             continue;
         }
-        match (entry.quantity(quantity), &mut amplitude) {
+        match (component(entry, quantity, variables), &mut amplitude) {
             (Some(value), Some(amplitude)) => amplitude[c] = Some(value),
             _ => amplitude = None,
         }
@@ -162,7 +178,11 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
         } else {
             Quantity::ForceDensity
         };
-        Some((key, item.vector(quantity, dimension)?))
+        let variables = Variables {
+            dimension,
+            time: true,
+        };
+        Some((key, vector_field(&item, quantity, variables)?))
     });
     let area = if table.has("traction") {
         table.maybe("area", |item| item.positive(Quantity::Area))
@@ -171,6 +191,7 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
         Some(None)
     };
     let function = function(&table);
+    let window = window(&table);
     table.finish();
     let amplitude = match force? {
         ("traction", traction) => LoadAmplitude::Traction {
@@ -183,40 +204,27 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
         set: set?,
         amplitude,
         function: function?,
+        window: window?,
     })
 }
 
-#[derive(Clone, Copy)]
-enum Course {
-    Constant,
-    Ramp,
-    Pulse,
-}
-
-fn function(table: &Table<'_>) -> Option<TimeFunction> {
-    const COURSES: [(&str, Course); 3] = [
-        ("constant", Course::Constant),
-        ("ramp", Course::Ramp),
-        ("pulse", Course::Pulse),
-    ];
-    let table = table.table_or_empty("function")?;
-    let course = table.choice_or_first("kind", "function of time", &COURSES)?;
-    let function = match course {
-        Course::Constant => Some(TimeFunction::Constant),
-        Course::Ramp | Course::Pulse => {
-            let start = table.or("start", 0.0, |item| item.quantity(Quantity::Time));
-            let duration = table
-                .required("duration")
-                .and_then(|item| item.positive(Quantity::Time));
-            let (start, duration) = (start?, duration?);
-            Some(match course {
-                Course::Ramp => TimeFunction::Ramp { start, duration },
-                _ => TimeFunction::Pulse { start, duration },
-            })
+/// From when to when something acts.
+fn window(table: &Table<'_>) -> Option<[f64; 2]> {
+    let from = table.maybe("from", |item| item.quantity(Quantity::Time));
+    let until = table.maybe("until", |item| {
+        let time = item.quantity(Quantity::Time)?;
+        match from {
+            Some(Some(from)) if time <= from => {
+                item.out_of_range("a time later than `from`");
+                None
+            }
+            _ => Some(time),
         }
-    };
-    table.finish();
-    function
+    });
+    Some([
+        from?.unwrap_or(f64::NEG_INFINITY),
+        until?.unwrap_or(f64::INFINITY),
+    ])
 }
 
 /// All probes; their names must differ.

@@ -83,6 +83,20 @@ pub enum Fault {
         /// What is needed.
         expected: String,
     },
+    /// An expression that cannot be read.
+    #[error("the expression `{text}` cannot be used: {reason}")]
+    BadExpression {
+        /// The expression.
+        text: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// A course over time for an expression that has its own.
+    #[error("`{text}` depends on time by itself and takes no function of time besides")]
+    TwoCourses {
+        /// The expression.
+        text: String,
+    },
     /// A unit that does not exist.
     #[error("unknown unit `{unit}` in `{value}`")]
     UnknownUnit {
@@ -214,6 +228,8 @@ impl Subject for Fault {
             Self::EmptySet { .. } => {
                 "a set needs at least one cell centre; make the region larger (a layer is at least half a spacing deep)".into()
             }
+            Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
+            Self::TwoCourses { .. } => "leave `function` out".into(),
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::Model(_) => return None,
         })
@@ -230,7 +246,7 @@ impl Subject for Fault {
             } => "misspelt?",
             Self::UnknownKey { .. } | Self::UnknownWord { .. } => "not known",
             Self::MissingKey { .. } | Self::MissingChoice { .. } => "incomplete",
-            Self::Exclusive { .. } => "one too many",
+            Self::Exclusive { .. } | Self::TwoCourses { .. } => "one too many",
             Self::Misplaced { .. } => "not here",
             Self::WrongKind { .. } => "wrong kind of value",
             Self::NotANumber { .. } => "no number",
@@ -238,7 +254,7 @@ impl Subject for Fault {
             Self::WrongUnit { .. } => "wrong unit",
             Self::OutOfRange { .. } => "out of range",
             Self::WrongLength { .. } => "wrong length",
-            Self::BadName { .. } => "not usable",
+            Self::BadName { .. } | Self::BadExpression { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } => "no points here",

@@ -39,6 +39,11 @@
 //! and whole powers (`m2`, `m^2`, `m²`). `"0.25 mm"` is the same number as `0.25e-3`, to the last bit. Vectors have one entry per dimension of the body; in one dimension the brackets may be
 //! left out.
 //!
+//! # Expressions
+//! Entries of initial values, prescriptions and loads may be `{ expression = "…" }`, a function of the coordinates `x`, `y`, `z` (m) and, where it is not an initial value, of the time `t` (s), in SI
+//! units. `+ - * / ^`, parentheses, `pi`, `e` and the functions abs, acos, asin, atan, cbrt, ceil, cos, cosh, exp, floor, ln, log10, round, sign, sin, sinh, sqrt, step (0 below zero, else 1), tan, tanh are
+//! known; `-x^2` is −(x²) and `2^3^2` is 2^(3²). A prescribed displacement must have two derivatives in time, a prescribed velocity one (it is integrated numerically, to 1e-13).
+//!
 //! # Format
 //! Names in brackets are synonyms; values shown after `default` are taken if the key is left out.
 //! ```toml
@@ -95,18 +100,21 @@
 //!
 //! [[initial]]                            # later entries replace earlier ones
 //! set = "all"                            # default
-//! velocity = ["0 m/s", "1 m/s"]          # displacement, velocity, or both
+//! velocity = ["0 m/s", { expression = "exp(-x^2)" }]   # displacement, velocity, or both
 //!
 //! [[prescribe]]
 //! set = "left"
 //! velocity = [0, "free"]                 # or displacement; "free" where nothing is prescribed
-//! function = { kind = "constant" }       # default; or ramp (start, default 0; duration), pulse (the same)
+//! function = { kind = "constant" }       # default; or ramp (start, default 0; duration), pulse (the same),
+//! #                                        table (rows = [["0 s", 0], ["1 us", 1], …]), expression (expression = "sin(2*pi*1e6*t)")
+//! until = "10 us"                        # optional: the points are free from then on
 //!
 //! [[load]]
 //! set = "top"
 //! traction = [0, "12 MPa"]               # force per area, spread over the set's volume; or body_force, per volume
 //! area = "100 mm2"                       # optional: else the set as seen along the normal of its layer, or along the load
 //! function = { kind = "ramp", duration = "1 us" }
+//! from = "0 s"                           # optional, as `until`: when the load acts
 //!
 //! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet"
 //! kind = "absorbing"                     # the bar goes on for ever beyond this end, as its outermost points are; exact
@@ -160,11 +168,14 @@ mod body;
 mod boundary;
 mod build;
 mod caution;
+mod component;
 mod conditions;
+mod course;
 mod crack;
 mod deck;
 mod document;
 mod error;
+mod expression;
 mod fault;
 mod finding;
 mod influence;
@@ -186,10 +197,12 @@ pub use body::Body;
 pub use boundary::{BoundaryCondition, HistoryForm};
 pub use build::{Model, Sets};
 pub use caution::Caution;
+pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace};
 pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
+pub use expression::Expression;
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};

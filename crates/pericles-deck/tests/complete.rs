@@ -1,6 +1,6 @@
 //! A deck with everything, and what it must become.
 
-use pericles::boundary::{MotionKind, TimeFunction};
+use pericles::boundary::{ALWAYS, MotionKind, TimeFunction};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
@@ -111,12 +111,12 @@ fn conditions_time_and_output_arrive() {
             Initial {
                 set: "all".into(),
                 displacement: None,
-                velocity: Some([0.0, 1.0, 0.0]),
+                velocity: Some([0.0, 1.0, 0.0].map(Into::into)),
             },
             Initial {
                 set: "top".into(),
-                displacement: Some([1e-6, 0.0, 0.0]),
-                velocity: Some([0.0, 20.0, 0.0]),
+                displacement: Some([1e-6, 0.0, 0.0].map(Into::into)),
+                velocity: Some([0.0, 20.0, 0.0].map(Into::into)),
             }
         ]
     );
@@ -126,17 +126,19 @@ fn conditions_time_and_output_arrive() {
             Prescribe {
                 set: "left edge".into(),
                 kind: MotionKind::Velocity,
-                amplitude: [Some(0.0), None, None],
+                amplitude: [Some(0.0.into()), None, None],
                 function: TimeFunction::Constant,
+                until: None,
             },
             Prescribe {
                 set: "bottom".into(),
                 kind: MotionKind::Displacement,
-                amplitude: [None, Some(-1e-4), None],
+                amplitude: [None, Some((-1e-4).into()), None],
                 function: TimeFunction::Pulse {
                     start: 1e-6,
                     duration: 2e-6,
                 },
+                until: None,
             }
         ]
     );
@@ -145,19 +147,21 @@ fn conditions_time_and_output_arrive() {
         [
             Load {
                 set: "top".into(),
-                amplitude: LoadAmplitude::BodyForce([0.0, 48e9, 0.0]),
+                amplitude: LoadAmplitude::BodyForce([0.0, 48e9, 0.0].map(Into::into)),
                 function: TimeFunction::Ramp {
                     start: 0.0,
                     duration: 1e-6,
                 },
+                window: ALWAYS,
             },
             Load {
                 set: "bottom".into(),
                 amplitude: LoadAmplitude::Traction {
-                    traction: [0.0, -12e6, 0.0],
+                    traction: [0.0, -12e6, 0.0].map(Into::into),
                     area: Some(1e-4),
                 },
                 function: TimeFunction::Constant,
+                window: ALWAYS,
             }
         ]
     );
@@ -389,10 +393,10 @@ fn overrides_change_what_is_read() {
     assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
     assert_eq!(deck.body.grid.spacing, 0.5e-3);
     assert_eq!(deck.cracks[1].ends, EndRule::Closed);
-    let LoadAmplitude::Traction { traction, .. } = deck.loads[1].amplitude else {
+    let LoadAmplitude::Traction { traction, .. } = &deck.loads[1].amplitude else {
         panic!("a traction is overridden by a traction")
     };
-    assert_eq!(traction, [0.0, -24e6, 0.0]);
+    assert_eq!(*traction, [0.0, -24e6, 0.0].map(Into::into));
     assert_eq!(
         deck.prescribe[1].function,
         TimeFunction::Pulse {

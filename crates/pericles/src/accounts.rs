@@ -59,32 +59,43 @@ impl Path<'_> {
         volumes: &[f64],
     ) -> (f64, [f64; 3]) {
         let n = volumes.len();
-        let g = |x: f64| load.function.value(x);
-        let [first, middle, last] = [g(t - dt), g(t - 0.5 * dt), g(t)];
-        // ∫ g and ∫ g v; by the cubic the middle velocity is 3/2 Δu/dt − (v₀ + v₁)/4, and Simpson's rule becomes what stands here.
-        let factor = match self {
-            Self::MeanVelocity(_) => 0.5 * dt * (last + first),
-            Self::Cubic { .. } => dt / 6.0 * (first + 4.0 * middle + last),
-        };
-        let advance = |entry: usize| match self {
-            Self::MeanVelocity(mean) => factor * mean[entry],
-            Self::Cubic { u, v } => {
-                middle * (u[1][entry] - u[0][entry])
-                    + dt / 6.0 * ((first - middle) * v[0][entry] + (last - middle) * v[1][entry])
-            }
-        };
+        let times = [t - dt, t - 0.5 * dt, t];
+        let factors = times.map(|t| load.factor(t));
         let (mut work, mut impulse) = (0.0, [0.0; 3]);
+        if factors == [0.0; 3] {
+            return (work, impulse);
+        }
         for c in 0..dimension {
-            if load.density[c] == 0.0 {
+            if load.is_free_of(c) {
                 continue;
             }
-            for &i in &load.points {
-                let force = load.density[c] * volumes[i as usize];
-                work += force * advance(c * n + i as usize);
-                impulse[c] += force * factor;
+            for (k, &i) in load.points.iter().enumerate() {
+                let (i, entry) = (i as usize, c * n + i as usize);
+                let forces: [f64; 3] = std::array::from_fn(|m| {
+                    load.amplitude(c, k, times[m]) * factors[m] * volumes[i]
+                });
+                let (push, done) = self.push_and_work(forces, dt, entry);
+                work += done;
+                impulse[c] += push;
             }
         }
         (work, impulse)
+    }
+
+    /// ∫ b and ∫ b v of a force b that is `first`, `middle` and `last` at the start, middle and end of the step, on one entry of the arrays.
+    fn push_and_work(&self, [first, middle, last]: [f64; 3], dt: f64, entry: usize) -> (f64, f64) {
+        match self {
+            Self::MeanVelocity(mean) => {
+                let push = 0.5 * dt * (last + first);
+                (push, push * mean[entry])
+            }
+            // The middle velocity of the cubic is 3/2 Δu/dt − (v₀ + v₁)/4, and Simpson's rule becomes what stands here.
+            Self::Cubic { u, v } => (
+                dt / 6.0 * (first + 4.0 * middle + last),
+                middle * (u[1][entry] - u[0][entry])
+                    + dt / 6.0 * ((first - middle) * v[0][entry] + (last - middle) * v[1][entry]),
+            ),
+        }
     }
 }
 
@@ -100,11 +111,7 @@ mod tests {
             start: 0.0,
             duration: 3.0,
         };
-        let load = Load {
-            points: vec![0],
-            density: [2.0, 0.0, 0.0],
-            function,
-        };
+        let load = Load::new(vec![0], [2.0, 0.0, 0.0], function);
         let work = |steps: usize| -> f64 {
             let dt = 1.0 / steps as f64;
             (1..=steps)

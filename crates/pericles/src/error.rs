@@ -256,9 +256,14 @@ pub enum PericlesError {
         /// The step, s.
         step: f64,
     },
-    /// A surface that cannot be used.
-    #[error(transparent)]
-    Surface(#[from] crate::space::surface::SurfaceError),
+    /// A table in time whose rows cannot be used.
+    #[error(
+        "row {row} of the table in time cannot be used: at least one row is needed, all numbers finite, each time later than the one before"
+    )]
+    BadTimeTable {
+        /// The row, from 0.
+        row: usize,
+    },
     /// An iterative solver that did not reach its tolerance.
     #[error(
         "{solver} stopped after {iterations} iterations with a residual of {residual:e}, {tolerance:e} was asked for: {cause}; a smaller time step helps"
@@ -278,6 +283,30 @@ pub enum PericlesError {
     /// No absorbing end can be made.
     #[error("absorbing end: {0}")]
     Absorbing(#[from] AbsorbingError),
+    /// The inner iteration of a step that does not end.
+    #[error(
+        "at t = {t:e} s the inner iteration did not converge: after {iterations} evaluations the velocity still changes by {change:e} (allowed {tolerance:e}); \
+         dt = {dt:e} s, the highest frequency is about {omega:.4e} 1/s, so dt ≤ {safe:.4e} s converges; or give more iterations, or solver = \"newton-krylov\""
+    )]
+    InnerIteration {
+        /// Time at the end of the step, s.
+        t: f64,
+        /// Evaluations done.
+        iterations: u32,
+        /// Last change of the velocity, m/s.
+        change: f64,
+        /// Change allowed, m/s.
+        tolerance: f64,
+        /// The step, s.
+        dt: f64,
+        /// Estimate of the highest angular frequency at the state, 1/s.
+        omega: f64,
+        /// The largest step that converges in as many iterations, s.
+        safe: f64,
+    },
+    /// A surface that cannot be used.
+    #[error(transparent)]
+    Surface(#[from] crate::space::surface::SurfaceError),
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

@@ -58,7 +58,7 @@ mod error;
 pub mod family;
 pub mod kernel;
 pub mod material;
-mod noise;
+pub mod noise;
 pub mod observe;
 pub mod operator;
 pub mod parallel;

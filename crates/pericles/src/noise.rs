@@ -1,15 +1,71 @@
 //! Pseudo-random numbers that are the same on every machine.
 
+/// SplitMix64 (Steele, Lea & Flood 2014): a generator of 64 bits of state, seeded by any number.
+#[derive(Debug, Clone)]
+pub struct SplitMix64 {
+    state: u64,
+}
+
+impl SplitMix64 {
+    /// The generator of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    /// The next number, uniform in [−1, 1).
+    pub fn signed(&mut self) -> f64 {
+        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Vectors uniform in the ball (disc, interval) of this radius, one after the other, by rejection from the cube around it.
+///
+/// ```
+/// let vectors = pericles::noise::uniform_in_ball(3, 0.1, 7, 1000);
+/// assert!(vectors.iter().all(|v| v.iter().map(|x| x * x).sum::<f64>() <= 0.01));
+/// ```
+pub fn uniform_in_ball(dimension: usize, radius: f64, seed: u64, count: usize) -> Vec<[f64; 3]> {
+    let mut generator = SplitMix64::new(seed);
+    let mut draw = || {
+        loop {
+            let mut vector = [0.0; 3];
+            for component in vector.iter_mut().take(dimension) {
+                *component = generator.signed();
+            }
+            if vector.iter().map(|x| x * x).sum::<f64>() <= 1.0 {
+                return vector.map(|x| radius * x);
+            }
+        }
+    };
+    (0..count).map(|_| draw()).collect()
+}
+
 /// Numbers in (−1, 1) (SplitMix64).
 pub(crate) fn noise(len: usize, seed: u64) -> Vec<f64> {
-    let mut seed = seed;
-    (0..len)
-        .map(|_| {
-            seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let mut z = seed;
-            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        })
-        .collect()
+    let mut generator = SplitMix64::new(seed);
+    (0..len).map(|_| generator.signed()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ball_is_filled_evenly() {
+        let n = 20_000;
+        let vectors = uniform_in_ball(3, 2.0, 1, n);
+        // The share within half the radius is 1/8, and the mean square 3/5 of the radius squared.
+        let squares: Vec<f64> = vectors
+            .iter()
+            .map(|v| v.iter().map(|x| x * x).sum())
+            .collect();
+        let inner = squares.iter().filter(|&&s| s < 1.0).count() as f64 / n as f64;
+        let mean = squares.iter().sum::<f64>() / n as f64;
+        assert!((inner - 0.125).abs() < 0.007, "{inner}");
+        assert!((mean - 2.4).abs() < 0.02, "{mean}");
+    }
 }

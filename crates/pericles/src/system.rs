@@ -97,7 +97,7 @@ impl System {
     pub fn add_motion(&mut self, motion: PrescribedMotion) -> Result<()> {
         for other in &self.motions {
             for c in 0..3 {
-                if motion.amplitude[c].is_none() || other.amplitude[c].is_none() {
+                if motion.along[c].is_none() || other.along[c].is_none() {
                     continue;
                 }
                 let common = motion
@@ -343,6 +343,13 @@ impl System {
         self.zero(&On::All, out);
         self.operator.add_force(t, u, On::All, out);
         self.add_loads(t, &On::All, out);
+    }
+
+    /// Loads over density at time t, m/s².
+    pub fn external_acceleration_into(&self, t: f64, out: &mut [f64]) {
+        self.zero(&On::All, out);
+        self.add_loads(t, &On::All, out);
+        self.divide_by_density(&On::All, out);
     }
 
     /// K d / ρ at displacement u, with prescribed entries held: the operator of the linearised free vibration.

@@ -240,7 +240,10 @@ fn kernels_have_their_closed_forms() {
     let bar = LatticeStencil::new(&weights()).unwrap();
     let h = factor_kernels(&bar, 0.05, 1 << 14);
     let sum: f64 = h.iter().flatten().sum();
-    assert!((sum - 1.0).abs() < 1e-2 && (sum - 1.0).abs() > 1e-6, "{sum}");
+    assert!(
+        (sum - 1.0).abs() < 1e-2 && (sum - 1.0).abs() > 1e-6,
+        "{sum}"
+    );
     // The first coefficients are the bonds themselves.
     for (k, a) in weights().iter().enumerate() {
         assert_eq!((h[k][0], h[k][1]), (0.0, 0.05 * 0.05 * a));
@@ -286,11 +289,11 @@ fn what_cannot_be_continued_is_refused() {
     ));
     let stencil = LatticeStencil::new(&weights()).unwrap();
     assert!(stencil.check_step(0.2499).is_ok());
-    assert!(matches!(stencil.check_step(0.251), Err(E::UnstableStep { limit, .. }) if (limit - 0.25).abs() < 1e-5));
+    assert!(
+        matches!(stencil.check_step(0.251), Err(E::UnstableStep { limit, .. }) if (limit - 0.25).abs() < 1e-5)
+    );
 
-    let layer = |system: &System, state: &State| {
-        OuterLayer::of(system, Side::Right, state, &[])
-    };
+    let layer = |system: &System, state: &State| OuterLayer::of(system, Side::Right, state, &[]);
     // The soft part reaches the layer: the first wrong bond is named.
     let soft = bar(43, 0.5);
     let rest = State::at_rest(soft.points());
@@ -323,7 +326,10 @@ fn what_cannot_be_continued_is_refused() {
     assert!(matches!(
         run.run(|_| Control::Continue),
         Err(SimulationError::Step(PericlesError::Absorbing(
-            E::TooManySteps { steps: 51, made_for: 50 }
+            E::TooManySteps {
+                steps: 51,
+                made_for: 50
+            }
         )))
     ));
 }

@@ -107,11 +107,8 @@ fn plate_with<L: PairForce>(load: f64) -> Problem {
         (points(&cloud, |x, _, _| x < spacing), -1.0),
         (points(&cloud, |x, _, _| x > 1.0 - spacing), 1.0),
     ] {
-        system.add_load(Load {
-            points,
-            density: [sign * load * 200e6 / spacing, 0.0, 0.0],
-            function: TimeFunction::Constant,
-        });
+        let density = [sign * load * 200e6 / spacing, 0.0, 0.0];
+        system.add_load(Load::new(points, density, TimeFunction::Constant));
     }
     let fine = points(&cloud, |x, y, _| {
         (x - 0.5).abs() < 0.15 && (y - 0.25).abs() < 0.1
@@ -154,11 +151,11 @@ fn block() -> Problem {
     let mut system = system(&cloud, force::<LinearBond, 3>(&cloud, &body, &[]), 7850.0);
     let loaded = points(&cloud, |x, _, _| x > 0.5 - spacing);
     let volume = loaded.len() as f64 * spacing.powi(3);
-    system.add_load(Load {
-        points: loaded,
-        density: [0.0, 0.0, -5000.0 / volume],
-        function: TimeFunction::Constant,
-    });
+    system.add_load(Load::new(
+        loaded,
+        [0.0, 0.0, -5000.0 / volume],
+        TimeFunction::Constant,
+    ));
     let state = State::at_rest(3 * cloud.len());
     let held = PrescribedMotion::new(
         "held".into(),
@@ -964,11 +961,7 @@ fn pushed_bar(kind: Option<MotionKind>) -> Problem {
     };
     let end = points(&cloud, |x, _, _| x < 0.015);
     match kind {
-        None => system.add_load(Load {
-            points: end,
-            density: [1e10, 0.0, 0.0],
-            function,
-        }),
+        None => system.add_load(Load::new(end, [1e10, 0.0, 0.0], function)),
         Some(kind) => {
             let amplitude = match kind {
                 MotionKind::Displacement => 1e-3,
@@ -1005,8 +998,8 @@ fn loads_and_prescribed_motion_keep_the_order() {
                 for simulation in [&plain, &zoned] {
                     let state = simulation.state();
                     if let [motion] = simulation.system().motions() {
-                        let g = motion.function;
-                        let amplitude = motion.amplitude[0].unwrap();
+                        let g = &motion.function;
+                        let amplitude = motion.amplitude(0).unwrap();
                         let (u, v) = match motion.kind {
                             MotionKind::Displacement => (g.value(state.t), g.derivative(state.t)),
                             MotionKind::Velocity => (g.integral(state.t), g.value(state.t)),

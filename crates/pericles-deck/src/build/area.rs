@@ -7,12 +7,12 @@ use pericles::space::{PointCloud, Region};
 /// The axis normal to the loaded face: that of a layer's face, else that of the load.
 pub(crate) fn normal_axis(
     region: Option<&Region>,
-    traction: &[f64; 3],
+    acts_along: &[bool; 3],
 ) -> Result<usize, &'static str> {
     if let Some(Region::Layer { face, .. }) = region {
         return Ok(face.axis);
     }
-    let mut axes = (0..3).filter(|&c| traction[c] != 0.0);
+    let mut axes = (0..3).filter(|&c| acts_along[c]);
     match (axes.next(), axes.next()) {
         (Some(axis), None) => Ok(axis),
         (None, _) => Err("the traction is zero"),
@@ -97,9 +97,12 @@ mod tests {
             },
             depth: 1.0,
         };
-        assert_eq!(normal_axis(Some(&layer), &[1.0, 0.0, 0.0]), Ok(1));
-        assert_eq!(normal_axis(Some(&Region::All), &[0.0, -2.0, 0.0]), Ok(1));
-        assert!(normal_axis(None, &[1.0, 1.0, 0.0]).is_err());
-        assert!(normal_axis(None, &[0.0; 3]).is_err());
+        assert_eq!(normal_axis(Some(&layer), &[true, false, false]), Ok(1));
+        assert_eq!(
+            normal_axis(Some(&Region::All), &[false, true, false]),
+            Ok(1)
+        );
+        assert!(normal_axis(None, &[true, true, false]).is_err());
+        assert!(normal_axis(None, &[false; 3]).is_err());
     }
 }

@@ -65,15 +65,15 @@ impl Deck {
         cache: &dyn Cache,
     ) -> Result<(), DeckError> {
         for end in ends {
-            let kernels =
-                cached_kernels(&end.layer.stencil, steps.dt, steps.count as usize, cache);
+            let kernels = cached_kernels(&end.layer.stencil, steps.dt, steps.count as usize, cache);
             let history: Box<dyn History> = match end.history {
                 HistoryForm::Blocked => Box::new(BlockedHistory::new(kernels)),
                 HistoryForm::Direct => Box::new(DirectHistory::new(kernels)),
             };
             let path = end.path;
-            let end = AbsorbingEnd::new(end.layer, history, steps.dt)
-                .map_err(|error| self.at_path(&path, pericles::PericlesError::from(error).into()))?;
+            let end = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(|error| {
+                self.at_path(&path, pericles::PericlesError::from(error).into())
+            })?;
             system.add_boundary(Box::new(end));
         }
         Ok(())

@@ -8,6 +8,7 @@ use pericles::time::State;
 
 use super::{Sets, area};
 use crate::caution::Caution;
+use crate::component::VectorField;
 use crate::conditions::{LoadAmplitude, ProbePlace};
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -25,7 +26,8 @@ impl Deck {
         let n = cloud.len();
         let mut state = State::at_rest(cloud.dimension() * n);
         for (k, initial) in self.initial.iter().enumerate() {
-            let points = self.members(sets, &initial.set, &Path::from("initial").index(k))?;
+            let path = Path::from("initial").index(k);
+            let points = self.members(sets, &initial.set, &path)?;
             let fields = [
                 (&initial.displacement, &mut state.u),
                 (&initial.velocity, &mut state.v),
@@ -34,7 +36,11 @@ impl Deck {
                 let Some(vector) = vector else { continue };
                 for c in 0..cloud.dimension() {
                     for &i in points {
-                        field[c * n + i as usize] = vector[c];
+                        let value = vector[c].value(cloud.point(i as usize), 0.0);
+                        if !value.is_finite() {
+                            return Err(self.no_value(&path, vector, c, cloud, i));
+                        }
+                        field[c * n + i as usize] = value;
                     }
                 }
             }
@@ -51,12 +57,8 @@ impl Deck {
         for (k, load) in self.loads.iter().enumerate() {
             let path = Path::from("load").index(k);
             let points = self.members(sets, &load.set, &path)?.clone();
-            let load = match &load.amplitude {
-                LoadAmplitude::BodyForce(density) => BodyLoad {
-                    points,
-                    density: *density,
-                    function: load.function,
-                },
+            let (field, factor) = match &load.amplitude {
+                LoadAmplitude::BodyForce(density) => (density, 1.0),
                 LoadAmplitude::Traction { traction, area } => {
                     let area = match area {
                         Some(area) => *area,
@@ -66,10 +68,17 @@ impl Deck {
                                 self.at_path(&path.key("traction"), Fault::UnknownArea { reason })
                             })?,
                     };
-                    BodyLoad::traction(cloud, points, *traction, area, load.function)
+                    let volume = |i: &u32| cloud.volumes()[*i as usize];
+                    (traction, area / points.iter().map(volume).sum::<f64>())
                 }
             };
-            system.add_load(load);
+            let density = self.load_density(&path, field, factor, cloud, &points)?;
+            system.add_load(BodyLoad {
+                points,
+                density,
+                function: load.function.clone(),
+                window: load.window,
+            });
         }
         Ok(())
     }
@@ -79,10 +88,11 @@ impl Deck {
         cloud: &PointCloud,
         set: &str,
         points: &[u32],
-        traction: &[f64; 3],
+        traction: &VectorField,
     ) -> Result<f64, &'static str> {
         let region = self.sets.iter().find(|named| named.name == set);
-        let axis = area::normal_axis(region.map(|named| &named.region), traction)?;
+        let acts = std::array::from_fn(|c| traction[c].number() != Some(0.0));
+        let axis = area::normal_axis(region.map(|named| &named.region), &acts)?;
         Ok(area::seen_along(cloud, points, axis))
     }
 
@@ -103,15 +113,18 @@ impl Deck {
             }
             names.push(name.clone());
             let path = Path::from("prescribe").index(k);
-            let prescribed = PrescribedMotion::new(
+            let points = self.members(sets, &motion.set, &path)?.clone();
+            let along = self.axis_motions(&path, motion, system.cloud(), &points)?;
+            let mut prescribed = PrescribedMotion::along(
                 name,
-                self.members(sets, &motion.set, &path)?.clone(),
+                points,
                 motion.kind,
-                motion.amplitude,
-                motion.function,
+                along,
+                motion.function.clone(),
                 &state.u,
                 system.points(),
             );
+            prescribed.until = motion.until;
             system
                 .add_motion(prescribed)
                 .map_err(|error| self.at_path(&path, error.into()))?;

@@ -3,6 +3,7 @@
 mod area;
 mod boundary;
 mod conditions;
+mod fields;
 mod scheme;
 mod step;
 

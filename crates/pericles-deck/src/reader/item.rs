@@ -254,7 +254,7 @@ impl<'a> Item<'a> {
         dimension: Option<usize>,
         expected: &str,
     ) -> Option<Vec<Item<'a>>> {
-        if dimension == Some(1) && !self.is_list() && !self.is_table() {
+        if dimension == Some(1) && !self.is_list() {
             return Some(vec![self.clone()]);
         }
         let items = self.list(&format!(

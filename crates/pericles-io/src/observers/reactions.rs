@@ -21,7 +21,7 @@ impl Reactions {
     pub fn new(path: impl Into<PathBuf>, motions: &[PrescribedMotion]) -> Self {
         let mut columns = step_and_time();
         for motion in motions {
-            for (axis, _) in motion.axes() {
+            for axis in motion.axes() {
                 columns.push(Column::real(format!("{}_{}", motion.name, AXES[axis]), "N"));
             }
         }
@@ -36,8 +36,8 @@ impl Observer for Reactions {
         let (state, system) = (snapshot.state(), snapshot.system());
         let mut row = vec![whole(state.step), state.t.into()];
         for motion in system.motions() {
-            let force = motion.reaction(system.points(), system.cloud().volumes());
-            row.extend(motion.axes().map(|(axis, _)| Cell::Real(force[axis])));
+            let force = motion.reaction(system.cloud().volumes());
+            row.extend(motion.axes().map(|axis| Cell::Real(force[axis])));
         }
         Ok(self.table.append(&row)?)
     }

@@ -1,9 +1,25 @@
 //! Functions of time that loads and prescribed motions follow.
 
 use std::f64::consts::PI;
+use std::fmt;
+use std::sync::Arc;
+
+use super::TimeTable;
+
+/// A factor g(t) that is not one of the kinds of [`TimeFunction`].
+pub trait TimeCourse: fmt::Debug + Send + Sync {
+    /// g(t).
+    fn value(&self, t: f64) -> f64;
+    /// g'(t); at a kink the derivative from the right.
+    fn derivative(&self, t: f64) -> f64;
+    /// g''(t) without the impulses at kinks.
+    fn second_derivative(&self, t: f64) -> f64;
+    /// ∫₀ᵗ g.
+    fn integral(&self, t: f64) -> f64;
+}
 
 /// A dimensionless factor g(t) with its integral and derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub enum TimeFunction {
     /// g = 1 from the start.
     #[default]
@@ -22,26 +38,44 @@ pub enum TimeFunction {
         /// Length of the pulse, s; positive.
         duration: f64,
     },
-    /// g = (1 − 2q) exp(−q), q = π² f² (t − delay)²: Ricker's wavelet, its peak 1 at `delay`.
-    Ricker {
-        /// f, the frequency of the largest amplitude, Hz; positive.
-        frequency: f64,
-        /// When the peak is, s.
-        delay: f64,
-    },
+    /// g between given values, linearly.
+    Table(Arc<TimeTable>),
+    /// Any other course.
+    Course(Arc<dyn TimeCourse>),
 }
 
-/// π² f², the time from the peak, and exp(−q) of Ricker's wavelet.
-fn ricker(frequency: f64, delay: f64, t: f64) -> (f64, f64, f64) {
-    let c = (PI * frequency).powi(2);
-    let tau = t - delay;
-    (c, tau, (-c * tau * tau).exp())
+/// Tables are equal if their numbers are, other courses if they are the same object.
+impl PartialEq for TimeFunction {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Constant, Self::Constant) => true,
+            (
+                &Self::Ramp { start, duration },
+                &Self::Ramp {
+                    start: other_start,
+                    duration: other_duration,
+                },
+            )
+            | (
+                &Self::Pulse { start, duration },
+                &Self::Pulse {
+                    start: other_start,
+                    duration: other_duration,
+                },
+            ) => (start, duration) == (other_start, other_duration),
+            (Self::Table(table), Self::Table(other)) => table == other,
+            (Self::Course(course), Self::Course(other)) => Arc::ptr_eq(course, other),
+            _ => false,
+        }
+    }
 }
 
 impl TimeFunction {
     /// g(t).
     pub fn value(&self, t: f64) -> f64 {
         match *self {
+            Self::Table(ref table) => table.value(t),
+            Self::Course(ref course) => course.value(t),
             Self::Constant => 1.0,
             Self::Ramp { start, duration } => ((t - start) / duration).clamp(0.0, 1.0),
             Self::Pulse { start, duration } => {
@@ -52,16 +86,14 @@ impl TimeFunction {
                     0.0
                 }
             }
-            Self::Ricker { frequency, delay } => {
-                let (c, tau, bell) = ricker(frequency, delay, t);
-                (1.0 - 2.0 * c * tau * tau) * bell
-            }
         }
     }
 
     /// g'(t); at a kink the derivative from the right.
     pub fn derivative(&self, t: f64) -> f64 {
         match *self {
+            Self::Table(ref table) => table.derivative(t),
+            Self::Course(ref course) => course.derivative(t),
             Self::Constant => 0.0,
             Self::Ramp { start, duration } => {
                 if t >= start && t < start + duration {
@@ -78,17 +110,14 @@ impl TimeFunction {
                     0.0
                 }
             }
-            Self::Ricker { frequency, delay } => {
-                let (c, tau, bell) = ricker(frequency, delay, t);
-                (4.0 * c * tau * tau - 6.0) * c * tau * bell
-            }
         }
     }
 
     /// g''(t) without the impulses at the kinks of a ramp.
     pub fn second_derivative(&self, t: f64) -> f64 {
         match *self {
-            Self::Constant | Self::Ramp { .. } => 0.0,
+            Self::Constant | Self::Ramp { .. } | Self::Table(_) => 0.0,
+            Self::Course(ref course) => course.second_derivative(t),
             Self::Pulse { start, duration } => {
                 let phase = (t - start) / duration;
                 if (0.0..=1.0).contains(&phase) {
@@ -97,22 +126,22 @@ impl TimeFunction {
                     0.0
                 }
             }
-            Self::Ricker { frequency, delay } => {
-                let (c, tau, bell) = ricker(frequency, delay, t);
-                let q = c * tau * tau;
-                (24.0 * q - 6.0 - 8.0 * q * q) * c * bell
-            }
         }
     }
 
     /// ∫₀ᵗ g.
     pub fn integral(&self, t: f64) -> f64 {
-        self.primitive(t) - self.primitive(0.0)
+        match self {
+            Self::Table(table) => table.integral(t),
+            Self::Course(course) => course.integral(t),
+            _ => self.primitive(t) - self.primitive(0.0),
+        }
     }
 
+    /// For the kinds that have one in closed form.
     fn primitive(&self, t: f64) -> f64 {
         match *self {
-            Self::Constant => t,
+            Self::Constant | Self::Table(_) | Self::Course(_) => t,
             Self::Ramp { start, duration } => {
                 let rise = (t - start).clamp(0.0, duration);
                 0.5 * rise * rise / duration + (t - start - duration).max(0.0)
@@ -120,10 +149,6 @@ impl TimeFunction {
             Self::Pulse { start, duration } => {
                 let phase = ((t - start) / duration).clamp(0.0, 1.0);
                 duration * (0.5 * phase - (2.0 * PI * phase).sin() / (4.0 * PI))
-            }
-            Self::Ricker { frequency, delay } => {
-                let (_, tau, bell) = ricker(frequency, delay, t);
-                tau * bell
             }
         }
     }
@@ -145,10 +170,9 @@ mod tests {
                 start: -0.2,
                 duration: 0.9,
             },
-            TimeFunction::Ricker {
-                frequency: 1.3,
-                delay: 0.6,
-            },
+            TimeFunction::Table(Arc::new(
+                TimeTable::new(vec![(-0.1, 2.0), (0.2, 1.0), (0.9, 4.0)]).unwrap(),
+            )),
         ];
         let h = 1e-5;
         for g in functions {

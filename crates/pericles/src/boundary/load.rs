@@ -1,21 +1,69 @@
 //! Body forces.
 
+use std::fmt;
+use std::sync::Arc;
+
 use super::TimeFunction;
 use crate::operator::On;
 use crate::space::{PointCloud, PointSet};
 
-/// A force density b(t) = density · g(t) on a set of points, N/m³.
-#[derive(Debug, Clone, PartialEq)]
+/// A vector field in place and time.
+pub trait FieldFunction: fmt::Debug + Send + Sync {
+    /// Component c at a place (m) and time (s).
+    fn value(&self, c: usize, place: [f64; 3], t: f64) -> f64;
+}
+
+/// The amplitude of a load, N/m³.
+#[derive(Debug, Clone)]
+pub enum LoadDensity {
+    /// The same on all points; components beyond the body's dimension are zero.
+    Uniform([f64; 3]),
+    /// One number per loaded point and component: that of component c of the k-th loaded point is entry c · (loaded points) + k.
+    PerPoint(Vec<f64>),
+    /// A field that changes with time by itself, times a factor, at the places of the loaded points.
+    Field {
+        /// The field.
+        field: Arc<dyn FieldFunction>,
+        /// The factor.
+        factor: f64,
+        /// Places of the loaded points, m.
+        places: Vec<[f64; 3]>,
+    },
+}
+
+impl From<[f64; 3]> for LoadDensity {
+    fn from(density: [f64; 3]) -> Self {
+        Self::Uniform(density)
+    }
+}
+
+/// A force density b(x, t) = density(x) · g(t) on a set of points while it acts, N/m³.
+#[derive(Debug, Clone)]
 pub struct Load {
     /// The loaded points.
     pub points: PointSet,
-    /// Amplitude, N/m³; components beyond the body's dimension are zero.
-    pub density: [f64; 3],
+    /// Amplitude, N/m³.
+    pub density: LoadDensity,
     /// g(t).
     pub function: TimeFunction,
+    /// From when to when it acts, s: at both ends too.
+    pub window: [f64; 2],
 }
 
+/// Always.
+pub const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
 impl Load {
+    /// A load that always acts.
+    pub fn new(points: PointSet, density: impl Into<LoadDensity>, function: TimeFunction) -> Self {
+        Self {
+            points,
+            density: density.into(),
+            function,
+            window: ALWAYS,
+        }
+    }
+
     /// A traction (force per area, Pa) that acts on `area` (m²) of a layer, spread over the layer's volume: b = traction · area / ΣV.
     pub fn traction(
         cloud: &PointCloud,
@@ -24,11 +72,34 @@ impl Load {
         area: f64,
         function: TimeFunction,
     ) -> Self {
-        let volume: f64 = points.iter().map(|&i| cloud.volumes()[i as usize]).sum();
-        Self {
-            points,
-            density: traction.map(|component| component * area / volume),
-            function,
+        let factor = area / volume(cloud, &points);
+        Self::new(points, traction.map(|c| c * factor), function)
+    }
+
+    /// Whether it never has a component along axis c.
+    pub(crate) fn is_free_of(&self, c: usize) -> bool {
+        matches!(self.density, LoadDensity::Uniform(density) if density[c] == 0.0)
+    }
+
+    /// g(t) while the load acts, else zero.
+    pub(crate) fn factor(&self, t: f64) -> f64 {
+        if (self.window[0]..=self.window[1]).contains(&t) {
+            self.function.value(t)
+        } else {
+            0.0
+        }
+    }
+
+    /// Amplitude along axis c of the k-th loaded point.
+    pub(crate) fn amplitude(&self, c: usize, k: usize, t: f64) -> f64 {
+        match &self.density {
+            LoadDensity::Uniform(density) => density[c],
+            LoadDensity::PerPoint(densities) => densities[c * self.points.len() + k],
+            LoadDensity::Field {
+                field,
+                factor,
+                places,
+            } => factor * field.value(c, places[k], t),
         }
     }
 
@@ -41,25 +112,49 @@ impl Load {
         dimension: usize,
         out: &mut [f64],
     ) {
-        let factor = self.function.value(t);
+        let factor = self.factor(t);
+        if factor == 0.0 {
+            return;
+        }
         for c in 0..dimension {
-            let force = self.density[c] * factor;
-            if force == 0.0 {
-                continue;
-            }
             let component = &mut out[c * points..(c + 1) * points];
-            on.common(&self.points, |_, i| component[i] += force);
+            match self.density {
+                LoadDensity::Uniform(density) => {
+                    let force = density[c] * factor;
+                    if force != 0.0 {
+                        on.common(&self.points, |_, i| component[i] += force);
+                    }
+                }
+                _ => on.common(&self.points, |k, i| {
+                    component[i] += self.amplitude(c, k, t) * factor;
+                }),
+            }
         }
     }
 
     /// Resultant force at time t, N.
     pub fn resultant(&self, t: f64, cloud: &PointCloud) -> [f64; 3] {
-        let volume: f64 = self
-            .points
-            .iter()
-            .map(|&i| cloud.volumes()[i as usize])
-            .sum();
-        let factor = self.function.value(t);
-        self.density.map(|component| component * factor * volume)
+        let factor = self.factor(t);
+        let mut sum = [0.0; 3];
+        if factor == 0.0 {
+            return sum;
+        }
+        for (c, sum) in sum.iter_mut().enumerate().take(cloud.dimension()) {
+            *sum = match self.density {
+                LoadDensity::Uniform(density) => density[c] * factor * volume(cloud, &self.points),
+                _ => {
+                    let each = self.points.iter().enumerate();
+                    each.map(|(k, &i)| {
+                        self.amplitude(c, k, t) * factor * cloud.volumes()[i as usize]
+                    })
+                    .sum()
+                }
+            };
+        }
+        sum
     }
+}
+
+fn volume(cloud: &PointCloud, points: &[u32]) -> f64 {
+    points.iter().map(|&i| cloud.volumes()[i as usize]).sum()
 }

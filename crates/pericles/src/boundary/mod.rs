@@ -4,10 +4,12 @@ pub mod absorbing;
 mod function;
 mod load;
 mod motion;
+mod table;
 
-pub use function::TimeFunction;
-pub use load::Load;
-pub use motion::{MotionKind, PrescribedMotion};
+pub use function::{TimeCourse, TimeFunction};
+pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
+pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
+pub use table::TimeTable;
 
 use crate::archive::Saved;
 use crate::operator::Accepted;

@@ -1,5 +1,8 @@
 //! Prescribed displacement and velocity.
 
+use std::fmt;
+use std::sync::Arc;
+
 use super::TimeFunction;
 use crate::operator::On;
 use crate::space::PointSet;
@@ -13,8 +16,27 @@ pub enum MotionKind {
     Velocity,
 }
 
-/// Relative error of times that are meant to be equal.
-const TIME_ERROR: f64 = 1e-12;
+/// A displacement that depends on place and time otherwise than as a product.
+pub trait Trajectory: fmt::Debug + Send + Sync {
+    /// The displacement (m) of the point at a place (m) and time (s), or its first or second derivative in time, as `order` says.
+    fn derivative(&self, order: usize, place: [f64; 3], t: f64) -> f64;
+}
+
+/// What is prescribed along one axis.
+#[derive(Debug, Clone)]
+pub enum AxisMotion {
+    /// The same amplitude (m or m/s) for all points.
+    Uniform(f64),
+    /// An amplitude for every point of the set.
+    PerPoint(Vec<f64>),
+    /// A displacement by place and time; the amplitude and g(t) play no part.
+    Trajectory {
+        /// The displacement.
+        trajectory: Arc<dyn Trajectory>,
+        /// Places of the points of the set, m.
+        places: Vec<[f64; 3]>,
+    },
+}
 
 /// The motion of a set of points along one or more axes, as a closed function of time: displacement and velocity are exact at the end of every
 /// step.
@@ -26,12 +48,12 @@ pub struct PrescribedMotion {
     pub points: PointSet,
     /// Displacement or velocity.
     pub kind: MotionKind,
-    /// Amplitude per axis (m or m/s); none where the axis is free.
-    pub amplitude: [Option<f64>; 3],
+    /// What is prescribed along each axis; none where the axis is free.
+    pub along: [Option<AxisMotion>; 3],
     /// g(t).
     pub function: TimeFunction,
-    /// When the points are released, s; infinite if never.
-    until: f64,
+    /// The last time at which the points are held, s; from then on they are free.
+    pub until: Option<f64>,
     /// Displacement at the start of the points, per prescribed axis; zero for prescribed displacements.
     start: Vec<f64>,
     /// Force density of the support on the held points at the last accepted state, per prescribed axis.
@@ -39,7 +61,7 @@ pub struct PrescribedMotion {
 }
 
 impl PrescribedMotion {
-    /// A motion for a body whose initial displacement is `u`.
+    /// A motion with the same amplitudes (m or m/s) for all points, for a body whose initial displacement is `u`.
     pub fn new(
         name: String,
         points: PointSet,
@@ -49,7 +71,21 @@ impl PrescribedMotion {
         u: &[f64],
         cloud_len: usize,
     ) -> Self {
-        let axes = (0..3).filter(|&c| amplitude[c].is_some());
+        let along = amplitude.map(|amplitude| amplitude.map(AxisMotion::Uniform));
+        Self::along(name, points, kind, along, function, u, cloud_len)
+    }
+
+    /// A motion along the axes given, for a body whose initial displacement is `u`.
+    pub fn along(
+        name: String,
+        points: PointSet,
+        kind: MotionKind,
+        along: [Option<AxisMotion>; 3],
+        function: TimeFunction,
+        u: &[f64],
+        cloud_len: usize,
+    ) -> Self {
+        let axes = (0..3).filter(|&c| along[c].is_some());
         let start: Vec<f64> = match kind {
             MotionKind::Displacement => axes.flat_map(|_| points.iter().map(|_| 0.0)).collect(),
             MotionKind::Velocity => axes
@@ -62,84 +98,102 @@ impl PrescribedMotion {
             name,
             points,
             kind,
-            amplitude,
+            along,
             function,
-            until: f64::INFINITY,
+            until: None,
         }
     }
 
-    /// The same, with the points released at a time (s): they go on freely with the displacement and velocity prescribed for it.
-    #[must_use]
-    pub fn until(mut self, release: f64) -> Self {
-        self.until = release;
-        self
+    /// Numbers of the prescribed axes.
+    pub fn axes(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..3).filter(|&c| self.along[c].is_some())
     }
 
-    /// Whether the motion is prescribed at t.
-    fn holds(&self, t: f64) -> bool {
-        t <= self.until * (1.0 + TIME_ERROR)
+    /// The amplitude along an axis, if it is the same for all points.
+    pub fn amplitude(&self, axis: usize) -> Option<f64> {
+        match self.along[axis] {
+            Some(AxisMotion::Uniform(amplitude)) => Some(amplitude),
+            _ => None,
+        }
     }
 
-    /// Whether it still is right after t.
-    fn goes_on(&self, t: f64) -> bool {
-        t < self.until * (1.0 - TIME_ERROR)
+    /// Whether the points are held at time t.
+    pub fn holds(&self, t: f64) -> bool {
+        // Times are whole multiples of the step: the last one before the release may be a rounding off.
+        self.until
+            .is_none_or(|until| t <= until * (1.0 + 1e-12) + f64::MIN_POSITIVE)
     }
 
-    /// The prescribed axes with their amplitudes.
-    pub fn axes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        (0..3).filter_map(|c| Some((c, self.amplitude[c]?)))
+    /// Whether the support pushes the points right after time t: at the release they have the velocity prescribed, but the acceleration of free points. With the
+    /// prescribed one the first half step after it would be wrong to first order.
+    fn pushes(&self, t: f64) -> bool {
+        self.until.is_none_or(|until| t < until * (1.0 - 1e-12))
     }
 
-    /// Displacement beyond the start, velocity and acceleration at time t for unit amplitude.
-    fn course(&self, t: f64) -> (f64, f64, f64) {
+    /// Displacement beyond the start (order 0), velocity (1) or acceleration (2) at time t for unit amplitude.
+    fn unit(&self, order: usize, t: f64) -> f64 {
         let g = &self.function;
-        match self.kind {
-            MotionKind::Displacement => (g.value(t), g.derivative(t), g.second_derivative(t)),
-            MotionKind::Velocity => (g.integral(t), g.value(t), g.derivative(t)),
+        match order + usize::from(self.kind == MotionKind::Displacement) {
+            0 => g.integral(t),
+            1 => g.value(t),
+            2 => g.derivative(t),
+            _ => g.second_derivative(t),
         }
     }
 
-    /// Calls `set(entry of the state's arrays, start displacement, amplitude, slot)` for every prescribed number of the points named by `on`.
-    fn for_each(&self, on: &On<'_>, cloud_len: usize, mut set: impl FnMut(usize, f64, f64, usize)) {
-        for (axis, (c, amplitude)) in self.axes().enumerate() {
+    /// Calls `set(entry of the state's arrays, slot, number)` for every prescribed number of the points named by `on`, with their displacement
+    /// beyond the start, velocity or acceleration.
+    fn for_each(
+        &self,
+        order: usize,
+        t: f64,
+        on: &On<'_>,
+        cloud_len: usize,
+        mut set: impl FnMut(usize, usize, f64),
+    ) {
+        let unit = self.unit(order, t);
+        let motions = self.along.iter().enumerate();
+        let motions = motions.filter_map(|(c, along)| Some((c, along.as_ref()?)));
+        for (axis, (c, along)) in motions.enumerate() {
             on.common(&self.points, |k, i| {
-                let slot = axis * self.points.len() + k;
-                set(c * cloud_len + i, self.start[slot], amplitude, slot);
+                let number = match along {
+                    AxisMotion::Uniform(amplitude) => amplitude * unit,
+                    AxisMotion::PerPoint(amplitudes) => amplitudes[k] * unit,
+                    AxisMotion::Trajectory { trajectory, places } => {
+                        trajectory.derivative(order, places[k], t)
+                    }
+                };
+                set(c * cloud_len + i, axis * self.points.len() + k, number);
             });
         }
     }
 
     /// Sets displacements of time t.
     pub(crate) fn place(&self, t: f64, on: &On<'_>, cloud_len: usize, u: &mut [f64]) {
-        if !self.holds(t) {
-            return;
+        if self.holds(t) {
+            self.for_each(0, t, on, cloud_len, |entry, slot, displacement| {
+                u[entry] = self.start[slot] + displacement;
+            });
         }
-        let (displacement, _, _) = self.course(t);
-        self.for_each(on, cloud_len, |entry, start, amplitude, _| {
-            u[entry] = start + amplitude * displacement;
-        });
     }
 
     /// Sets velocities of time t.
     pub(crate) fn drive(&self, t: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
-        if !self.holds(t) {
-            return;
+        if self.holds(t) {
+            self.for_each(1, t, on, cloud_len, |entry, _, velocity| {
+                v[entry] = velocity
+            });
         }
-        let (_, velocity, _) = self.course(t);
-        self.for_each(on, cloud_len, |entry, _, amplitude, _| {
-            v[entry] = amplitude * velocity
-        });
     }
 
     /// Sets the mean velocities between t and t + dt.
     pub(crate) fn drive_mean(&self, t: f64, dt: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
-        if !self.holds(t + dt) {
-            return;
+        if self.holds(t + dt) {
+            self.for_each(0, t + dt, on, cloud_len, |entry, _, after| v[entry] = after);
+            self.for_each(0, t, on, cloud_len, |entry, _, before| {
+                v[entry] = (v[entry] - before) / dt;
+            });
         }
-        let mean = (self.course(t + dt).0 - self.course(t).0) / dt;
-        self.for_each(on, cloud_len, |entry, _, amplitude, _| {
-            v[entry] = amplitude * mean
-        });
     }
 
     /// Replaces accelerations by the prescribed ones of time t.
@@ -150,18 +204,22 @@ impl PrescribedMotion {
         cloud_len: usize,
         acceleration: &mut [f64],
     ) {
-        if !self.goes_on(t) {
-            return;
+        if self.pushes(t) {
+            self.for_each(2, t, on, cloud_len, |entry, _, rate| {
+                acceleration[entry] = rate;
+            });
         }
-        let (_, _, rate) = self.course(t);
-        self.for_each(on, cloud_len, |entry, _, amplitude, _| {
-            acceleration[entry] = amplitude * rate;
-        });
     }
 
-    /// Zeros the prescribed entries of a vector, as in a virtual displacement.
+    /// Zeros the prescribed entries of a vector, as in a virtual displacement. Points that are freed one day count as free.
     pub(crate) fn project(&self, cloud_len: usize, vector: &mut [f64]) {
-        self.for_each(&On::All, cloud_len, |entry, _, _, _| vector[entry] = 0.0);
+        if self.until.is_none() {
+            for c in self.axes() {
+                for &i in &self.points {
+                    vector[c * cloud_len + i as usize] = 0.0;
+                }
+            }
+        }
     }
 
     /// Notes the reaction ρ a − f at an accepted state, from the accelerations f/ρ before they are replaced, and returns the work (J)
@@ -175,32 +233,39 @@ impl PrescribedMotion {
         density: &dyn Fn(usize) -> f64,
         volumes: &[f64],
     ) -> (f64, [f64; 3]) {
-        if !self.holds(t) {
-            self.reaction.fill(0.0);
-            return (0.0, [0.0; 3]);
-        }
-        let rate = self.course(t).2;
-        let advance = self.course(t).0 - self.course(t - dt).0;
         let (mut work, mut impulse) = (0.0, [0.0; 3]);
+        if !self.holds(t) {
+            return (work, impulse);
+        }
+        let mut advance = vec![0.0; self.reaction.len()];
+        self.for_each(0, t, &On::All, cloud_len, |_, slot, after| {
+            advance[slot] = after
+        });
+        self.for_each(0, t - dt, &On::All, cloud_len, |_, slot, before| {
+            advance[slot] -= before;
+        });
+        let pushes = self.pushes(t);
         let mut reaction = std::mem::take(&mut self.reaction);
-        self.for_each(&On::All, cloud_len, |entry, _, amplitude, slot| {
+        self.for_each(2, t, &On::All, cloud_len, |entry, slot, rate| {
             let (c, i) = (entry / cloud_len, entry % cloud_len);
-            let now = density(i) * (amplitude * rate - acceleration[entry]);
+            let now = density(i) * (rate - acceleration[entry]);
             let mean = 0.5 * (reaction[slot] + now) * volumes[i];
-            work += mean * amplitude * advance;
+            work += mean * advance[slot];
             impulse[c] += mean * dt;
-            reaction[slot] = now;
+            reaction[slot] = if pushes { now } else { 0.0 };
         });
         self.reaction = reaction;
         (work, impulse)
     }
 
     /// The force of the support on the body at the last accepted state, N.
-    pub fn reaction(&self, cloud_len: usize, volumes: &[f64]) -> [f64; 3] {
+    pub fn reaction(&self, volumes: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        self.for_each(&On::All, cloud_len, |entry, _, _, slot| {
-            sum[entry / cloud_len] += self.reaction[slot] * volumes[entry % cloud_len];
-        });
+        let slots = self.reaction.chunks(self.points.len().max(1));
+        for (c, reactions) in self.axes().zip(slots) {
+            let each = reactions.iter().zip(&self.points);
+            sum[c] = each.map(|(force, &i)| force * volumes[i as usize]).sum();
+        }
         sum
     }
 

@@ -16,8 +16,10 @@
 mod constants;
 mod lattice;
 mod law;
+mod power;
 
 pub use constants::{
     BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
 pub use law::{BondStretch, LinearBond, PairForce, PairLaw};
+pub use power::{PowerMaterial, SurfaceBond};

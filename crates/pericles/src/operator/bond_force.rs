@@ -302,7 +302,7 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
 }
 
 /// The wanted points of a block, none if there are none.
-fn rows_of_block<'a>(on: &On<'a>, first: usize, len: usize) -> Option<Which<'a>> {
+pub(super) fn rows_of_block<'a>(on: &On<'a>, first: usize, len: usize) -> Option<Which<'a>> {
     let block = first..first + len;
     match on {
         On::All => Some(Which::Range(block)),

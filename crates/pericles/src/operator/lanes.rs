@@ -44,6 +44,11 @@ pub trait Lanes: Real {
     /// # Panics
     /// If the slice ends before.
     fn load(numbers: &[f64], at: usize) -> Self;
+    /// The components of eight points, each held as x, y, z and a number of no meaning.
+    ///
+    /// # Safety
+    /// Every index is below `points.len()`.
+    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3];
     /// The numbers, in order.
     fn to_array(self) -> [f64; LANES];
     /// self · factor + addend, rounded once where the set has such an instruction.
@@ -138,6 +143,10 @@ impl Lanes for F64x8 {
     fn load(numbers: &[f64], at: usize) -> Self {
         let numbers = &numbers[at..at + LANES];
         Self::from_fn(|k| numbers[k])
+    }
+    #[inline(always)]
+    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
+        vector(|c| Self::from_fn(|k| points[indices[k] as usize][c]))
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {

@@ -90,12 +90,43 @@ impl Real for Avx2x8 {
     }
 }
 
+/// The four numbers of a point.
+///
+/// # Safety
+/// The index is below `points.len()`, and the caller is compiled for AVX2.
+#[inline(always)]
+unsafe fn four(points: &[[f64; 4]], index: u32) -> __m256d {
+    // SAFETY: a row holds four numbers.
+    unsafe { _mm256_loadu_pd(points.get_unchecked(index as usize).as_ptr()) }
+}
+
 impl Lanes for Avx512x8 {
     #[inline(always)]
     fn load(numbers: &[f64], at: usize) -> Self {
         let numbers = &numbers[at..at + LANES];
         // SAFETY: the slice holds eight numbers.
         Self(unsafe { _mm512_loadu_pd(numbers.as_ptr()) })
+    }
+    /// Eight rows of four are loaded in pairs and turned by eleven exchanges: fewer loads than three gathers, and they stay in line.
+    #[inline(always)]
+    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
+        // SAFETY: the indices are in range, as the caller has promised.
+        unsafe {
+            let row = |k: usize| four(points, indices[k]);
+            let pair = |a: usize, b: usize| {
+                _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(row(a)), row(b))
+            };
+            let (r04, r15, r26, r37) = (pair(0, 4), pair(1, 5), pair(2, 6), pair(3, 7));
+            let (xz0, y0) = (_mm512_unpacklo_pd(r04, r15), _mm512_unpackhi_pd(r04, r15));
+            let (xz2, y2) = (_mm512_unpacklo_pd(r26, r37), _mm512_unpackhi_pd(r26, r37));
+            let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+            let high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+            [
+                Self(_mm512_permutex2var_pd(xz0, low, xz2)),
+                Self(_mm512_permutex2var_pd(y0, low, y2)),
+                Self(_mm512_permutex2var_pd(xz0, high, xz2)),
+            ]
+        }
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {
@@ -166,6 +197,29 @@ impl Lanes for Avx2x8 {
                 _mm256_loadu_pd(numbers.as_ptr()),
                 _mm256_loadu_pd(numbers.as_ptr().add(LANES / 2)),
             )
+        }
+    }
+    #[inline(always)]
+    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
+        // SAFETY: the indices are in range, as the caller has promised.
+        unsafe {
+            let turned = |first: usize| {
+                let row = |k: usize| four(points, indices[first + k]);
+                let (r0, r1, r2, r3) = (row(0), row(1), row(2), row(3));
+                let (xz0, y0) = (_mm256_unpacklo_pd(r0, r1), _mm256_unpackhi_pd(r0, r1));
+                let (xz2, y2) = (_mm256_unpacklo_pd(r2, r3), _mm256_unpackhi_pd(r2, r3));
+                [
+                    _mm256_permute2f128_pd::<0x20>(xz0, xz2),
+                    _mm256_permute2f128_pd::<0x20>(y0, y2),
+                    _mm256_permute2f128_pd::<0x31>(xz0, xz2),
+                ]
+            };
+            let (low, high) = (turned(0), turned(4));
+            [
+                Self(low[0], high[0]),
+                Self(low[1], high[1]),
+                Self(low[2], high[2]),
+            ]
         }
     }
     #[inline(always)]

@@ -6,6 +6,7 @@
 //! | form | bodies | bonds | ns per directed bond, 3D |
 //! |---|---|---|---|
 //! | [`BondForce`] | any | listed, 13 bytes each | 6 |
+//! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | 0.8 |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline) |
 //!
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
@@ -28,6 +29,7 @@ pub mod lanes;
 pub(crate) mod lanes_x86;
 pub mod linear;
 mod stencil;
+pub mod surface;
 mod zoned;
 
 use std::ops::Range;

@@ -1,5 +1,6 @@
 //! The points of a body.
 
+use super::surface::Surface;
 use super::{Point, Region};
 use crate::error::{PericlesError, Result, positive};
 
@@ -44,6 +45,8 @@ pub struct PointCloud {
     section: f64,
     spacing: f64,
     lattice: Option<Lattice>,
+    /// The user's numbers of the points; empty if they are the points' own.
+    user_numbers: Vec<u32>,
 }
 
 impl PointCloud {
@@ -93,7 +96,23 @@ impl PointCloud {
             section,
             spacing,
             lattice: None,
+            user_numbers: Vec::new(),
         })
+    }
+
+    /// The vertices of a surface in 3D, with their areas (m²) where other bodies have volumes: densities are then per area.
+    ///
+    /// # Errors
+    /// Areas that are not positive, or not one a vertex.
+    pub fn of_surface(surface: &Surface, areas: Vec<f64>) -> Result<Self> {
+        let positions = surface.positions();
+        let flat = (0..3)
+            .flat_map(|c| positions.iter().map(move |position| position[c]))
+            .collect();
+        let mut cloud = Self::new(3, flat, areas, 1.0)?;
+        cloud.spacing = (surface.area() / surface.len() as f64).sqrt();
+        cloud.user_numbers = surface.user_numbers().to_vec();
+        Ok(cloud)
     }
 
     /// A cloud on a lattice whose node (0, 0, 0) has its centre at `origin`.
@@ -184,7 +203,10 @@ impl PointCloud {
 
     /// The number of a point in the user's numbering, in which files are written.
     pub fn user_number(&self, i: usize) -> usize {
-        i
+        match &self.user_numbers[..] {
+            [] => i,
+            numbers => numbers[i] as usize,
+        }
     }
 
     /// Bounding box of the cells (half a cell beyond the outermost points), m.

@@ -12,7 +12,7 @@ pub struct HighestFrequency {
     pub estimate: f64,
     /// Whether the residual shows the estimate to be within 0.1 %.
     pub converged: bool,
-    /// A bound that is never exceeded, 1/s (Gershgorin).
+    /// A bound that is never exceeded at rest, 1/s (Gershgorin).
     pub bound: f64,
     /// Operator applications used.
     pub applications: usize,
@@ -96,7 +96,7 @@ fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<High
     let mut current = noise(u.len(), 0x9E37_79B9_7F4A_7C15);
     hold(&mut current);
     let norm = inner(&current, &current).sqrt();
-    if norm == 0.0 || bound == 0.0 {
+    if norm == 0.0 {
         return Err(PericlesError::NoStiffness);
     }
     scale(&mut current, 1.0 / norm);
@@ -135,7 +135,8 @@ fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<High
     Ok(HighestFrequency {
         estimate: estimate.sqrt(),
         converged,
-        bound,
+        // Forces without stiffness at rest can have one elsewhere.
+        bound: bound.max(estimate.sqrt()),
         applications: diagonal.len(),
     })
 }

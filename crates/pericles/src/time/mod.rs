@@ -4,6 +4,7 @@ mod embedded;
 mod frequency;
 mod interface;
 mod multi_time_step;
+mod newmark;
 mod refinement;
 mod respa;
 mod runge_kutta;
@@ -16,6 +17,9 @@ pub use embedded::AdaptiveRungeKutta;
 pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
 pub use interface::{Interpolant, Predictor};
 pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
+pub use newmark::{
+    DiscreteGradient, InnerIterations, InnerSolver, Newmark, NewmarkOptions, VelocityNorm,
+};
 pub use refinement::{Fine, Follow, RefinementReport};
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
@@ -93,6 +97,11 @@ pub trait Integrator: Saved + Send {
 
     /// What a scheme with two time steps did so far; none for other schemes.
     fn refinement(&self) -> Option<RefinementReport> {
+        None
+    }
+
+    /// What the inner iterations of an implicit scheme did so far; none for other schemes.
+    fn inner_iterations(&self) -> Option<InnerIterations> {
         None
     }
 

@@ -8,7 +8,7 @@ use pericles::boundary::absorbing::{
     AbsorbingEnd, GhostKernels, LatticeStencil, OuterLayer, Side, factor_kernels,
     semi_discrete_kernels,
 };
-use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
+use pericles::boundary::{MotionKind, PrescribedMotion, TimeCourse, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
@@ -24,8 +24,54 @@ pub(super) const HALF: usize = 100;
 const REACH: usize = 7;
 /// Half the width of the soft part; nodes on its border are hard.
 const SOFT: f64 = 4.0;
-/// The wavelet: frequency, delay, and when the node is released.
-const WAVELET: [f64; 3] = [0.2, 5.0, 10.0];
+const WAVELET: Ricker = Ricker {
+    frequency: 0.2,
+    delay: 5.0,
+};
+/// When the node is released. The text says 5; the printed errors belong to 10.
+const RELEASE: f64 = 10.0;
+
+/// (1 − 2q) exp(−q), q = π² f² (t − delay)².
+#[derive(Debug)]
+struct Ricker {
+    frequency: f64,
+    delay: f64,
+}
+
+impl Ricker {
+    /// π² f², the time from the peak, q and exp(−q).
+    fn parts(&self, t: f64) -> [f64; 4] {
+        let c = (PI * self.frequency).powi(2);
+        let tau = t - self.delay;
+        let q = c * tau * tau;
+        [c, tau, q, (-q).exp()]
+    }
+}
+
+impl TimeCourse for Ricker {
+    fn value(&self, t: f64) -> f64 {
+        let [_, _, q, bell] = self.parts(t);
+        (1.0 - 2.0 * q) * bell
+    }
+
+    fn derivative(&self, t: f64) -> f64 {
+        let [c, tau, q, bell] = self.parts(t);
+        (4.0 * q - 6.0) * c * tau * bell
+    }
+
+    fn second_derivative(&self, t: f64) -> f64 {
+        let [c, _, q, bell] = self.parts(t);
+        (24.0 * q - 6.0 - 8.0 * q * q) * c * bell
+    }
+
+    fn integral(&self, t: f64) -> f64 {
+        let primitive = |t: f64| {
+            let [_, tau, _, bell] = self.parts(t);
+            tau * bell
+        };
+        primitive(t) - primitive(0.0)
+    }
+}
 
 /// C(ξ) = 4E/(δ³ √π) exp(−ξ²/δ²).
 fn micromodulus(xi: f64) -> f64 {
@@ -133,17 +179,17 @@ impl Bar {
                 }
             }
             Source::Wavelet => {
-                let [frequency, delay, release] = WAVELET;
-                let motion = PrescribedMotion::new(
+                let mut motion = PrescribedMotion::new(
                     "source".into(),
                     vec![half as u32],
                     MotionKind::Displacement,
                     [Some(1.0), None, None],
-                    TimeFunction::Ricker { frequency, delay },
+                    TimeFunction::Course(Arc::new(WAVELET)),
                     &state.u,
                     cloud.len(),
                 );
-                system.add_motion(motion.until(release))?;
+                motion.until = Some(RELEASE);
+                system.add_motion(motion)?;
             }
         }
         Ok((system, state))

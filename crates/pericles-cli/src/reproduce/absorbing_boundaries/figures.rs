@@ -91,7 +91,12 @@ pub(super) fn interfaces(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         )
         .within(1.0, 0.0)
         .note(format!("{:.1e}, {:.1e}, {:.1e}", left[0], left[1], left[2])),
-        Row::new("β = 1: largest displacement after t = 40", "", Some(left[0])).within(0.0, 1e-9),
+        Row::new(
+            "β = 1: largest displacement after t = 40",
+            "",
+            Some(left[0]),
+        )
+        .within(0.0, 1e-9),
     ])
 }
 

@@ -17,7 +17,9 @@ pub fn cached_kernels(
         .f64s(&[dt])
         .u64s(&[steps as u64]);
     let reach = stencil.reach();
-    let stored = cache.load(&key).and_then(|arrays| read(&arrays, reach, steps));
+    let stored = cache
+        .load(&key)
+        .and_then(|arrays| read(&arrays, reach, steps));
     if let Some(series) = stored.filter(|series| holds(series, stencil, dt)) {
         return GhostKernels::shift(series);
     }
@@ -45,11 +47,16 @@ fn holds(series: &[Vec<f64>], stencil: &LatticeStencil, dt: f64) -> bool {
     let (weights, reach) = (stencil.weights(), stencil.reach());
     let last = series[0].len() - 1;
     let product = |a: &[f64], b: &[f64]| -> f64 {
-        a.iter().zip(b[..=last].iter().rev()).map(|(x, y)| x * y).sum()
+        a.iter()
+            .zip(b[..=last].iter().rev())
+            .map(|(x, y)| x * y)
+            .sum()
     };
     let largest = weights.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
     (1..=reach).all(|k| {
-        let sum: f64 = (0..reach - k).map(|m| product(&series[m], &series[m + k])).sum();
+        let sum: f64 = (0..reach - k)
+            .map(|m| product(&series[m], &series[m + k]))
+            .sum();
         let miss = weights[reach - 1] * (series[k - 1][last] - sum)
             - weights[k - 1] * series[reach - 1][last];
         // Round-off of kernels whose size is dt² a and below.

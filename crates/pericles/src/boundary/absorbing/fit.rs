@@ -282,5 +282,7 @@ fn miss(points: &[C], values: &[Vec<C>], terms: &[Term]) -> f64 {
             left.chunks(reach).map(row).fold(0.0, f64::max)
         })
         .collect();
-    errors.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
+    errors
+        .into_iter()
+        .fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }

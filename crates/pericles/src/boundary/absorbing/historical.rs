@@ -12,11 +12,7 @@ use super::LatticeStencil;
 ///
 /// **Historical.** The closure is exact, but errors grow in it: for the Gaussian micromodulus with K = 7 as exp(0.41 t), up to exp(10.9 t) for K = 10. It is quiet for the
 /// Euler–Bernoulli lattice and for constant and conical micromoduli. Use [`super::green_functions`].
-pub fn green_functions_closed(
-    stencil: &LatticeStencil,
-    dt: f64,
-    steps: usize,
-) -> Vec<Vec<f64>> {
+pub fn green_functions_closed(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<Vec<f64>> {
     let sites = 2 * stencil.reach();
     let mut state = [vec![0.0; sites], vec![0.0; sites]];
     state[1][0] = 1.0;

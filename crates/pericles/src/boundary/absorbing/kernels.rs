@@ -54,7 +54,10 @@ impl GhostKernels {
 
     /// Memory, bytes.
     pub fn bytes(&self) -> usize {
-        self.series.iter().map(|series| size_of_val(&series[..])).sum()
+        self.series
+            .iter()
+            .map(|series| size_of_val(&series[..]))
+            .sum()
     }
 
     /// Sites whose history is kept.

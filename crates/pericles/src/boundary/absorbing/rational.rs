@@ -108,7 +108,12 @@ impl<'a> Rational<'a> {
         let smallest = (0..svd.singular_values.len())
             .min_by(|&a, &b| svd.singular_values[a].total_cmp(&svd.singular_values[b]))
             .unwrap_or(0);
-        let mut solution = vt.row(smallest).iter().copied().collect::<Vec<f64>>().into_iter();
+        let mut solution = vt
+            .row(smallest)
+            .iter()
+            .copied()
+            .collect::<Vec<f64>>()
+            .into_iter();
         let mut next = || solution.next().unwrap_or(0.0);
         self.weights = self
             .support
@@ -124,10 +129,14 @@ impl<'a> Rational<'a> {
 
     /// Each support point with its weight, values, and the conjugates.
     fn nodes(&self) -> impl Iterator<Item = (C, C, usize, bool)> + '_ {
-        self.support.iter().zip(&self.weights).flat_map(|(&j, &weight)| {
-            let mirror = (!self.is_real(j)).then_some((self.points[j].conj(), weight.conj(), j, true));
-            std::iter::once((self.points[j], weight, j, false)).chain(mirror)
-        })
+        self.support
+            .iter()
+            .zip(&self.weights)
+            .flat_map(|(&j, &weight)| {
+                let mirror =
+                    (!self.is_real(j)).then_some((self.points[j].conj(), weight.conj(), j, true));
+                std::iter::once((self.points[j], weight, j, false)).chain(mirror)
+            })
     }
 
     fn evaluate(&mut self, free: &[usize]) {

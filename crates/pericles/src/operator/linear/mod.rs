@@ -51,7 +51,7 @@ mod convolution_force;
 mod cost;
 mod fourier;
 mod lattice_bonds;
-mod pool;
+pub(super) mod pool;
 mod tensor_kernel;
 mod tensor_spectra;
 mod toeplitz;

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Work arrays of one kind. The lock is held only while one is handed over, so that threads that compute never wait for each other; there are
 /// never more arrays than were in use at the same time.
-pub(super) struct Pool<T> {
+pub(in crate::operator) struct Pool<T> {
     idle: Mutex<Vec<T>>,
     make: Box<dyn Fn() -> T + Send + Sync>,
 }
@@ -34,7 +34,7 @@ impl<T> Pool<T> {
 }
 
 /// An array taken from a [`Pool`].
-pub(super) struct Lent<'a, T> {
+pub(in crate::operator) struct Lent<'a, T> {
     item: Option<T>,
     pool: &'a Pool<T>,
 }

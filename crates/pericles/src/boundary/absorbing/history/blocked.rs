@@ -74,13 +74,8 @@ impl BlockedHistory {
                 accumulate(product, &blocks[input].spectrum, &heads[kernel]);
             }
         };
-        self.levels.add_products(
-            level,
-            known,
-            &mut self.results,
-            &mut self.products,
-            &fill,
-        );
+        self.levels
+            .add_products(level, known, &mut self.results, &mut self.products, &fill);
     }
 }
 
@@ -94,7 +89,11 @@ impl History for BlockedHistory {
     }
 
     fn bytes(&self) -> usize {
-        let results: usize = self.results.iter().map(|result| size_of_val(&result[..])).sum();
+        let results: usize = self
+            .results
+            .iter()
+            .map(|result| size_of_val(&result[..]))
+            .sum();
         let modes: usize = self.heads.iter().flatten().map(Vec::len).sum();
         self.past.bytes() + self.kernels.bytes() + results + size_of::<Complex<f64>>() * modes
     }

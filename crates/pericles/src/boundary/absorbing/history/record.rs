@@ -30,7 +30,10 @@ impl Record {
 
     pub(super) fn save(&self, name: &str, archive: &mut Archive) {
         let known = self.sites.iter().flat_map(|site| &site[..self.steps]);
-        archive.put(format!("{name}/past"), Values::F64(known.copied().collect()));
+        archive.put(
+            format!("{name}/past"),
+            Values::F64(known.copied().collect()),
+        );
     }
 
     /// The stored series, one after the other, and their length.

@@ -1,0 +1,121 @@
+//! Vectors whose entries are numbers or expressions.
+
+use serde_json::json;
+
+use crate::expression::{Expression, VARIABLES};
+use crate::fault::Fault;
+use crate::quantity::Quantity;
+use crate::reader::Item;
+
+/// An entry of a vector, in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Component {
+    /// The same everywhere and always.
+    Number(f64),
+    /// A function of place, and of time where that makes sense.
+    Expression(Expression),
+}
+
+impl From<f64> for Component {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl Component {
+    /// The value at a place (m) and time (s).
+    pub fn value(&self, place: [f64; 3], t: f64) -> f64 {
+        match self {
+            Self::Number(value) => *value,
+            Self::Expression(expression) => expression.value(place, t),
+        }
+    }
+
+    /// The number, if it is one.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(*value),
+            Self::Expression(_) => None,
+        }
+    }
+
+    /// Whether it changes with time.
+    pub fn depends_on_time(&self) -> bool {
+        matches!(self, Self::Expression(expression) if expression.depends_on_time())
+    }
+}
+
+/// A vector of the body's dimension; components beyond it are zero.
+pub type VectorField = [Component; 3];
+
+/// The variables that expressions may use.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Variables {
+    /// x, y, z as far as the body has them; all if its dimension is not known for an error made elsewhere.
+    pub(crate) dimension: Option<usize>,
+    /// Whether t is one of them.
+    pub(crate) time: bool,
+}
+
+impl Variables {
+    fn names(self) -> Vec<&'static str> {
+        let mut names = VARIABLES[..self.dimension.unwrap_or(3)].to_vec();
+        if self.time {
+            names.push("t");
+        }
+        names
+    }
+}
+
+/// A number with a unit, or `{ expression = "…" }`.
+pub(crate) fn component(
+    item: &Item<'_>,
+    quantity: Quantity,
+    variables: Variables,
+) -> Option<Component> {
+    if !item.is_table() {
+        return item.quantity(quantity).map(Component::Number);
+    }
+    let table = item.table()?;
+    let expression = table
+        .required("expression")
+        .and_then(|item| expression(&item, &variables.names()));
+    table.finish();
+    expression.map(Component::Expression)
+}
+
+/// An expression of these variables.
+pub(crate) fn expression(item: &Item<'_>, variables: &[&str]) -> Option<Expression> {
+    let text = item.text()?;
+    match Expression::parse(&text, variables) {
+        Ok(expression) => {
+            item.record(json!(text));
+            Some(expression)
+        }
+        Err(malformed) => {
+            item.report(Fault::BadExpression {
+                text,
+                reason: malformed.reason,
+            });
+            None
+        }
+    }
+}
+
+/// A vector with one entry per dimension.
+pub(crate) fn vector_field(
+    item: &Item<'_>,
+    quantity: Quantity,
+    variables: Variables,
+) -> Option<VectorField> {
+    let items = item.components(variables.dimension, &quantity.expected())?;
+    let mut field = Some([0.0; 3].map(Component::Number));
+    for (c, item) in items.iter().enumerate() {
+        // Go on after a bad entry: the others may be bad as well.
+        match (component(item, quantity, variables), &mut field) {
+            (Some(component), Some(field)) => field[c] = component,
+            _ => field = None,
+        }
+    }
+    field
+}

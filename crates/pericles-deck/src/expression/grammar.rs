@@ -1,0 +1,233 @@
+//! Reading an expression token by token, so that errors can be told precisely, and writing it again with every power in parentheses.
+
+use std::fmt::Write;
+
+use super::{FUNCTIONS, LONGEST, Malformed};
+use crate::nearest::nearest;
+
+const CONSTANTS: [&str; 2] = ["pi", "e"];
+
+/// Parentheses within parentheses.
+const DEEPEST: usize = 60;
+
+#[derive(Debug, Clone, PartialEq)]
+enum Token<'a> {
+    /// Its text and value.
+    Number(&'a str, f64),
+    Name(&'a str),
+    /// One of `+ - * / ^ ( )`.
+    Sign(char),
+}
+
+/// The same expression with `(base)^(exponent)` for every power and `(-(…))` for every sign.
+pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Malformed> {
+    if text.len() > LONGEST {
+        return refuse(format!(
+            "it has {} characters; allowed: at most {LONGEST}",
+            text.len()
+        ));
+    }
+    let tokens = tokens(text)?;
+    if tokens.is_empty() {
+        return refuse("it is empty".into());
+    }
+    let mut reader = Reader {
+        tokens: &tokens,
+        variables,
+        depth: 0,
+    };
+    let grouped = reader.sum()?;
+    match reader.tokens.first() {
+        None => Ok(grouped),
+        Some(Token::Sign(')')) => refuse("a parenthesis is closed that was never opened".into()),
+        Some(token) => refuse(format!("there is no operator before {}", shown(token))),
+    }
+}
+
+fn refuse<T>(reason: String) -> Result<T, Malformed> {
+    Err(Malformed { reason })
+}
+
+fn shown(token: &Token<'_>) -> String {
+    match token {
+        Token::Number(text, _) | Token::Name(text) => format!("`{text}`"),
+        Token::Sign(sign) => format!("`{sign}`"),
+    }
+}
+
+fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
+    let mut tokens = Vec::new();
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let length = match first {
+            '0'..='9' | '.' => number_length(rest),
+            c if c.is_ascii_alphabetic() => rest
+                .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+                .unwrap_or(rest.len()),
+            '+' | '-' | '*' | '/' | '^' | '(' | ')' => 1,
+            other => {
+                return refuse(format!(
+                    "it contains `{other}`; allowed: numbers, names, + - * / ^ and parentheses"
+                ));
+            }
+        };
+        let (token, tail) = rest.split_at(length);
+        tokens.push(match first {
+            '0'..='9' | '.' => match token.parse::<f64>() {
+                Ok(value) if value.is_finite() => Token::Number(token, value),
+                _ => return refuse(format!("`{token}` is no number")),
+            },
+            c if c.is_ascii_alphabetic() => Token::Name(token),
+            sign => Token::Sign(sign),
+        });
+        rest = tail.trim_start();
+    }
+    Ok(tokens)
+}
+
+/// Digits, a point, digits, and an exponent if digits follow it.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| {
+        bytes[from..]
+            .iter()
+            .take_while(|b| b.is_ascii_digit())
+            .count()
+    };
+    let mut length = digits(0);
+    if bytes.get(length) == Some(&b'.') {
+        length += 1 + digits(length + 1);
+    }
+    if matches!(bytes.get(length), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(length + 1), Some(b'+' | b'-')));
+        let exponent = digits((length + 1 + sign).min(bytes.len()));
+        if exponent > 0 {
+            length += 1 + sign + exponent;
+        }
+    }
+    length
+}
+
+struct Reader<'t> {
+    tokens: &'t [Token<'t>],
+    variables: &'t [&'t str],
+    depth: usize,
+}
+
+impl Reader<'_> {
+    fn take_sign(&mut self, signs: &[char]) -> Option<char> {
+        match self.tokens {
+            [Token::Sign(sign), rest @ ..] if signs.contains(sign) => {
+                self.tokens = rest;
+                Some(*sign)
+            }
+            _ => None,
+        }
+    }
+
+    /// term (± term)*
+    fn sum(&mut self) -> Result<String, Malformed> {
+        let mut text = self.product()?;
+        while let Some(sign) = self.take_sign(&['+', '-']) {
+            let term = self.product()?;
+            let _ = write!(text, "{sign}{term}");
+        }
+        Ok(text)
+    }
+
+    /// signed (×÷ signed)*, from left to right
+    fn product(&mut self) -> Result<String, Malformed> {
+        let mut text = self.signed()?;
+        while let Some(sign) = self.take_sign(&['*', '/']) {
+            let factor = self.signed()?;
+            text = format!("({text}{sign}{factor})");
+        }
+        Ok(text)
+    }
+
+    /// ± signed, or a power
+    fn signed(&mut self) -> Result<String, Malformed> {
+        self.deeper(|reader| match reader.take_sign(&['+', '-']) {
+            Some('-') => Ok(format!("(-({}))", reader.signed()?)),
+            Some(_) => reader.signed(),
+            None => reader.power(),
+        })
+    }
+
+    /// value, or value ^ signed
+    fn power(&mut self) -> Result<String, Malformed> {
+        let base = self.value()?;
+        match self.take_sign(&['^']) {
+            None => Ok(base),
+            Some(_) => Ok(format!("(({base})^({}))", self.signed()?)),
+        }
+    }
+
+    fn value(&mut self) -> Result<String, Malformed> {
+        let Some((token, rest)) = self.tokens.split_first() else {
+            return refuse("a value is missing at its end".into());
+        };
+        self.tokens = rest;
+        match token {
+            // Without an exponent, which is not read everywhere.
+            Token::Number(_, value) => Ok(format!("{value}")),
+            Token::Name(name) => self.named(name),
+            Token::Sign('(') => self.parenthesis(),
+            Token::Sign(sign) => refuse(format!("a value is missing before `{sign}`")),
+        }
+    }
+
+    fn parenthesis(&mut self) -> Result<String, Malformed> {
+        let inner = self.deeper(Self::sum)?;
+        match self.tokens.first() {
+            Some(Token::Sign(')')) => {
+                self.tokens = &self.tokens[1..];
+                Ok(format!("({inner})"))
+            }
+            Some(token) => refuse(format!("there is no operator before {}", shown(token))),
+            None => refuse("a parenthesis is not closed".into()),
+        }
+    }
+
+    fn named(&mut self, name: &str) -> Result<String, Malformed> {
+        if FUNCTIONS.contains(&name) {
+            return match self.take_sign(&['(']) {
+                Some(_) => Ok(format!("{name}{}", self.parenthesis()?)),
+                None => refuse(format!(
+                    "the function `{name}` needs its argument in parentheses"
+                )),
+            };
+        }
+        if CONSTANTS.contains(&name) || self.variables.contains(&name) {
+            return Ok(name.to_owned());
+        }
+        let known = || {
+            let variables = self.variables.iter().copied();
+            variables.chain(CONSTANTS).chain(FUNCTIONS)
+        };
+        let hint = nearest(name, known())
+            .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        let variables = match self.variables {
+            [] => "none".to_owned(),
+            names => names.join(", "),
+        };
+        refuse(format!(
+            "`{name}` is not known here{hint} Variables: {variables}; constants: {}; functions: {}",
+            CONSTANTS.join(", "),
+            FUNCTIONS.join(", ")
+        ))
+    }
+
+    fn deeper(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> Result<String, Malformed>,
+    ) -> Result<String, Malformed> {
+        if self.depth == DEEPEST {
+            return refuse(format!("it is nested more than {DEEPEST} deep"));
+        }
+        self.depth += 1;
+        let read = read(self);
+        self.depth -= 1;
+        read
+    }
+}

@@ -1,0 +1,248 @@
+//! Expressions of x, y, z and t in decks.
+//!
+//! The grammar is the one of school: `+ - * /` and `^` with `-x^2 = -(x^2)` and `2^3^2 = 2^(3^2)`, parentheses, numbers, the variables `x y z t` (m and s; those the
+//! body has), the constants `pi` and `e`, and the functions of [`FUNCTIONS`]. Values are in SI units.
+//!
+//! Parsing, evaluation and derivatives are those of exmex. It binds a sign tighter than a power (`-x^2 = x^2` there) and powers from left to right; what it
+//! is given has therefore every power in parentheses ([`grammar`]).
+
+mod grammar;
+
+use std::fmt;
+use std::sync::Arc;
+
+use exmex::{Differentiate, Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
+
+/// Functions of one argument that expressions may use. `step` is 0 below zero and 1 from zero on.
+pub(crate) const FUNCTIONS: [&str; 20] = [
+    "abs", "acos", "asin", "atan", "cbrt", "ceil", "cos", "cosh", "exp", "floor", "ln", "log10",
+    "round", "sign", "sin", "sinh", "sqrt", "step", "tan", "tanh",
+];
+
+/// Names of the variables, in the order of their values.
+pub(crate) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
+
+/// Longest text that is read.
+pub(crate) const LONGEST: usize = 2000;
+
+/// exmex's operators and ours.
+#[derive(Clone, Debug)]
+struct Operators;
+
+impl MakeOperators<f64> for Operators {
+    fn make<'a>() -> Vec<Operator<'a, f64>> {
+        let mut operators = FloatOpsFactory::<f64>::make();
+        operators.push(Operator::make_constant("pi", std::f64::consts::PI));
+        operators.push(Operator::make_unary("round", f64::round));
+        operators.push(Operator::make_unary("sign", |x| {
+            if x == 0.0 { 0.0 } else { x.signum() }
+        }));
+        operators.push(Operator::make_unary("step", |x| {
+            if x >= 0.0 { 1.0 } else { 0.0 }
+        }));
+        operators
+    }
+}
+
+type Compiled = FlatEx<f64, Operators>;
+
+/// What is wrong with an expression, and what is allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Malformed {
+    pub(crate) reason: String,
+}
+
+/// A function of place and time, compiled once.
+#[derive(Clone)]
+pub struct Expression {
+    text: Arc<str>,
+    compiled: Arc<Compiled>,
+    /// The values its variables take, as places in (x, y, z, t).
+    variables: Arc<[usize]>,
+}
+
+impl Expression {
+    /// Reads an expression of the variables named by `allowed`.
+    pub(crate) fn parse(text: &str, allowed: &[&str]) -> Result<Self, Malformed> {
+        let grouped = grammar::group_powers(text, allowed)?;
+        let compiled = Compiled::parse(&grouped).map_err(|error| Malformed {
+            reason: format!("it cannot be understood: {error}"),
+        })?;
+        Ok(Self::new(text, compiled))
+    }
+
+    fn new(text: &str, compiled: Compiled) -> Self {
+        let place = |name: &String| VARIABLES.iter().position(|v| v == name);
+        let variables = compiled.var_names().iter().filter_map(place).collect();
+        Self {
+            text: text.into(),
+            compiled: compiled.into(),
+            variables,
+        }
+    }
+
+    /// The text it was read from.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether its value changes with time.
+    pub fn depends_on_time(&self) -> bool {
+        self.variables.contains(&3)
+    }
+
+    /// Whether its value changes with place.
+    pub fn depends_on_place(&self) -> bool {
+        self.variables.iter().any(|&v| v < 3)
+    }
+
+    /// The value at a place (m) and time (s). Where the expression has none, such as the root of a negative number, it is NaN.
+    pub fn value(&self, [x, y, z]: [f64; 3], t: f64) -> f64 {
+        let all = [x, y, z, t];
+        let mut given = [0.0; 4];
+        for (given, &v) in given.iter_mut().zip(&*self.variables) {
+            *given = all[v];
+        }
+        let given = &given[..self.variables.len()];
+        // As many values as variables: there is no other error.
+        self.compiled.eval(given).unwrap_or(f64::NAN)
+    }
+
+    /// The derivative in time.
+    pub(crate) fn rate(&self) -> Result<Self, Malformed> {
+        let Some(index) = self.variables.iter().position(|&v| v == 3) else {
+            return Self::parse("0", &[]);
+        };
+        let compiled = Compiled::clone(&self.compiled);
+        let derivative = compiled.partial(index).map_err(|error| Malformed {
+            reason: format!("it cannot be differentiated in time: {error}"),
+        })?;
+        Ok(Self::new(&format!("d/dt ({})", self.text), derivative))
+    }
+}
+
+impl fmt::Debug for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Expression({:?})", self.text)
+    }
+}
+
+/// Equal texts are equal functions.
+impl PartialEq for Expression {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn value(text: &str) -> f64 {
+        let expression = Expression::parse(text, &VARIABLES).unwrap();
+        expression.value([2.0, 3.0, 5.0], 7.0)
+    }
+
+    #[test]
+    fn the_grammar_is_that_of_school() {
+        let cases = [
+            ("-x^2", -4.0),
+            ("2 - -x^2", 6.0),
+            ("2^-x", 0.25),
+            ("2^3^x", 512.0),
+            ("-2^-x", -0.25),
+            ("(-x)^2", 4.0),
+            ("1/x*y", 1.5),
+            ("1/x/y", 1.0 / 6.0),
+            ("t-y-x", 2.0),
+            ("-x*-y", 6.0),
+            ("exp(-x^2)", (-4.0f64).exp()),
+            ("-exp(x)^2", -(2.0f64).exp().powi(2)),
+            ("sin(x)^2+cos(x)^2", 1.0),
+            ("2*pi", std::f64::consts::TAU),
+            ("ln(e^3)", 3.0),
+            ("1.5e-3*1E+3", 1.5),
+            (".5*2.", 1.0),
+            ("x*step(y-3) + 10*step(y-3.1)", 2.0),
+            ("sign(-y) + abs(-y) + sqrt(4)", 4.0),
+            ("((((x))))", 2.0),
+            ("-(x+y)^2*2", -50.0),
+            ("x^2^0.5*1", 2.0f64.powf(2.0f64.powf(0.5))),
+        ];
+        for (text, expected) in cases {
+            let found = value(text);
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{text}: {found}, not {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let cases = [
+            ("", "empty"),
+            ("x +", "end"),
+            ("x ** 2", "*"),
+            ("2x", "operator"),
+            ("sin x", "parenthes"),
+            ("sine(x)", "did you mean `sin`"),
+            ("w + 1", "`w`"),
+            ("z", "`z`"),
+            ("(x", "closed"),
+            ("x)", "never opened"),
+            ("x $ 2", "`$`"),
+            ("()", "value"),
+            ("1e400", "number"),
+            ("sin", "parenthes"),
+            ("x(2)", "operator"),
+        ];
+        for (text, part) in cases {
+            let error = Expression::parse(text, &["x", "y", "t"]).unwrap_err();
+            assert!(error.reason.contains(part), "{text}: {}", error.reason);
+        }
+        let long = "x+".repeat(LONGEST);
+        assert!(Expression::parse(&long, &["x"]).is_err());
+        let deep = "(".repeat(400) + "x" + &")".repeat(400);
+        assert!(Expression::parse(&deep, &["x"]).is_err());
+    }
+
+    #[test]
+    fn rates_are_derivatives() {
+        for text in [
+            "sin(3*t)*x",
+            "exp(-t^2)",
+            "t^3/y",
+            "1/(1+t)",
+            "x",
+            "-t^2",
+            "sqrt(1+t)*cos(t)",
+        ] {
+            let f = Expression::parse(text, &VARIABLES).unwrap();
+            let rate = f.rate().unwrap();
+            let at = |t: f64| f.value([2.0, 3.0, 5.0], t);
+            let (t, h) = (0.4, 1e-5);
+            let slope = (at(t + h) - at(t - h)) / (2.0 * h);
+            let found = rate.value([2.0, 3.0, 5.0], t);
+            assert!((found - slope).abs() < 1e-8, "{text}: {found}, {slope}");
+            assert!(rate.rate().is_ok());
+        }
+        assert!(
+            Expression::parse("step(t)", &["t"])
+                .unwrap()
+                .rate()
+                .is_err()
+        );
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(512))]
+        #[test]
+        fn any_text_is_read_or_refused(text in "[-+*/^() .,0-9etxsincopqrt]{0,24}") {
+            if let Ok(expression) = Expression::parse(&text, &VARIABLES) {
+                expression.value([0.1, 0.2, 0.3], 0.4);
+            }
+        }
+    }
+}

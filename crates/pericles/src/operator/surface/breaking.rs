@@ -1,0 +1,123 @@
+//! Breaking of bonds of a surface.
+
+use rayon::prelude::*;
+
+use super::bonds::SurfaceBonds;
+use super::law::SurfaceLaw;
+use crate::archive::{Archive, Values};
+use crate::error::{PericlesError, Result};
+use crate::operator::On;
+use crate::operator::lanes::{F64x8, Real};
+use crate::parallel::BLOCK;
+
+/// What is broken, and what it takes to break the rest. A broken bond has weight zero.
+pub(super) struct Breaking {
+    /// (s d)² of every entry, m².
+    pub limits: Vec<f64>,
+    /// Broken entries, both of each bond, with the weights they had.
+    pub broken: Vec<(usize, f64)>,
+    /// J.
+    pub dissipated: f64,
+}
+
+/// The end of a step as breaking sees it.
+pub(super) struct Step<'a> {
+    pub u: &'a [f64],
+    /// Mean velocity and length of the step, if the force acted for half of it only.
+    pub path: Option<(&'a [f64], f64)>,
+    pub areas: &'a [f64],
+    pub reference: &'a [[f64; 4]],
+}
+
+impl Breaking {
+    /// Breaks what is stretched too far among the bonds of the points named by `on`. Both ends of a bond see the same |η|, bit for bit.
+    pub fn decide<L: SurfaceLaw>(
+        &mut self,
+        law: L,
+        bonds: &mut SurfaceBonds,
+        step: &Step<'_>,
+        on: &On<'_>,
+    ) {
+        let n = bonds.len();
+        let difference = |field: &[f64], i: usize, j: usize| -> [f64; 3] {
+            std::array::from_fn(|c| field[c * n + j] - field[c * n + i])
+        };
+        let over = |i: usize| {
+            let (bonds, limits) = (&*bonds, &self.limits);
+            bonds.row(i).filter_map(move |(entry, j)| {
+                let eta = difference(step.u, i, j);
+                let square: f64 = eta.iter().map(|x| x * x).sum();
+                (square > limits[entry] && bonds.weights()[entry] != 0.0).then_some((i, entry, j))
+            })
+        };
+        let found: Vec<(usize, usize, usize)> = match on {
+            On::All => (0..n)
+                .into_par_iter()
+                .with_min_len(BLOCK)
+                .flat_map_iter(over)
+                .collect(),
+            On::Range(range) => range.clone().flat_map(over).collect(),
+            On::Set(set) => set.iter().flat_map(|&i| over(i as usize)).collect(),
+        };
+        for (i, entry, j) in found {
+            let weight = bonds.weights()[entry];
+            if weight == 0.0 {
+                continue;
+            }
+            let lanes = |x: [f64; 3]| x.map(F64x8::splat);
+            let xi = if L::CHORD {
+                std::array::from_fn(|c| step.reference[j][c] - step.reference[i][c])
+            } else {
+                [0.0; 3]
+            };
+            let eta = difference(step.u, i, j);
+            let mut energy = law.energy(lanes(xi), lanes(eta)).0[0];
+            if let Some((velocity, dt)) = step.path {
+                let force = law.force(lanes(xi), lanes(eta));
+                let rate = difference(velocity, i, j);
+                let power: f64 = (0..3).map(|c| force[c].0[0] * rate[c]).sum();
+                energy -= 0.5 * dt * power;
+            }
+            self.dissipated += step.areas[i] * weight * energy;
+            self.cut(bonds, entry);
+            let back = bonds.row(j).find(|&(_, other)| other == i);
+            if let Some((back, _)) = back {
+                self.cut(bonds, back);
+            }
+        }
+    }
+
+    fn cut(&mut self, bonds: &mut SurfaceBonds, entry: usize) {
+        let weight = std::mem::take(&mut bonds.weights_mut()[entry]);
+        self.broken.push((entry, weight));
+    }
+
+    pub fn save(&self, archive: &mut Archive) {
+        let entries = self.broken.iter().map(|&(entry, _)| entry as u64);
+        archive.put("operator/broken", Values::U64(entries.collect()));
+        archive.put("operator/dissipated", Values::F64(vec![self.dissipated]));
+    }
+
+    pub fn restore(&mut self, bonds: &mut SurfaceBonds, archive: &Archive) -> Result<()> {
+        let entries = archive.u64s("operator/broken")?;
+        archive.f64_into(
+            "operator/dissipated",
+            std::slice::from_mut(&mut self.dissipated),
+        )?;
+        for (entry, weight) in self.broken.drain(..) {
+            bonds.weights_mut()[entry] = weight;
+        }
+        for &entry in entries {
+            if entry as usize >= self.limits.len() {
+                return Err(PericlesError::BadArchive {
+                    reason: format!(
+                        "it breaks bond {entry}, the model has {}",
+                        self.limits.len()
+                    ),
+                });
+            }
+            self.cut(bonds, entry as usize);
+        }
+        Ok(())
+    }
+}

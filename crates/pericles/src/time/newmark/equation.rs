@@ -1,0 +1,157 @@
+//! The equation of an implicit step, in the form the solver takes.
+
+use rayon::prelude::*;
+
+use crate::operator::On;
+use crate::parallel::{BLOCK, ordered_sum};
+use crate::solve::Nonlinear;
+use crate::system::System;
+
+/// u − known − θ f̄(u)/ρ + φ P (u − base) = 0, with f̄ = Σ weight · f(base + node · (u − base)), the mean force on the way from the base, and P the projection along rigid translations that is orthogonal in the masses.
+///
+/// The unknowns are y = √m u, the residual is scaled the same way: the derivative is then 1 − θ M^(−1/2) T M^(−1/2) + φ P, symmetric as the
+/// solver wants it, and positive definite where the tangent T is negative semi-definite.
+pub(super) struct StepEquation<'a> {
+    pub(super) system: &'a System,
+    pub(super) t: f64,
+    /// √m per unknown.
+    pub(super) root_mass: &'a [f64],
+    pub(super) known: &'a [f64],
+    pub(super) theta: f64,
+    /// Where the step starts.
+    pub(super) base: &'a [f64],
+    /// Places between base and end, 0 to 1, with weights that sum to one.
+    pub(super) nodes: &'a [(f64, f64)],
+    /// φ.
+    pub(super) pull: f64,
+    /// Displacement, direction, force, and the displacement and tangent of a node.
+    pub(super) work: &'a mut [Vec<f64>; 5],
+}
+
+impl StepEquation<'_> {
+    /// √m (x − θ f/ρ + φ P (x − base) − known), with the force in `work[2]`; the direction's own form leaves known and base out.
+    fn scale_into(&self, x: &[f64], affine: bool, out: &mut [f64]) {
+        let n = self.system.points();
+        let force = &self.work[2];
+        let known = |k: usize| if affine { self.known[k] } else { 0.0 };
+        let (phi, base) = (self.pull, self.base);
+        let from = |k: usize| if affine { x[k] - base[k] } else { x[k] };
+        let mean: [f64; 3] = std::array::from_fn(|c| {
+            if phi == 0.0 || c >= self.system.dimension() {
+                return 0.0;
+            }
+            centre(self.root_mass, c, n, &from)
+        });
+        let density = self.system.density();
+        out.par_chunks_mut(BLOCK).enumerate().for_each(|(b, out)| {
+            for (i, out) in out.iter_mut().enumerate() {
+                let k = b * BLOCK + i;
+                let pull = if phi == 0.0 {
+                    0.0
+                } else {
+                    phi * (from(k) - mean[k / n])
+                };
+                let acceleration = force[k] / density.at(k % n);
+                *out = self.root_mass[k] * (x[k] - known(k) - self.theta * acceleration + pull);
+            }
+        });
+        self.system.hold(out);
+    }
+
+    fn unscale(&mut self, y: &[f64], slot: usize) {
+        let root_mass = self.root_mass;
+        self.work[slot]
+            .par_chunks_mut(BLOCK)
+            .zip(y.par_chunks(BLOCK))
+            .zip(root_mass.par_chunks(BLOCK))
+            .for_each(|((x, y), root_mass)| {
+                for ((x, y), root_mass) in x.iter_mut().zip(y).zip(root_mass) {
+                    *x = y / root_mass;
+                }
+            });
+    }
+}
+
+/// The mass-weighted mean of component c.
+pub(super) fn centre(
+    root_mass: &[f64],
+    c: usize,
+    n: usize,
+    x: &(impl Fn(usize) -> f64 + Sync),
+) -> f64 {
+    let mass = |i: usize| root_mass[c * n + i].powi(2);
+    ordered_sum(n, |i| mass(i) * x(c * n + i)) / ordered_sum(n, mass)
+}
+
+impl StepEquation<'_> {
+    /// Puts the displacement of a scaled unknown into `work[0]`.
+    pub(super) fn displace(&mut self, y: &[f64]) {
+        self.unscale(y, 0);
+    }
+
+    /// f̄ at the displacement in `work[0]`, into `work[2]`.
+    pub(super) fn mean_force(&mut self) {
+        let [u, _, mean, at_node, force] = &mut *self.work;
+        mean.fill(0.0);
+        for &(node, weight) in self.nodes {
+            between(self.base, u, node, at_node);
+            force.fill(0.0);
+            self.system
+                .operator()
+                .add_force(self.t, at_node, On::All, force);
+            add(weight, force, mean);
+        }
+    }
+
+    /// Its derivative in the direction in `work[1]`, into `work[2]`.
+    fn mean_tangent(&mut self) {
+        let [u, direction, mean, at_node, tangent] = &mut *self.work;
+        mean.fill(0.0);
+        for &(node, weight) in self.nodes {
+            between(self.base, u, node, at_node);
+            self.system
+                .operator()
+                .tangent_into(self.t, at_node, direction, tangent);
+            add(weight * node, tangent, mean);
+        }
+    }
+}
+
+fn between(from: &[f64], to: &[f64], node: f64, out: &mut [f64]) {
+    if node == 1.0 {
+        return out.copy_from_slice(to);
+    }
+    for ((out, from), to) in out.iter_mut().zip(from).zip(to) {
+        *out = from + node * (to - from);
+    }
+}
+
+fn add(factor: f64, x: &[f64], out: &mut [f64]) {
+    for (out, x) in out.iter_mut().zip(x) {
+        *out += factor * x;
+    }
+}
+
+impl Nonlinear for StepEquation<'_> {
+    fn residual_into(&mut self, y: &[f64], out: &mut [f64]) {
+        self.unscale(y, 0);
+        self.mean_force();
+        self.scale_into(&self.work[0], true, out);
+    }
+
+    fn derivative_into(&mut self, y: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.unscale(y, 0);
+        self.unscale(direction, 1);
+        self.mean_tangent();
+        self.scale_into(&self.work[1], false, out);
+    }
+}
+
+/// √m of every unknown.
+pub(super) fn root_masses(system: &System) -> Vec<f64> {
+    let n = system.points();
+    let mass = |i: usize| system.density().at(i) * system.cloud().volumes()[i];
+    (0..system.dimension() * n)
+        .map(|k| mass(k % n).sqrt())
+        .collect()
+}

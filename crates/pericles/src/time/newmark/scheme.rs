@@ -1,0 +1,337 @@
+//! Newmark's method.
+
+use super::anderson::Anderson;
+use super::equation::{StepEquation, root_masses};
+use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
+use crate::archive::{Archive, Saved};
+use crate::error::{PericlesError, Result};
+use crate::operator::{Accepted, On};
+use crate::solve::{SolveLimits, Work, newton_krylov};
+use crate::system::System;
+use crate::time::zone::{Sum, Zone};
+use crate::time::{Integrator, State, highest_frequency};
+
+/// Newmark's method with a choice of inner solvers; see the module.
+///
+/// Breaking and work are booked once, at the end of a step. Prescribed displacements hold during the inner iterations and prescribed velocities at the end.
+pub struct Newmark {
+    options: NewmarkOptions,
+    zone: Zone,
+    /// uP and vP.
+    predicted: [Vec<f64>; 2],
+    /// The iterate: displacement, velocity, acceleration, and the acceleration found there.
+    next: [Vec<f64>; 4],
+    inner: Inner,
+    iterations: InnerIterations,
+}
+
+enum Inner {
+    FixedPoint,
+    Anderson(Anderson),
+    NewtonKrylov(Box<NewtonKrylov>),
+}
+
+struct NewtonKrylov {
+    root_mass: Vec<f64>,
+    work: Work,
+    vectors: [Vec<f64>; 5],
+    /// What the equation knows, and the scaled unknown.
+    known: Vec<f64>,
+    scaled: Vec<f64>,
+    least_root_mass: f64,
+    least_root_density: f64,
+}
+
+impl Newmark {
+    /// The method for a body.
+    ///
+    /// # Errors
+    /// Parameters out of range; Newton's method on a body with boundaries that have a memory.
+    pub fn new(options: NewmarkOptions, system: &System) -> Result<Self> {
+        options.check()?;
+        let entries = system.dimension() * system.points();
+        let array = || vec![0.0; entries];
+        let inner = match options.solver {
+            InnerSolver::FixedPoint => Inner::FixedPoint,
+            InnerSolver::Anderson { depth } => {
+                Inner::Anderson(Anderson::new(depth as usize, entries))
+            }
+            InnerSolver::NewtonKrylov if system.has_boundaries() => {
+                return Err(PericlesError::SchemeNotUsable {
+                    scheme: "newmark with Newton's method",
+                    reason: "its boundaries have a memory that an iteration must not touch; solver = \"fixed-point\" can",
+                });
+            }
+            InnerSolver::NewtonKrylov => {
+                let root_mass = root_masses(system);
+                let least = |x: &mut dyn Iterator<Item = f64>| x.fold(f64::INFINITY, f64::min);
+                Inner::NewtonKrylov(Box::new(NewtonKrylov {
+                    least_root_mass: least(&mut root_mass.iter().copied()),
+                    least_root_density: least(
+                        &mut (0..system.points()).map(|i| system.density().at(i).sqrt()),
+                    ),
+                    root_mass,
+                    work: Work::new(entries),
+                    vectors: std::array::from_fn(|_| array()),
+                    known: array(),
+                    scaled: array(),
+                }))
+            }
+        };
+        Ok(Self {
+            options,
+            zone: Zone::all(system.points()),
+            predicted: std::array::from_fn(|_| array()),
+            next: std::array::from_fn(|_| array()),
+            inner,
+            iterations: InnerIterations::default(),
+        })
+    }
+
+    /// Parameters.
+    pub fn options(&self) -> &NewmarkOptions {
+        &self.options
+    }
+
+    /// u′ = uP + β dt² a, v′ = vP + γ dt a, with what is prescribed.
+    fn correct(&mut self, system: &System, t: f64, dt: f64) {
+        let n = system.points();
+        let [u, v, a, _] = &mut self.next;
+        Sum::new()
+            .plus(self.options.beta * dt * dt, a)
+            .onto(&self.predicted[0], &self.zone, n, u);
+        Sum::new()
+            .plus(self.options.gamma * dt, a)
+            .onto(&self.predicted[1], &self.zone, n, v);
+        system.place_on(t, &On::All, u);
+        system.drive_on(t, &On::All, v);
+    }
+
+    /// Evaluate and correct until the velocity stays. Leaves the last acceleration found in `next[3]`.
+    fn iterate(&mut self, system: &mut System, t: f64, dt: f64) -> Result<()> {
+        let push = self.options.gamma * dt;
+        self.next[2].fill(0.0);
+        if let Inner::Anderson(anderson) = &mut self.inner {
+            anderson.restart();
+        }
+        self.correct(system, t, dt);
+        let mut change = f64::INFINITY;
+        for k in 1..=u64::from(self.options.iterations) {
+            let [u, v, a, found] = &mut self.next;
+            system.acceleration(t, u, v, On::All, found);
+            // The iterate before is not needed any more: it becomes the change.
+            for (a, found) in a.iter_mut().zip(&*found) {
+                *a = found - *a;
+            }
+            change = self.options.norm.of(system, push, a);
+            if change <= self.options.tolerance {
+                a.copy_from_slice(found);
+                self.correct(system, t, dt);
+                self.iterations.count(k, change);
+                return Ok(());
+            }
+            if !change.is_finite() {
+                break;
+            }
+            match &mut self.inner {
+                Inner::Anderson(anderson) => {
+                    for (a, found) in a.iter_mut().zip(&*found) {
+                        *a = found - *a;
+                    }
+                    anderson.next(a, found);
+                    a.copy_from_slice(found);
+                }
+                _ => a.copy_from_slice(found),
+            }
+            self.correct(system, t, dt);
+        }
+        Err(self.not_converged(system, t, dt, change))
+    }
+
+    fn not_converged(&self, system: &System, t: f64, dt: f64, change: f64) -> PericlesError {
+        // The frequency at the predicted state: the iterate itself may be far out.
+        let omega = highest_frequency(system, &self.predicted[0])
+            .map_or(0.0, |frequency| frequency.estimate);
+        // The correction shrinks by β ω² dt² an iteration: so that the last is a millionth of the first.
+        let shrink = 1e-6_f64.powf(1.0 / f64::from(self.options.iterations));
+        PericlesError::InnerIteration {
+            t,
+            iterations: self.options.iterations,
+            change,
+            tolerance: self.options.tolerance,
+            dt,
+            omega,
+            safe: (shrink / self.options.beta).sqrt() / omega,
+        }
+    }
+
+    /// Newton's method on u′ − uP − β dt² (f(u′) + b)/ρ = 0.
+    fn solve(&mut self, system: &mut System, state: &State, t: f64, dt: f64) -> Result<()> {
+        let Inner::NewtonKrylov(newton) = &mut self.inner else {
+            return Ok(());
+        };
+        let NewtonKrylov {
+            root_mass,
+            work,
+            vectors,
+            known,
+            scaled,
+            least_root_mass,
+            least_root_density,
+        } = &mut **newton;
+        let n = system.points();
+        let [u, v, a, found] = &mut self.next;
+        let theta = self.options.beta * dt * dt;
+        system.external_acceleration_into(t, found);
+        Sum::new()
+            .plus(theta, found)
+            .onto(&self.predicted[0], &self.zone, n, known);
+        Sum::new()
+            .plus(theta, &state.a)
+            .onto(&self.predicted[0], &self.zone, n, u);
+        system.place_on(t, &On::All, u);
+        for ((y, u), root) in scaled.iter_mut().zip(&*u).zip(&*root_mass) {
+            *y = u * root;
+        }
+        let velocity = self.options.gamma / (self.options.beta * dt);
+        let least = match self.options.norm {
+            VelocityNorm::Weighted => *least_root_density,
+            VelocityNorm::Sum | VelocityNorm::Largest => *least_root_mass,
+        };
+        let limits = SolveLimits {
+            absolute: self.options.tolerance * least / velocity,
+            relative: ROUNDING,
+            iterations: self.options.iterations as usize,
+        };
+        let scale = scaled.iter().map(|y| y * y).sum::<f64>().sqrt();
+        let mut equation = StepEquation {
+            system,
+            t,
+            root_mass,
+            known,
+            theta,
+            base: &state.u,
+            nodes: &[(1.0, 1.0)],
+            pull: 0.0,
+            work: vectors,
+        };
+        let solved = newton_krylov(&mut equation, scaled, scale, &limits, work)?;
+        for ((u, y), root) in u.iter_mut().zip(&*scaled).zip(&*root_mass) {
+            *u = y / root;
+        }
+        system.place_on(t, &On::All, u);
+        Sum::new()
+            .plus(-1.0, &self.predicted[0])
+            .onto(u, &self.zone, n, a);
+        a.iter_mut().for_each(|a| *a /= theta);
+        Sum::new()
+            .plus(self.options.gamma * dt, a)
+            .onto(&self.predicted[1], &self.zone, n, v);
+        system.drive_on(t, &On::All, v);
+        self.iterations
+            .count(solved.iterations as u64, solved.residual * velocity / least);
+        Ok(())
+    }
+
+    /// Accepts the iterate: breaking, work, and the acceleration the next step starts with.
+    fn accept(&mut self, system: &mut System, state: &mut State, t: f64, dt: f64) {
+        let n = system.points();
+        let [u, v, a, found] = &mut self.next;
+        system.constrain(t, u, v);
+        system.constrain_velocity(t, v);
+        Sum::new()
+            .plus(-1.0, &state.u)
+            .onto(u, &self.zone, n, &mut self.predicted[0]);
+        let mean_velocity = &mut self.predicted[0];
+        mean_velocity.iter_mut().for_each(|x| *x /= dt);
+        let accepted = Accepted {
+            t,
+            u,
+            mean_velocity,
+            dt,
+        };
+        // The last evaluation of an inner iteration stands for the new state where nothing is decided or measured there.
+        let last_stands = !matches!(self.inner, Inner::NewtonKrylov(_))
+            && !system.operator().can_break()
+            && system.motions().is_empty()
+            && !system.has_boundaries();
+        if last_stands {
+            system.book_step(accepted, found);
+            a.copy_from_slice(found);
+        } else {
+            system.accept_and_accelerate(accepted, v, a);
+        }
+        std::mem::swap(&mut state.u, u);
+        std::mem::swap(&mut state.v, v);
+        std::mem::swap(&mut state.a, a);
+    }
+}
+
+/// A residual that is rounding and nothing else, over the size of its terms.
+const ROUNDING: f64 = 1e-15;
+
+impl Integrator for Newmark {
+    fn name(&self) -> &'static str {
+        "newmark"
+    }
+
+    fn order(&self) -> u32 {
+        if self.options.gamma == 0.5 { 2 } else { 1 }
+    }
+
+    fn stability_limit(&self) -> Option<f64> {
+        let scheme = self.options.stable();
+        match self.options.solver {
+            InnerSolver::FixedPoint if self.options.beta > 0.0 => {
+                let iteration = 1.0 / self.options.beta.sqrt();
+                Some(scheme.map_or(iteration, |scheme| scheme.min(iteration)))
+            }
+            _ => scheme,
+        }
+    }
+
+    fn energy_correction(&self, system: &System, state: &State, dt: f64) -> f64 {
+        (self.options.beta - 0.25) * dt * dt * system.kinetic_energy(&state.a)
+    }
+
+    fn inner_iterations(&self) -> Option<InnerIterations> {
+        Some(self.iterations)
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        system.constrain(state.t, &mut state.u, &mut state.v);
+        system.constrain_velocity(state.t, &mut state.v);
+        system.start(state.t, &state.u, &state.v, &mut state.a);
+    }
+
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+        let (n, dt) = (system.points(), t_next - state.t);
+        let NewmarkOptions { beta, gamma, .. } = self.options;
+        let [u, v] = &mut self.predicted;
+        Sum::new()
+            .plus(dt, &state.v)
+            .plus((0.5 - beta) * dt * dt, &state.a)
+            .onto(&state.u, &self.zone, n, u);
+        Sum::new()
+            .plus((1.0 - gamma) * dt, &state.a)
+            .onto(&state.v, &self.zone, n, v);
+        match self.inner {
+            Inner::NewtonKrylov(_) => self.solve(system, state, t_next, dt)?,
+            Inner::FixedPoint | Inner::Anderson(_) => self.iterate(system, t_next, dt)?,
+        }
+        self.accept(system, state, t_next, dt);
+        state.t = t_next;
+        state.step += 1;
+        Ok(())
+    }
+}
+
+impl Saved for Newmark {
+    fn save(&self, archive: &mut Archive) {
+        self.iterations.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.iterations.restore(archive)
+    }
+}
