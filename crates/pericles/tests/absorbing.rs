@@ -170,14 +170,14 @@ fn one_free_end_doubles_and_reflects() {
         );
         let mut system = System::new(cloud, Box::new(force), PointScalar::Uniform(1.0)).unwrap();
         // A push in the middle instead of an initial field.
-        system.add_load(Load {
-            points: vec![(half + margin) as u32],
-            density: [3.0, 0.0, 0.0],
-            function: TimeFunction::Pulse {
+        system.add_load(Load::new(
+            vec![(half + margin) as u32],
+            [3.0, 0.0, 0.0],
+            TimeFunction::Pulse {
                 start: 0.0,
                 duration: 5.0,
             },
-        });
+        ));
         system
     };
     let large = right(1700);
@@ -309,11 +309,11 @@ fn what_cannot_be_continued_is_refused() {
         Err(E::NotAtRest { point: 120, .. })
     ));
     let mut loaded = bar(60, 1.0);
-    loaded.add_load(Load {
-        points: vec![3, 118],
-        density: [1.0, 0.0, 0.0],
-        function: TimeFunction::Constant,
-    });
+    loaded.add_load(Load::new(
+        vec![3, 118],
+        [1.0, 0.0, 0.0],
+        TimeFunction::Constant,
+    ));
     let rest = State::at_rest(loaded.points());
     assert!(matches!(
         layer(&loaded, &rest),
