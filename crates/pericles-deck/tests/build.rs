@@ -644,6 +644,7 @@ function = { kind = "table", rows = [[0, 2], [1, 4]] }
 from = 0.25
 [time]
 end = 1.0
+dt = 1e-3
 "#;
 
 #[test]

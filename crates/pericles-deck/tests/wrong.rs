@@ -91,10 +91,10 @@ const WRONG: &[Wrong] = &[
     wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "a section cuts a bar"]),
     wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` has no place in [load.0]", "`traction`"]),
     // Expressions and tables.
-    wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (22, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),
-    wrong("[0, \"12 MPa\"]", "[0, { expression = \"(x\" }]", (26, 32), "\"(x\"", &["a parenthesis is not closed", "SI units"]),
-    wrong("[0, \"12 MPa\"]", "[0, 1]\nfunction = { kind = \"table\", rows = [[1, 0], [1, 2]] }", (27, 37), "[[1, 0]", &["row 1 of the table", "each time later"]),
-    wrong("[0, \"12 MPa\"]", "[0, 1]\nfrom = \"2 us\"\nuntil = \"1 us\"", (28, 9), "\"1 us\"", &["out of range", "later than `from`"]),
+    wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (23, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),
+    wrong("[0, \"12 MPa\"]", "[0, { expression = \"(x\" }]", (27, 31), "\"(x\"", &["a parenthesis is not closed", "SI units"]),
+    wrong("[0, \"12 MPa\"]", "[0, 1]\nfunction = { kind = \"table\", rows = [[1, 0], [1, 2]] }", (28, 37), "[[1, 0]", &["row 1 of the table", "each time later"]),
+    wrong("[0, \"12 MPa\"]", "[0, 1]\nfrom = \"2 us\"\nuntil = \"1 us\"", (29, 9), "\"1 us\"", &["out of range", "later than `from`"]),
     // Schemes.
     wrong("dt = \"auto\"", "scheme = \"rk5\"", (35, 10), "\"rk5\"", &["unknown scheme `rk5`", "did you mean `rk3`?", "\"rk4-mts\"", "\"respa\""]),
     wrong("dt = \"auto\"", "scheme = \"rk4\"\nratio = 4", (36, 1), "ratio", &["`ratio` has no place in [time]", "\"rk4-mts\""]),

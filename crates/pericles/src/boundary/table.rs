@@ -68,10 +68,10 @@ impl TimeTable {
 
     /// ∫₀ᵗ g.
     pub fn integral(&self, t: f64) -> f64 {
-        self.from_first(t) - self.from_first(0.0)
+        self.beyond_first(t) - self.beyond_first(0.0)
     }
 
-    fn from_first(&self, t: f64) -> f64 {
+    fn beyond_first(&self, t: f64) -> f64 {
         match self.row(t) {
             None => self.values[0] * (t - self.times[0]),
             Some(row) => {

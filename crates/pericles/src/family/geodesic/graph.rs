@@ -4,7 +4,9 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::GeodesicPairs;
-use crate::space::surface::{HalfEdges, Surface};
+use super::unfolding::panel;
+use crate::space::Point;
+use crate::space::surface::{HalfEdges, Surface, difference, norm};
 
 /// A graph with lengths, in compressed rows. The first nodes are the vertices of the surface.
 pub(super) struct Graph {
@@ -16,7 +18,7 @@ pub(super) struct Graph {
 
 impl Graph {
     /// From undirected links.
-    pub(super) fn new(vertices: usize, nodes: usize, links: &[(u32, u32, f64)]) -> Self {
+    fn new(vertices: usize, nodes: usize, links: &[(u32, u32, f64)]) -> Self {
         let mut start = vec![0; nodes + 1];
         for &(a, b, _) in links {
             start[a as usize + 1] += 1;
@@ -48,6 +50,74 @@ impl Graph {
     pub(super) fn of_edges(surface: &Surface, half_edges: &HalfEdges) -> Self {
         let links: Vec<(u32, u32, f64)> = edge_links(surface, half_edges).collect();
         Self::new(surface.len(), surface.len(), &links)
+    }
+
+    /// The edges of the triangles, and the straight lines across two of them: flattened about their edge, the line between the corners opposite it must
+    /// cross the edge inside.
+    pub(super) fn with_diagonals(surface: &Surface, half_edges: &HalfEdges) -> Self {
+        let mut links: Vec<(u32, u32, f64)> = edge_links(surface, half_edges).collect();
+        let lengths = surface.half_edge_lengths(half_edges);
+        for h in half_edges.edges() {
+            let twin = half_edges.twin(h);
+            if twin == HalfEdges::NONE {
+                continue;
+            }
+            let [above, below] = [h, twin].map(|h| panel(half_edges, &lengths, h));
+            let [x, y] = above.apex;
+            let [opposite_x, opposite_y] = [above.length - below.apex[0], -below.apex[1]];
+            let crossing = x + (opposite_x - x) * y / (y - opposite_y);
+            if crossing > 0.0 && crossing < above.length && above.apex_vertex != below.apex_vertex {
+                let length = (x - opposite_x).hypot(y - opposite_y);
+                links.push((above.apex_vertex, below.apex_vertex, length));
+            }
+        }
+        Self::new(surface.len(), surface.len(), &links)
+    }
+
+    /// Straight lines through the triangles, between corners and `points` evenly spaced points on each edge (Lanthier, Maheshwari, Sack 1997).
+    pub(super) fn with_points(surface: &Surface, half_edges: &HalfEdges, points: u32) -> Self {
+        let mut places = surface.positions().to_vec();
+        // The first point on each half-edge's edge.
+        let mut first = vec![0; half_edges.len()];
+        let mut links = Vec::new();
+        let between = |places: &[Point], a: u32, b: u32| {
+            (
+                a,
+                b,
+                norm(difference(places[a as usize], places[b as usize])),
+            )
+        };
+        for h in half_edges.edges() {
+            let (a, b) = (half_edges.origin(h), half_edges.target(h));
+            let begin = places.len() as u32;
+            first[h as usize] = begin;
+            if half_edges.twin(h) != HalfEdges::NONE {
+                first[half_edges.twin(h) as usize] = begin;
+            }
+            for k in 1..=points {
+                let part = f64::from(k) / f64::from(points + 1);
+                let [p, q] = [a, b].map(|v| surface.positions()[v as usize]);
+                places.push(std::array::from_fn(|c| p[c] + part * (q[c] - p[c])));
+            }
+            let nodes = |k: u32| match k {
+                0 => a,
+                k if k > points => b,
+                k => begin + k - 1,
+            };
+            links.extend((0..=points).map(|k| between(&places, nodes(k), nodes(k + 1))));
+        }
+        for triangle in 0..half_edges.len() as u32 / 3 {
+            let sides = [0, 1, 2].map(|k| 3 * triangle + k);
+            for (side, next) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (sides[a], sides[b])) {
+                let on = |h: u32| first[h as usize]..first[h as usize] + points;
+                for a in on(side) {
+                    links.extend(on(next).map(|b| between(&places, a, b)));
+                    let opposite = half_edges.origin(HalfEdges::previous(side));
+                    links.push(between(&places, a, opposite));
+                }
+            }
+        }
+        Self::new(surface.len(), places.len(), &links)
     }
 
     /// All pairs of vertices whose shortest path is below `delta`.
@@ -82,7 +152,7 @@ impl Graph {
 }
 
 /// The edges of the triangles as links.
-pub(super) fn edge_links<'a>(
+fn edge_links<'a>(
     surface: &'a Surface,
     half_edges: &'a HalfEdges,
 ) -> impl Iterator<Item = (u32, u32, f64)> + 'a {

@@ -125,6 +125,11 @@ impl Surface {
         range
     }
 
+    /// The angles of a triangle, rad, in the order of its corners.
+    pub fn corner_angles(&self, triangle: [u32; 3]) -> [f64; 3] {
+        corner_angles(self.corners(triangle))
+    }
+
     /// The sum of the triangles' angles at each vertex, rad: below 2π where the surface is curved like a sphere, above at saddles.
     pub fn total_angles(&self) -> Vec<f64> {
         let mut totals = vec![0.0; self.len()];
@@ -154,7 +159,7 @@ pub(crate) fn normal([a, b, c]: [Point; 3]) -> Point {
     cross(difference(b, a), difference(c, a))
 }
 
-pub(super) fn corner_angles(corners: [Point; 3]) -> [f64; 3] {
+fn corner_angles(corners: [Point; 3]) -> [f64; 3] {
     let twice_area = norm(normal(corners));
     std::array::from_fn(|k| {
         let to = |m: usize| difference(corners[(k + m) % 3], corners[k]);
