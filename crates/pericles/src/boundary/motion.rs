@@ -124,12 +124,6 @@ impl PrescribedMotion {
             .is_none_or(|until| t <= until * (1.0 + 1e-12) + f64::MIN_POSITIVE)
     }
 
-    /// Whether the support pushes the points right after time t: at the release they have the velocity prescribed, but the acceleration of free points. With the
-    /// prescribed one the first half step after it would be wrong to first order.
-    fn pushes(&self, t: f64) -> bool {
-        self.until.is_none_or(|until| t < until * (1.0 - 1e-12))
-    }
-
     /// Displacement beyond the start (order 0), velocity (1) or acceleration (2) at time t for unit amplitude.
     fn unit(&self, order: usize, t: f64) -> f64 {
         let g = &self.function;
@@ -204,7 +198,7 @@ impl PrescribedMotion {
         cloud_len: usize,
         acceleration: &mut [f64],
     ) {
-        if self.pushes(t) {
+        if self.holds(t) {
             self.for_each(2, t, on, cloud_len, |entry, _, rate| {
                 acceleration[entry] = rate;
             });
@@ -234,25 +228,36 @@ impl PrescribedMotion {
         volumes: &[f64],
     ) -> (f64, [f64; 3]) {
         let (mut work, mut impulse) = (0.0, [0.0; 3]);
-        if !self.holds(t) {
+        let held = self.holds(t);
+        if !held && self.reaction.iter().all(|reaction| *reaction == 0.0) {
             return (work, impulse);
         }
+        // Of the step after the release the support has pushed the first half; its points then move on with about the last velocity.
         let mut advance = vec![0.0; self.reaction.len()];
-        self.for_each(0, t, &On::All, cloud_len, |_, slot, after| {
-            advance[slot] = after
-        });
-        self.for_each(0, t - dt, &On::All, cloud_len, |_, slot, before| {
-            advance[slot] -= before;
-        });
-        let pushes = self.pushes(t);
+        if held {
+            self.for_each(0, t, &On::All, cloud_len, |_, slot, after| {
+                advance[slot] = after
+            });
+            self.for_each(0, t - dt, &On::All, cloud_len, |_, slot, before| {
+                advance[slot] -= before;
+            });
+        } else {
+            self.for_each(1, t - dt, &On::All, cloud_len, |_, slot, velocity| {
+                advance[slot] = velocity * dt;
+            });
+        }
         let mut reaction = std::mem::take(&mut self.reaction);
         self.for_each(2, t, &On::All, cloud_len, |entry, slot, rate| {
             let (c, i) = (entry / cloud_len, entry % cloud_len);
-            let now = density(i) * (rate - acceleration[entry]);
+            let now = if held {
+                density(i) * (rate - acceleration[entry])
+            } else {
+                0.0
+            };
             let mean = 0.5 * (reaction[slot] + now) * volumes[i];
             work += mean * advance[slot];
             impulse[c] += mean * dt;
-            reaction[slot] = if pushes { now } else { 0.0 };
+            reaction[slot] = now;
         });
         self.reaction = reaction;
         (work, impulse)

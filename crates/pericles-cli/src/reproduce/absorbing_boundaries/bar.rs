@@ -11,10 +11,12 @@ use pericles::boundary::absorbing::{
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeCourse, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
-use pericles::operator::{BondForce, Breaking, DamageMeasure};
+use pericles::operator::{BondForce, Breaking, DamageMeasure, On};
 use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Control, PericlesError, PointScalar, Simulation, System};
+use pericles::{
+    Archive, Control, Outcome, PericlesError, PointScalar, Saved, Simulation, System, Values,
+};
 
 use crate::error::CliError;
 
@@ -28,7 +30,7 @@ const WAVELET: Ricker = Ricker {
     frequency: 0.2,
     delay: 5.0,
 };
-/// When the node is released. The text says 5; the printed errors belong to 10.
+/// When the node is released, s. The text says 5; the printed errors belong to 10.
 const RELEASE: f64 = 10.0;
 
 /// (1 − 2q) exp(−q), q = π² f² (t − delay)².
@@ -94,6 +96,8 @@ pub(super) enum Source {
     Bell,
     /// Ricker's wavelet prescribed at x = 0, released when it is over.
     Wavelet,
+    /// Nothing.
+    Rest,
 }
 
 /// A bar of the paper.
@@ -178,8 +182,9 @@ impl Bar {
                     *u = (-x * x).exp();
                 }
             }
+            Source::Rest => {}
             Source::Wavelet => {
-                let mut motion = PrescribedMotion::new(
+                let motion = PrescribedMotion::new(
                     "source".into(),
                     vec![half as u32],
                     MotionKind::Displacement,
@@ -188,7 +193,6 @@ impl Bar {
                     &state.u,
                     cloud.len(),
                 );
-                motion.until = Some(RELEASE);
                 system.add_motion(motion)?;
             }
         }
@@ -221,6 +225,67 @@ impl Bar {
         ))
     }
 
+    /// Runs and shows every state but the first.
+    pub(super) fn follow(
+        &self,
+        kernels: &GhostKernels,
+        dt: f64,
+        steps: u64,
+        mut visit: impl FnMut(&State),
+    ) -> Result<(), CliError> {
+        let release = match self.source {
+            Source::Wavelet => (RELEASE / dt).round() as u64,
+            Source::Bell | Source::Rest => steps,
+        };
+        let mut simulation = self.simulation(kernels, dt, steps)?;
+        let mut run = |simulation: &mut Simulation, until: u64| -> Result<(), CliError> {
+            let outcome = simulation.run(|now| {
+                visit(now.state());
+                match now.state().step == until {
+                    true => Control::Stop,
+                    false => Control::Continue,
+                }
+            });
+            let outcome = outcome.map_err(|error| CliError::of_run(error, String::new))?;
+            // The last state of a run is not asked about.
+            if outcome == Outcome::Finished {
+                visit(simulation.state());
+            }
+            Ok(())
+        };
+        run(&mut simulation, release)?;
+        if simulation.state().step < steps {
+            simulation = self.released(&simulation, kernels, dt, steps)?;
+            run(&mut simulation, steps)?;
+        }
+        Ok(())
+    }
+
+    /// The run that goes on with the node free: with the displacement and velocity prescribed last, and the acceleration of a free node.
+    fn released(
+        &self,
+        held: &Simulation,
+        kernels: &GhostKernels,
+        dt: f64,
+        steps: u64,
+    ) -> Result<Simulation, CliError> {
+        let rest = Self {
+            source: Source::Rest,
+            ..*self
+        };
+        let State { t, u, a, .. } = held.state();
+        let node = HALF + self.margin;
+        let mut free = a.clone();
+        let here = On::Range(node..node + 1);
+        rest.system()?.0.free_acceleration(*t, u, &here, &mut free);
+        let mut archive = Archive::default();
+        held.save(&mut archive);
+        archive.put("state/a", Values::F64(free));
+        let mut simulation = rest.simulation(kernels, dt, steps)?;
+        simulation.restore(&archive)?;
+        Ok(simulation)
+    }
+
     /// The states at the given times, ascending, in steps dt.
     pub(super) fn states(
         &self,
@@ -232,17 +297,12 @@ impl Bar {
         let steps: Vec<u64> = times.iter().map(number).collect();
         let last = steps.last().copied().unwrap_or_default();
         let kernels = kernels(kind, dt, last as usize)?;
-        let mut simulation = self.simulation(&kernels, dt, last)?;
         let mut states = Vec::new();
-        simulation
-            .run(|now| {
-                if steps.contains(&now.state().step) {
-                    states.push(now.state().clone());
-                }
-                Control::Continue
-            })
-            .map_err(|error| CliError::of_run(error, String::new))?;
-        states.push(simulation.state().clone());
+        self.follow(&kernels, dt, last, |state| {
+            if steps.contains(&state.step) {
+                states.push(state.clone());
+            }
+        })?;
         Ok(states)
     }
 

@@ -1,6 +1,5 @@
 //! Pictures of the bars, and what they show.
 
-use pericles::Control;
 use pericles_io::{Axis, Curve, LineChart};
 
 use super::bar::{Bar, HALF, Kind, SPACING, kernels};
@@ -31,21 +30,16 @@ fn histories<const N: usize>(
 ) -> Result<[History; N], CliError> {
     let steps = (end / DT).round() as u64;
     let kernels = kernels(Kind::Discrete, DT, steps as usize)?;
-    let mut simulation = bar.simulation(&kernels, DT, steps)?;
     let mut histories = nodes.map(|_| History {
         t: Vec::new(),
         u: Vec::new(),
     });
-    simulation
-        .run(|now| {
-            let state = now.state();
-            for (history, &node) in histories.iter_mut().zip(&nodes) {
-                history.t.push(state.t);
-                history.u.push(state.u[node]);
-            }
-            Control::Continue
-        })
-        .map_err(|error| CliError::of_run(error, String::new))?;
+    bar.follow(&kernels, DT, steps, |state| {
+        for (history, &node) in histories.iter_mut().zip(&nodes) {
+            history.t.push(state.t);
+            history.u.push(state.u[node]);
+        }
+    })?;
     Ok(histories)
 }
 
