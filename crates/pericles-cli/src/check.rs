@@ -1,16 +1,13 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
-use std::time::{Duration, Instant};
-
-use pericles::time::{Integrator, State};
-use pericles::{PericlesError, System};
-use pericles_deck::{Deck, Model};
+use pericles_deck::Deck;
 
 use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::prepare::{self, Facts};
+use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
 use crate::waves::WaveSpeeds;
 
@@ -21,7 +18,7 @@ use crate::waves::WaveSpeeds;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let model = prepare::model(&deck, &args.caching)?;
+    let mut model = prepare::model(&deck, &args.caching)?;
     let facts = Facts::of(&deck, &model);
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
@@ -29,7 +26,22 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let mut lines = body(&deck, &facts);
     lines.extend(material(&deck, &facts));
     lines.extend(time(&facts));
-    let seconds = seconds_per_step(model)? * facts.steps as f64;
+    model.integrator.start(&mut model.system, &mut model.state);
+    let comparison = Comparison::measure(&deck, &mut model)?;
+    if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {
+        lines.extend(refinement::lines(two, facts.scheme, facts.dt, comparison));
+    }
+    let step = match comparison {
+        Some(comparison) => comparison.seconds,
+        None => refinement::seconds_per_step(
+            &mut model.system,
+            &mut model.state,
+            &mut *model.integrator,
+            facts.dt,
+            refinement::LONGEST,
+        )?,
+    };
+    let seconds = step * facts.steps as f64;
     lines.push((
         "run time",
         format!(
@@ -149,37 +161,4 @@ fn time(facts: &Facts) -> Vec<Line> {
         ),
     ));
     lines
-}
-
-/// The time of the clock for one step of the scheme, from a few on the built model, which is thrown away.
-fn seconds_per_step(model: Model) -> Result<f64, PericlesError> {
-    const LONGEST: Duration = Duration::from_millis(500);
-    const MOST: u64 = 500;
-    let Model {
-        mut system,
-        mut state,
-        mut integrator,
-        dt,
-        ..
-    } = model;
-    integrator.start(&mut system, &mut state);
-    // The first step finds cold caches and sleeping threads.
-    step(&mut system, &mut state, &mut *integrator, dt)?;
-    let began = Instant::now();
-    let mut steps = 0;
-    while steps < MOST && began.elapsed() < LONGEST {
-        step(&mut system, &mut state, &mut *integrator, dt)?;
-        steps += 1;
-    }
-    Ok(began.elapsed().as_secs_f64() / steps as f64)
-}
-
-fn step(
-    system: &mut System,
-    state: &mut State,
-    integrator: &mut dyn Integrator,
-    dt: f64,
-) -> Result<(), PericlesError> {
-    let t_next = state.t + dt;
-    integrator.step(system, state, t_next)
 }

@@ -15,6 +15,7 @@ mod exit;
 mod machine;
 mod prepare;
 mod progress;
+mod refinement;
 mod report;
 mod reproduce;
 mod run;

@@ -14,6 +14,7 @@ use serde::Serialize;
 use crate::args::Caching;
 use crate::console;
 use crate::error::CliError;
+use crate::refinement::RefinementFacts;
 
 /// What is known about a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -44,6 +45,8 @@ pub(crate) struct Facts {
     /// Points, state and bonds, bytes.
     pub(crate) memory_estimate: u64,
     pub(crate) scheme: &'static str,
+    /// None for schemes with one time step.
+    pub(crate) refinement: Option<RefinementFacts>,
     pub(crate) instruction_set: &'static str,
     pub(crate) warnings: Vec<String>,
 }
@@ -79,6 +82,7 @@ impl Facts {
             stable_step: model.stable_step(),
             memory_estimate: (operator.bytes() + numbers * size_of::<f64>()) as u64,
             scheme: model.integrator.name(),
+            refinement: RefinementFacts::of(deck, model),
             instruction_set: operator.instruction_set().name(),
             warnings: model.warnings.iter().map(|w| w.line()).collect(),
         }

@@ -13,6 +13,7 @@ use crate::checkpoint::DeckText;
 use crate::error::CliError;
 use crate::machine;
 use crate::prepare::Facts;
+use crate::refinement::RefinementAudit;
 
 /// How a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -95,6 +96,14 @@ pub(crate) struct Audit {
     pub(crate) momentum_error_relative: f64,
     pub(crate) broken_bonds: u64,
     pub(crate) largest_damage: f64,
+    /// The balance over the larger of work and initial energy.
+    pub(crate) energy_drift: f64,
+    /// Highest frequency of the reference state that limits the step times the step; none if nothing resists motion.
+    pub(crate) omega_dt: Option<f64>,
+    /// Points whose force was evaluated since the start of the run: the whole body counts as many as it has points.
+    pub(crate) evaluated_points: u64,
+    /// None for schemes with one time step.
+    pub(crate) refinement: Option<RefinementAudit>,
 }
 
 impl Report {
@@ -161,6 +170,7 @@ impl Audit {
         simulation: &Simulation,
         momentum_at_start: [f64; 3],
         history: &Path,
+        report: &Report,
     ) -> Result<Self, IoError> {
         let (system, state) = (simulation.system(), simulation.state());
         let snapshot = simulation.snapshot();
@@ -196,6 +206,16 @@ impl Audit {
             momentum_error_relative: error / (2.0 * energies.kinetic * mass).sqrt(),
             broken_bonds: system.operator().broken_bonds(),
             largest_damage: damage.iter().fold(0.0, |most: f64, &d| most.max(d)),
+            energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
+            omega_dt: report
+                .model
+                .highest_frequency
+                .map(|omega| omega * report.model.dt),
+            evaluated_points: system.evaluated_points(),
+            refinement: simulation
+                .integrator()
+                .refinement()
+                .map(|refinement| RefinementAudit::of(&refinement, system)),
         })
     }
 }

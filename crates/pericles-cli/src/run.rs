@@ -253,6 +253,7 @@ impl Session {
             &self.simulation,
             self.momentum_at_start,
             &history,
+            &self.report,
         )?);
         let exit = match outcome {
             Outcome::Finished => {

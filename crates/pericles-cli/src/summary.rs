@@ -44,6 +44,9 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
     ))?;
     if let Some(audit) = &report.audit {
         energies(audit)?;
+        if let Some(refinement) = &audit.refinement {
+            console::print(format_args!("{}", refinement.line()))?;
+        }
     }
     if report.status == Status::Stopped {
         console::print(format_args!("go on with: pericles resume {folder}"))?;
@@ -61,11 +64,10 @@ fn energies(audit: &Audit) -> Result<(), CliError> {
         quantity(audit.dissipated_energy, "J"),
         quantity(audit.external_work, "J"),
     ))?;
-    let scale = audit.external_work.abs().max(audit.initial_energy.abs());
     console::print(format_args!(
         "audit: energy off by {} ({}), momentum by {} kg m/s; {} bonds broken, largest damage {:.2}",
         quantity(audit.balance, "J"),
-        percent(audit.balance / scale),
+        percent(audit.energy_drift),
         format_args!("{:.1e}", audit.momentum_error),
         count(audit.broken_bonds),
         audit.largest_damage,

@@ -97,6 +97,53 @@ fn the_pulse_in_the_bar_runs_at_the_speed_of_sound() {
     );
 }
 
+/// What the audit says of two time steps.
+fn refinement(out: &Path, key: &str) -> f64 {
+    report(out)["audit"]["refinement"][key].as_f64().unwrap()
+}
+
+#[test]
+fn notched_plate_with_small_steps_where_its_crack_runs() {
+    let (_place, out) = check("multi-time-step", "notched-plate");
+    // The fine region grows with the crack, and is never more than its neighbourhood.
+    assert!(refinement(&out, "largest_fine_fraction") < 0.2);
+    assert!(refinement(&out, "achieved_speed_up") > 3.0);
+    let report = report(&out);
+    assert!(report["audit"]["energy_drift"].as_f64().unwrap().abs() < 0.01);
+}
+
+#[test]
+fn inclusion_with_small_steps_in_and_around_it() {
+    let (_place, out) = check("multi-time-step", "inclusion");
+    assert!(refinement(&out, "achieved_speed_up_over_verlet") > 5.0);
+    assert_eq!(refinement(&out, "ratio"), 8.0);
+}
+
+#[test]
+fn notch_with_smaller_cells_about_its_tip() {
+    let (_place, out) = check("multi-time-step", "refined-notch");
+    let report = report(&out);
+    assert!(report["audit"]["energy_drift"].as_f64().unwrap().abs() < 2e-3);
+    assert!(report["audit"]["momentum_error_relative"].as_f64().unwrap() < 1e-6);
+    assert_eq!(report["model"]["operator"], "list");
+}
+
+#[test]
+fn check_says_whether_two_time_steps_pay() {
+    let place = tempfile::tempdir().unwrap();
+    let verdict = |deck: &str| {
+        let deck = examples().join("multi-time-step").join(deck);
+        let deck = deck.canonicalize().unwrap();
+        let output = succeed(place.path(), &format!("check {}", deck.display()));
+        let out = common::text(&output.stdout);
+        let line = out.lines().find(|line| line.contains("do they pay"));
+        line.unwrap_or_else(|| panic!("{out}")).to_owned()
+    };
+    assert!(verdict("inclusion.toml").contains("the fine points need the smaller step"));
+    let line = verdict("notched-plate.toml");
+    assert!(line.contains("the same stable step"), "{line}");
+}
+
 fn table(out: &Path, name: &str) -> CsvData {
     read_csv(out.join(name)).unwrap()
 }

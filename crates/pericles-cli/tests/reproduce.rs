@@ -99,6 +99,8 @@ fn all_studies_are_listed() {
         "dispersion/pulse",
         "fracture/branching",
         "fracture/inclined",
+        "multi-time-step/plate",
+        "multi-time-step/two-grid",
     ] {
         let named = list
             .lines()

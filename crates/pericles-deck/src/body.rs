@@ -1,7 +1,7 @@
 //! `[body]`: the shape, its grid and its state of stress.
 
 use pericles::material::StressState;
-use pericles::space::{Grid, Region, Shape};
+use pericles::space::{Finer, Grid, Region, Shape};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
@@ -12,6 +12,8 @@ use crate::region::{self, Frame};
 pub struct Body {
     /// Shape, spacing, section and holes.
     pub grid: Grid,
+    /// Parts with smaller cells and horizon, later ones before earlier ones.
+    pub finer: Vec<Finer>,
     /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
     pub state: StressState,
 }
@@ -81,9 +83,34 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .into_iter()
         .map(|hole| region::read(hole, read.frame))
         .collect();
+    let finer: Vec<Option<Finer>> = table
+        .tables("refine")
+        .into_iter()
+        .map(|part| finer(part, read.frame))
+        .collect();
     table.finish();
-    read.body = assemble(&read, outline, section, holes);
+    read.body = assemble(&read, outline, section, holes, finer);
     read
+}
+
+fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
+    /// More would make steps that differ as much.
+    const MOST: u64 = 16;
+    let ratio = table.required("ratio").and_then(|item| {
+        let ratio = item.count()?;
+        if (2..=MOST).contains(&ratio) {
+            return Some(ratio as u32);
+        }
+        item.out_of_range(
+            "a whole number from 2 to 16: cells are divided into so many along each axis",
+        );
+        None
+    });
+    let region = region::read(table, frame);
+    Some(Finer {
+        region: region?,
+        ratio: ratio?,
+    })
 }
 
 fn assemble(
@@ -91,6 +118,7 @@ fn assemble(
     outline: Option<Outline>,
     section: Option<f64>,
     holes: Vec<Option<Region>>,
+    finer: Vec<Option<Finer>>,
 ) -> Option<Body> {
     let outline = outline?;
     let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
@@ -102,6 +130,7 @@ fn assemble(
             section: section?,
             holes,
         },
+        finer: finer.into_iter().collect::<Option<_>>()?,
         state: read.state?,
     })
 }

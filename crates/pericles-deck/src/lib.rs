@@ -61,6 +61,11 @@
 //! # area = "1 mm2"                       # 1D only; default 1 m²
 //! [[body.hole]]                          # a region without material; any number
 //! ball = { centre = ["20 mm", "20 mm"], radius = "5 mm" }
+//! # [[body.refine]]                      # a region with smaller cells and a smaller horizon; any number, later ones before earlier ones. Bonds are then
+//! #                                        kept as a list, and what breaks needs a critical stretch instead of a fracture energy
+//! # ball = { centre = ["50 mm", "20 mm"], radius = "8 mm" }
+//! # ratio = 2                            # 2 … 16: cells whose centres lie in it are divided into so many along each axis; the horizon is as many of the
+//! #                                        smaller spacings. A bond exists within the larger horizon of its ends; its force is the mean of both ends' laws
 //!
 //! [material]
 //! name = "soda-lime glass"               # for people; optional

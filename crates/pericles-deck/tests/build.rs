@@ -1,5 +1,6 @@
 //! From decks to models.
 
+use pericles::operator::BondForm;
 use pericles::time::State;
 use pericles_deck::{Deck, DeckError, Model};
 
@@ -466,6 +467,45 @@ fn schemes_that_do_not_fit_are_refused() {
         .replace("fracture_energy = \"135 J/m2\"\n", "");
     let error = refusal(&unbreakable);
     assert!(error.to_string().contains("never break"), "{error}");
+}
+
+/// The plate with a part of smaller cells.
+fn refined(text: &str, radius: &str) -> String {
+    let part = format!(
+        "[[body.refine]]\nball = {{ centre = [\"10 mm\", \"5 mm\"], radius = \"{radius}\" }}\nratio = 2\n[material]"
+    );
+    text.replace("[material]", &part)
+}
+
+#[test]
+fn parts_with_smaller_cells() {
+    let text =
+        plate_with_time("").replace("fracture_energy = \"135 J/m2\"", "critical_stretch = 0.002");
+    let (plain, fine) = (build(&text), build(&refined(&text, "3 mm")));
+    assert!(fine.cloud.len() > plain.cloud.len() && fine.form == BondForm::List);
+    let volume = |model: &Model| model.cloud.volumes().iter().sum::<f64>();
+    assert!((volume(&fine) / volume(&plain) - 1.0).abs() < 1e-12);
+    // Half the horizon: twice the frequency, half the step.
+    let ratio = plain.stable_step().unwrap() / fine.stable_step().unwrap();
+    assert!((1.6..2.6).contains(&ratio), "{ratio}");
+    for (text, words, marked) in [
+        (refined(&text, "1 um"), "divides none", "[[body.refine]]"),
+        (
+            refined(&plate_with_time(""), "3 mm"),
+            "give critical_stretch",
+            "\"135 J/m2\"",
+        ),
+        (
+            refined(&text, "3 mm").replace("[material]", "[material]\nbonds = \"grid\""),
+            "there is no one lattice",
+            "\"grid\"",
+        ),
+    ] {
+        let error = refusal(&text);
+        assert!(error.to_string().contains(words), "{error}");
+        let excerpt = error.problems()[0].location().excerpt();
+        assert!(excerpt.starts_with(marked), "{excerpt}");
+    }
 }
 
 #[test]

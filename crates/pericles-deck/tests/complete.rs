@@ -48,7 +48,8 @@ fn every_entry_arrives() {
         holes: vec![ball, corner],
     };
     let state = StressState::PlaneStrain;
-    assert_eq!(deck.body, Body { grid, state });
+    let finer = vec![];
+    assert_eq!(deck.body, Body { grid, finer, state });
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {

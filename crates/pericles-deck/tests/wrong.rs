@@ -118,6 +118,10 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] lacks `side`"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"long\"\n[time]", (36, 11), "\"long\"", &["unknown history `long`", "\"blocked\""]),
+    // Smaller cells.
+    wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks `ratio`"]),
+    wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks one of", "`ball`"]),
+    wrong("[material]", "[[body.refine]]\nall = true\nratio = 1\n[material]", (11, 9), "1", &["from 2 to 16"]),
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),

@@ -198,6 +198,38 @@ pub enum PericlesError {
         /// The ratio given.
         ratio: u32,
     },
+    /// Smaller cells that are not smaller.
+    #[error("part {part} with smaller cells divides them by {ratio}; allowed: 2 or more")]
+    FinerRatio {
+        /// Which of the parts, from 0.
+        part: usize,
+        /// The division.
+        ratio: u32,
+    },
+    /// A part with smaller cells in which no cell lies.
+    #[error(
+        "part {part} with smaller cells divides none: no cell's centre lies in it, or later parts hide it"
+    )]
+    FinerEmpty {
+        /// Which of the parts, from 0.
+        part: usize,
+    },
+    /// More parts with smaller cells than can be numbered.
+    #[error("{parts} parts with smaller cells; allowed: at most {most}")]
+    FinerParts {
+        /// The number of parts.
+        parts: usize,
+        /// The largest number.
+        most: usize,
+    },
+    /// What bonds between cells of different sizes cannot do.
+    #[error("a body with cells of several sizes cannot have {what}: {reason}")]
+    Graded {
+        /// What was asked for.
+        what: &'static str,
+        /// Why not, and what is possible.
+        reason: &'static str,
+    },
     /// A fine region without points.
     #[error("fine region {region} has no points; each needs at least one")]
     FineRegionEmpty {

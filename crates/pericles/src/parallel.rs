@@ -2,6 +2,8 @@
 //!
 //! Points are taken in fixed blocks; a block is computed by one thread from start to end, and sums over blocks are added in the blocks' order.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::operator::On;
@@ -95,8 +97,11 @@ fn in_set(
     set: &(impl Fn(usize, &mut f64) + Sync),
 ) {
     if points.len() <= 2 * BLOCK {
-        for &i in points {
-            set(i as usize, &mut entries[i as usize - first]);
+        for run in runs(points) {
+            let entries = &mut entries[run.start - first..run.end - first];
+            for (i, entry) in run.zip(entries) {
+                set(i, entry);
+            }
         }
         return;
     }
@@ -107,6 +112,37 @@ fn in_set(
         || in_set(first, low, low_points, set),
         || in_set(middle, high, high_points, set),
     );
+}
+
+/// The runs of consecutive numbers in an ascending list.
+pub(crate) fn runs(points: &[u32]) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut rest = points;
+    std::iter::from_fn(move || {
+        let first = *rest.first()? as usize;
+        let length = run_length(rest);
+        rest = &rest[length..];
+        Some(first..first + length)
+    })
+}
+
+/// The length of the run at the beginning, by steps that double and then by halving: most lists are made of few long runs.
+fn run_length(points: &[u32]) -> usize {
+    let is_run = |length: usize| (points[length - 1] - points[0]) as usize == length - 1;
+    let (mut low, mut step) = (1, 1);
+    while low + step <= points.len() && is_run(low + step) {
+        low += step;
+        step *= 2;
+    }
+    let mut high = (low + step).min(points.len() + 1);
+    while high - low > 1 {
+        let middle = low.midpoint(high);
+        if is_run(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }
 
 /// The components of a component-major array.
@@ -158,6 +194,21 @@ mod tests {
             assert_eq!((out[i], out[n + i]), (i as f64, 1.0));
         }
         assert_eq!(states.iter().sum::<usize>(), n);
+    }
+
+    #[test]
+    fn runs_are_the_longest_there_are() {
+        for skipped in [&[][..], &[0, 1, 5, 6, 7, 40, 99], &[50], &[1, 3, 5, 7, 9]] {
+            let points: Vec<u32> = (0..100).filter(|i| !skipped.contains(i)).collect();
+            let found: Vec<Range<usize>> = runs(&points).collect();
+            let all: Vec<u32> = found
+                .iter()
+                .flat_map(|r| r.start as u32..r.end as u32)
+                .collect();
+            assert_eq!(all, points);
+            assert!(found.windows(2).all(|pair| pair[0].end < pair[1].start));
+        }
+        assert_eq!(runs(&[]).count(), 0);
     }
 
     #[test]

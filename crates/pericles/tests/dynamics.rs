@@ -1,51 +1,33 @@
 //! Runs: order, conservation, breaking, supports, restart, threads.
 
+mod common;
+
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
-use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
-use pericles::kernel::Influence;
-use pericles::material::{
-    BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, LinearBond, Modulus,
-    PairForce, PairLaw, StressState,
-};
+use pericles::family::{BondList, Crack, VolumeCorrection};
+use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, PairForce, StressState};
 use pericles::operator::{Accepted, BondForce, DamageMeasure, ForceOperator, On};
-use pericles::space::{Face, Grid, PointCloud, Region, Shape};
+use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
-use pericles::{
-    Archive, Control, Outcome, PointScalar, Saved, Simulation, SimulationError, System,
-};
+use pericles::{Archive, Control, Outcome, Saved, Simulation, SimulationError, System};
 
 const DENSITY: f64 = 7850.0;
 const YOUNG: f64 = 210e9;
 
 fn grid(size: &[f64], spacing: f64) -> Arc<PointCloud> {
-    let grid = Grid {
-        shape: Shape::Box {
-            origin: [0.0; 3],
-            size: size.to_vec(),
-        },
-        spacing,
-        section: 1.0,
-        holes: vec![],
-    };
-    Arc::new(grid.points().unwrap())
+    common::boxed([0.0; 3], size, spacing, 1.0)
 }
 
 fn material(horizon: f64, fracture: Fracture) -> BondMaterial {
-    BondMaterial {
-        law: PairLaw::BondStretch,
-        density: DENSITY,
-        modulus: Modulus {
-            value: ElasticModulus::Young(YOUNG),
-            calibration: Calibration::Continuum,
-        },
+    common::material(
+        DENSITY,
+        YOUNG,
         horizon,
-        influence: Influence::default(),
-        volume_correction: VolumeCorrection::Extended,
+        VolumeCorrection::Extended,
         fracture,
-    }
+    )
 }
 
 fn operator<L: PairForce, const D: usize>(
@@ -54,28 +36,11 @@ fn operator<L: PairForce, const D: usize>(
     state: StressState,
     crack: Option<Crack>,
 ) -> BondForce<L, D> {
-    let constants = material.constants(cloud, state).unwrap();
-    let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).unwrap();
-    if let Some(crack) = crack {
-        bonds.cut(cloud, &crack, EndRule::Closed).unwrap();
-    }
-    BondForce::new(
-        cloud.clone(),
-        bonds,
-        material,
-        &constants,
-        &[],
-        DamageMeasure::default(),
-    )
+    common::listed(cloud, material, state, crack, &[])
 }
 
 fn system(cloud: &Arc<PointCloud>, operator: impl ForceOperator + 'static) -> System {
-    System::new(
-        cloud.clone(),
-        Box::new(operator),
-        PointScalar::Uniform(DENSITY),
-    )
-    .unwrap()
+    common::system(cloud, operator, DENSITY)
 }
 
 /// A notched plate pulled apart until it breaks, held on one side.

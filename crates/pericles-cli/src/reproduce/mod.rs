@@ -9,6 +9,7 @@
 mod absorbing_boundaries;
 mod dispersion;
 mod fracture;
+mod multi_time_step;
 mod row;
 mod table;
 
@@ -38,10 +39,11 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 3] = [
+const TOPICS: [&[Study]; 4] = [
     &absorbing_boundaries::STUDIES,
     &dispersion::STUDIES,
     &fracture::STUDIES,
+    &multi_time_step::STUDIES,
 ];
 
 fn studies() -> impl Iterator<Item = &'static Study> {

@@ -27,12 +27,13 @@ pub(crate) fn normal_axis(
 pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
     let dimension = cloud.dimension();
     let dx = cloud.spacing();
+    let [corner, _] = cloud.bounds();
     let columns: BTreeSet<[i64; 3]> = points
         .iter()
         .map(|&i| {
             let place = cloud.point(i as usize);
-            // Cell centres lie whole spacings apart, so that rounding a little off the middle is safe.
-            let cell = |c: usize| ((place[c] - cloud.point(0)[c]) / dx).round() as i64;
+            // Centres of cells, divided ones too, lie well inside the large cells.
+            let cell = |c: usize| ((place[c] - corner[c]) / dx).floor() as i64;
             std::array::from_fn(|c| {
                 if c == axis || c >= dimension {
                     0

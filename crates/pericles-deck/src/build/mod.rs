@@ -4,6 +4,7 @@ mod area;
 mod boundary;
 mod conditions;
 mod fields;
+mod graded;
 mod scheme;
 mod step;
 
@@ -13,10 +14,11 @@ use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
-use pericles::space::{PointCloud, PointSet};
+use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
+use self::graded::Grids;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -96,7 +98,12 @@ impl Deck {
     /// # Errors
     /// As [`Deck::build`].
     pub fn build_with(&self, cache: &dyn Cache) -> Result<Model, DeckError> {
-        let cloud = Arc::new(self.points()?);
+        let GradedCloud {
+            cloud,
+            ratios,
+            grid_of_point,
+        } = self.points()?;
+        let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
         let constants = material
@@ -114,7 +121,11 @@ impl Deck {
             stiffness: &stiffness,
             damage: self.material.damage,
         };
-        let (bonds, cracks) = self.bonds(body, &mut warnings)?;
+        let grids = Grids {
+            ratios: &ratios,
+            of_point: &grid_of_point,
+        };
+        let (bonds, cracks) = self.bonds(body, grids, &mut warnings)?;
         let density = PointScalar::Uniform(material.density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
@@ -146,14 +157,27 @@ impl Deck {
         })
     }
 
-    fn points(&self) -> Result<PointCloud, DeckError> {
-        self.body.grid.points().map_err(|error| {
-            let side = match &error {
+    fn points(&self) -> Result<GradedCloud, DeckError> {
+        let graded = GradedGrid {
+            grid: self.body.grid.clone(),
+            finer: self.body.finer.clone(),
+        };
+        let points = if graded.finer.is_empty() {
+            graded.grid.points().map(GradedCloud::of_one_grid)
+        } else {
+            graded.points()
+        };
+        points.map_err(|error| {
+            let place = match &error {
                 PericlesError::NotWholeCells { length, .. } => self.side(*length),
                 PericlesError::TooManyPoints { .. } => "body.spacing".into(),
+                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
+                    Path::from("body.refine").index(*part)
+                }
+                PericlesError::FinerParts { .. } => "body.refine".into(),
                 _ => "body".into(),
             };
-            self.at_path(&side, error.into())
+            self.at_path(&place, error.into())
         })
     }
 
@@ -226,6 +250,7 @@ impl Deck {
     fn bonds(
         &self,
         body: BondBody<'_>,
+        grids: Grids<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
         let crack = |k| Path::from("crack").index(k);
@@ -245,9 +270,12 @@ impl Deck {
             cracks: &surfaces,
             ..body
         };
-        let assembled = body
-            .operator(self.material.form)
-            .map_err(|error| self.at_material(error))?;
+        let assembled = if grids.ratios.len() > 1 {
+            self.graded_bonds(&body, grids)?
+        } else {
+            body.operator(self.material.form)
+                .map_err(|error| self.at_material(error))?
+        };
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {

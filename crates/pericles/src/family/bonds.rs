@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::search::{bond_vector, distance, pairs_within};
+use super::search::{bond_vector, distance, pairs_where, pairs_within};
 use super::{Crack, EndRule, VolumeCorrection};
 use crate::error::{PericlesError, Result};
 use crate::space::{PointCloud, PointSet};
@@ -32,8 +32,25 @@ pub struct BondList {
     geometric: Vec<u8>,
     /// Bonds left after pre-cutting.
     present: Vec<u8>,
-    horizon: f64,
+    horizons: Horizons,
     correction: VolumeCorrection,
+}
+
+/// How far families reach, m.
+#[derive(Debug, Clone)]
+enum Horizons {
+    Uniform(f64),
+    /// A bond reaches as far as the farther-reaching of its ends.
+    PerPoint(Vec<f64>),
+}
+
+impl Horizons {
+    fn of(&self, i: usize) -> f64 {
+        match self {
+            Self::Uniform(horizon) => *horizon,
+            Self::PerPoint(horizons) => horizons[i],
+        }
+    }
 }
 
 impl BondList {
@@ -50,7 +67,58 @@ impl BondList {
                 spacing: cloud.spacing(),
             });
         }
-        let n = cloud.len();
+        Ok(Self::of_pairs(
+            cloud.len(),
+            &row_start,
+            &pairs,
+            Horizons::Uniform(horizon),
+            correction,
+        ))
+    }
+
+    /// The families of a cloud whose points have different horizons: a bond exists if it is within reach of one of its ends.
+    ///
+    /// # Errors
+    /// Horizons that reach no neighbour at all.
+    ///
+    /// # Panics
+    /// If there is not one horizon for each point.
+    pub fn with_horizons(
+        cloud: &PointCloud,
+        horizons: Vec<f64>,
+        correction: VolumeCorrection,
+    ) -> Result<Self> {
+        assert_eq!(horizons.len(), cloud.len(), "one horizon for each point");
+        let largest = horizons.iter().copied().fold(0.0, f64::max);
+        let wanted = |i: usize, j: usize, distance: f64| {
+            let cell = mean_cell(cloud, i, j);
+            distance <= correction.reach(horizons[i].max(horizons[j]), cell)
+        };
+        let reach = correction.reach(largest, cloud.spacing());
+        let (row_start, pairs) = pairs_where(cloud, reach, &wanted);
+        if pairs.is_empty() {
+            return Err(PericlesError::HorizonTooSmall {
+                horizon: largest,
+                spacing: cloud.spacing(),
+            });
+        }
+        let horizons = Horizons::PerPoint(horizons);
+        Ok(Self::of_pairs(
+            cloud.len(),
+            &row_start,
+            &pairs,
+            horizons,
+            correction,
+        ))
+    }
+
+    fn of_pairs(
+        n: usize,
+        row_start: &[usize],
+        pairs: &[u32],
+        horizons: Horizons,
+        correction: VolumeCorrection,
+    ) -> Self {
         let mut start = Vec::with_capacity(n + 1);
         start.push(0);
         for i in 0..n {
@@ -65,14 +133,14 @@ impl BondList {
                 geometric.push(0xFF >> (LANES - group.len()));
             }
         }
-        Ok(Self {
+        Self {
             start,
             neighbours,
             present: geometric.clone(),
             geometric,
-            horizon,
+            horizons,
             correction,
-        })
+        }
     }
 
     /// Removes the bonds that meet a crack.
@@ -151,9 +219,12 @@ impl BondList {
         self.present.iter().map(|g| u64::from(g.count_ones())).sum()
     }
 
-    /// Horizon δ, m.
+    /// Horizon δ, the largest if there are several, m.
     pub fn horizon(&self) -> f64 {
-        self.horizon
+        match &self.horizons {
+            Horizons::Uniform(horizon) => *horizon,
+            Horizons::PerPoint(horizons) => horizons.iter().copied().fold(0.0, f64::max),
+        }
     }
 
     /// The neighbours of a point in its geometric family, with the entry's place in the list.
@@ -165,11 +236,32 @@ impl BondList {
         })
     }
 
-    /// The partial-volume factor κ of the bond between two points.
+    /// The partial-volume factor κ of the bond between two points: the mean of what its ends see.
     pub fn volume_factor(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
-        let cell = 0.5 * (cloud.cell_size(i) + cloud.cell_size(j));
-        self.correction
-            .factor(distance(cloud, i, j), self.horizon, cell)
+        match &self.horizons {
+            Horizons::Uniform(horizon) => {
+                let cell = mean_cell(cloud, i, j);
+                self.correction
+                    .factor(distance(cloud, i, j), *horizon, cell)
+            }
+            Horizons::PerPoint(_) => {
+                0.5 * (self.end_factor(cloud, i, j) + self.end_factor(cloud, j, i))
+            }
+        }
+    }
+
+    /// The partial-volume factor κ that point i sees of its bond to j: zero beyond its own reach.
+    pub fn end_factor(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
+        let (r, cell, horizon) = (
+            distance(cloud, i, j),
+            mean_cell(cloud, i, j),
+            self.horizons.of(i),
+        );
+        if r <= self.correction.reach(horizon, cell) {
+            self.correction.factor(r, horizon, cell)
+        } else {
+            0.0
+        }
     }
 
     /// Reference length of the bond between two points, m.
@@ -189,6 +281,10 @@ impl BondList {
             + self.present.len()
             + self.geometric.len()
     }
+}
+
+fn mean_cell(cloud: &PointCloud, i: usize, j: usize) -> f64 {
+    0.5 * (cloud.cell_size(i) + cloud.cell_size(j))
 }
 
 /// Splits an array with one entry per group into one slice per point.

@@ -11,6 +11,15 @@ use crate::space::PointCloud;
 /// from integer offsets, so that points at exactly the same distance are treated alike. Cost O(N · family), memory
 /// O(N) besides the result.
 pub fn pairs_within(cloud: &PointCloud, reach: f64) -> (Vec<usize>, Vec<u32>) {
+    pairs_where(cloud, reach, &|_, _, distance| distance <= reach)
+}
+
+/// The pairs at most `reach` apart of which `wanted(i, j, distance)` is true. It must be the same from both ends.
+pub(super) fn pairs_where(
+    cloud: &PointCloud,
+    reach: f64,
+    wanted: &(dyn Fn(usize, usize, f64) -> bool + Sync),
+) -> (Vec<usize>, Vec<u32>) {
     let cells = CellList::new(cloud, reach);
     let rows: Vec<Vec<u32>> = (0..cloud.len())
         .into_par_iter()
@@ -18,7 +27,7 @@ pub fn pairs_within(cloud: &PointCloud, reach: f64) -> (Vec<usize>, Vec<u32>) {
         .map(|i| {
             let mut row = Vec::new();
             cells.for_each_near(i, |j| {
-                if j != i && distance(cloud, i, j) <= reach {
+                if j != i && wanted(i, j, distance(cloud, i, j)) {
                     row.push(j as u32);
                 }
             });

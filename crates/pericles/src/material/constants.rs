@@ -184,6 +184,21 @@ impl BondMaterial {
                 dimension,
             });
         }
+        self.check_classes(cloud)?;
+        self.constants_on(cloud.spacing(), cloud.section(), state)
+    }
+
+    /// The constants for bonds of a grid of this spacing (m) and section (m² in 1D, m in 2D, 1 in 3D).
+    ///
+    /// # Errors
+    /// Those of [`BondMaterial::constants`].
+    pub fn constants_on(
+        &self,
+        spacing: f64,
+        section: f64,
+        state: StressState,
+    ) -> Result<BondConstants> {
+        let dimension = state.dimension();
         positive("the density", self.density)?;
         positive("the horizon", self.horizon)?;
         self.influence.check(dimension, self.horizon)?;
@@ -194,12 +209,10 @@ impl BondMaterial {
                     .into(),
             });
         }
-        self.check_classes(cloud)?;
         let young = self.modulus.value.young(state)?;
-        let section = cloud.section();
         let moment = |q: usize| self.influence.moment(q as f64, self.horizon);
         let integral = moment(dimension);
-        let lattice = self.lattice_moment(dimension, cloud.spacing());
+        let lattice = self.lattice_moment(dimension, spacing);
         if lattice <= 0.0 && self.influence.is_signed(self.horizon) {
             return Err(PericlesError::BadInfluence {
                 reason: "its modulus, the sum of α |ξ| over the lattice's bonds, must be positive"
@@ -209,7 +222,7 @@ impl BondMaterial {
         if lattice <= 0.0 {
             return Err(PericlesError::HorizonTooSmall {
                 horizon: self.horizon,
-                spacing: cloud.spacing(),
+                spacing,
             });
         }
         let modulus_moment = match self.modulus.calibration {

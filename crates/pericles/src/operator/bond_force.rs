@@ -111,14 +111,29 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
+        let stiffness = |bonds: &BondList, i: usize, j: usize| {
+            stiffness_of_pair(i, j, bonds.vector(&cloud, i, j)) * bonds.volume_factor(&cloud, i, j)
+        };
+        Self::with_weighted_stiffness(cloud.clone(), bonds, stiffness, breaking, damage)
+    }
+
+    /// An operator whose bonds have the stiffness c α κ(i, j), partial volumes included, given for each pair of points; it must be the same from both ends.
+    ///
+    /// # Panics
+    /// If the cloud has another dimension than D.
+    pub fn with_weighted_stiffness(
+        cloud: Arc<PointCloud>,
+        bonds: BondList,
+        stiffness_of_pair: impl Fn(&BondList, usize, usize) -> f64,
+        breaking: Breaking<'_>,
+        damage: DamageMeasure,
+    ) -> Self {
         assert_eq!(cloud.dimension(), D, "an operator of the cloud's dimension");
         let n = cloud.len();
         let mut stiffness = vec![0.0; bonds.neighbours().len()];
         for i in 0..n {
             for (entry, j) in bonds.family(i) {
-                stiffness[entry] = stiffness_of_pair(i, j, bonds.vector(&cloud, i, j))
-                    * bonds.volume_factor(&cloud, i, j)
-                    * cloud.volumes()[j];
+                stiffness[entry] = stiffness_of_pair(&bonds, i, j) * cloud.volumes()[j];
             }
         }
         // Integer coordinates make bonds of equal offset equal to the last bit.

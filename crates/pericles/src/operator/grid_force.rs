@@ -3,13 +3,14 @@
 use std::sync::{Arc, Mutex};
 
 use super::bond_kernels::Tally;
-use super::grid_block::{ChunkBlock, Wanted};
+use super::grid_block::ChunkBlock;
 use super::grid_breaking::GridBreaking;
 use super::grid_build::{BlockState, bits_of_set, cut, geometric_blocks, precut_bonds};
 use super::grid_kernels::{Grid, accept_chunks};
 use super::grid_law::GridLaw;
 use super::grid_layout::{Chunk, GridLayout};
 use super::grid_padded::Padded;
+use super::grid_wanted::WantedPoints;
 use super::grid_zoned::Partners;
 use super::stencil::{BondRule, Stencil};
 use super::{DamageMeasure, ForceOperator, InstructionSet, On};
@@ -76,10 +77,26 @@ pub struct GridForce<L: GridLaw, const D: usize> {
     pub(super) directed_bonds: u64,
     pub(super) critical_stretch: f64,
     pub(super) damage: DamageMeasure,
-    /// The displacement in padded rows; locked for the length of an evaluation.
-    pub(super) scratch: Mutex<Padded<D>>,
+    /// Work arrays, locked for the length of an evaluation.
+    pub(super) scratch: Mutex<Scratch<D>>,
     pub(super) instruction_set: InstructionSet,
     pub(super) law: std::marker::PhantomData<L>,
+}
+
+/// What an evaluation works on.
+pub(super) struct Scratch<const D: usize> {
+    /// The displacement in padded rows.
+    padded: Padded<D>,
+    wanted: WantedPoints,
+}
+
+impl<const D: usize> Scratch<D> {
+    fn new(layout: &GridLayout, stencil: &Stencil<D>) -> Self {
+        Self {
+            padded: Padded::new(layout, stencil.farthest_shift()),
+            wanted: WantedPoints::new(layout),
+        }
+    }
 }
 
 impl<L: GridLaw, const D: usize> GridForce<L, D> {
@@ -136,7 +153,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         Ok(Self {
             directed_bonds: count_bonds(&blocks),
             held: (!no_fail.is_empty()).then(|| bits_of_set(&layout, no_fail)),
-            scratch: Mutex::new(Padded::new(&layout, stencil.farthest_shift())),
+            scratch: Mutex::new(Scratch::new(&layout, &stencil)),
             cloud,
             layout,
             stencil,
@@ -164,46 +181,43 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
     }
 
     /// A block of chunks with those of its points that are wanted; none if there are none.
-    pub(super) fn chunk_block<'a>(&'a self, on: &On<'a>, block: usize) -> Option<ChunkBlock<'a>> {
+    pub(super) fn chunk_block<'a>(
+        &'a self,
+        lanes: Option<&'a [u8]>,
+        block: usize,
+    ) -> Option<ChunkBlock<'a>> {
         let range = self.layout.chunks_of(block);
+        let lanes = lanes.map(|lanes| &lanes[range.clone()]);
+        if lanes.is_some_and(|lanes| lanes.iter().all(|&lanes| lanes == 0)) {
+            return None;
+        }
         Some(ChunkBlock {
-            wanted: self.wanted(on, block)?,
+            lanes,
             first_chunk: range.start,
             chunks: &self.layout.chunks()[range],
             first_point: self.layout.first_point(block),
         })
     }
 
-    fn wanted<'a>(&self, on: &On<'a>, block: usize) -> Option<Wanted<'a>> {
-        let (start, end) = (
-            self.layout.first_point(block),
-            self.layout.first_point(block + 1),
-        );
+    /// Copies to padded rows what the wanted points need. Returns the wanted lanes, none if all points are wanted.
+    pub(super) fn pad<'s>(
+        &self,
+        u: &[f64],
+        on: &On<'_>,
+        scratch: &'s mut Scratch<D>,
+    ) -> (&'s Padded<D>, Option<&'s [u8]>) {
+        let Scratch { padded, wanted } = scratch;
         match on {
-            On::All => Some(Wanted::All),
-            On::Range(range) => {
-                let common = range.start.max(start)..range.end.min(end);
-                (!common.is_empty()).then_some(Wanted::Range(common))
+            On::All => {
+                padded.fill(&self.layout, u);
+                (padded, None)
             }
-            On::Set(set) => {
-                let from = set.partition_point(|&i| (i as usize) < start);
-                let to = set.partition_point(|&i| (i as usize) < end);
-                (from < to).then_some(Wanted::Set(&set[from..to]))
+            _ => {
+                let radius = std::array::from_fn(|axis| self.stencil.farthest(axis));
+                wanted.set(&self.layout, on, radius);
+                padded.fill_around(&self.layout, u, wanted);
+                (padded, Some(wanted.lanes()))
             }
-        }
-    }
-
-    /// Copies to padded rows what the wanted points need.
-    pub(super) fn pad(&self, u: &[f64], on: &On<'_>, padded: &mut Padded<D>) {
-        let radius = [self.stencil.farthest(1), self.stencil.farthest(2)];
-        let spans = (0..self.layout.blocks()).filter_map(|block| match self.wanted(on, block)? {
-            Wanted::All => None,
-            Wanted::Range(range) => Some((range.start, range.end)),
-            Wanted::Set(set) => Some((set[0] as usize, set[set.len() - 1] as usize + 1)),
-        });
-        match on {
-            On::All => padded.fill(&self.layout, u),
-            _ => padded.fill_around(&self.layout, u, spans, radius),
         }
     }
 
@@ -226,17 +240,17 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         let mut own;
         let mut locked;
         // Another evaluation may run at the same time, on this very thread if it waits for others to finish their part.
-        let padded = match self.scratch.try_lock() {
+        let scratch = match self.scratch.try_lock() {
             Ok(guard) => {
                 locked = guard;
                 &mut *locked
             }
             Err(_) => {
-                own = Padded::new(&self.layout, self.stencil.farthest_shift());
+                own = Scratch::new(&self.layout, &self.stencil);
                 &mut own
             }
         };
-        self.pad(u, on, padded);
+        let (padded, lanes) = self.pad(u, on, scratch);
         let grid = self.grid(padded);
         // A vector of nothing: the blocks' state is only read, and no memory is taken.
         let mut nothing = vec![(); self.blocks.len()];
@@ -245,7 +259,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
             &mut nothing,
             &|block| self.layout.first_point(block),
             &|block, mut out, ()| {
-                if let Some(chunk_block) = self.chunk_block(on, block) {
+                if let Some(chunk_block) = self.chunk_block(lanes, block) {
                     chunks(&grid, &chunk_block, &self.blocks[block].intact, &mut out);
                 }
             },
@@ -265,12 +279,12 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         let mut blocks = std::mem::take(&mut self.blocks);
         {
             // Nobody else holds the lock while the operator is borrowed exclusively; a poisoned one only holds old numbers.
-            let mut padded = match self.scratch.lock() {
+            let mut scratch = match self.scratch.lock() {
                 Ok(guard) => guard,
                 Err(poisoned) => poisoned.into_inner(),
             };
-            self.pad(u, on, &mut padded);
-            let grid = self.grid(&padded);
+            let (padded, lanes) = self.pad(u, on, &mut scratch);
+            let grid = self.grid(padded);
             let rule = GridBreaking {
                 threshold: L::threshold(self.critical_stretch),
                 volume: self.cloud.volumes()[0],
@@ -284,7 +298,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
                 &mut blocks,
                 &|block| self.layout.first_point(block),
                 &|block, mut out, state| {
-                    let Some(chunk_block) = self.chunk_block(on, block) else {
+                    let Some(chunk_block) = self.chunk_block(lanes, block) else {
                         return;
                     };
                     let mut accept = |intact: &mut [u8], tally: &mut Tally| {

@@ -134,7 +134,7 @@ fn force_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
 ) {
     let m = grid.offsets.len();
     for (k, chunk) in block.chunks.iter().enumerate() {
-        let lanes = block.wanted.lanes(chunk);
+        let lanes = block.wanted(k);
         if lanes == 0 {
             continue;
         }
@@ -163,7 +163,7 @@ fn accept_chunks_body<T: Lanes, L: GridLaw, const D: usize, const FORCE: bool>(
     let m = grid.offsets.len();
     let watch = T::splat(rule.threshold * WATCH);
     for (k, chunk) in block.chunks.iter().enumerate() {
-        let lanes = block.wanted.lanes(chunk);
+        let lanes = block.wanted(k);
         if lanes == 0 {
             continue;
         }

@@ -4,6 +4,8 @@
 //! neighbour is a fixed number of places away; what lies beyond the end of a row is another row's, and masked out. Before the first and behind
 //! the last row lie as many unused places as the farthest neighbour is away. Points keep their compact order outside.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::family::LANES;
@@ -21,12 +23,6 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    /// Points in it.
-    #[inline(always)]
-    pub fn len(&self) -> usize {
-        self.lanes.count_ones() as usize
-    }
-
     /// Its lanes that are points, with the points.
     pub fn points(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let lanes = self.lanes;
@@ -123,7 +119,7 @@ impl GridLayout {
     }
 
     /// Adds the points of a piece of some rows. Chunks above each other follow each other, because they share most neighbours.
-    fn add_block(&mut self, rows: std::ops::Range<usize>, columns: std::ops::Range<usize>) {
+    fn add_block(&mut self, rows: Range<usize>, columns: Range<usize>) {
         let first_chunk = self.chunks.len();
         let mut first_point = usize::MAX;
         for column in columns {
@@ -189,7 +185,7 @@ impl GridLayout {
     }
 
     /// Numbers of a block's chunks.
-    pub fn chunks_of(&self, block: usize) -> std::ops::Range<usize> {
+    pub fn chunks_of(&self, block: usize) -> Range<usize> {
         let end = self
             .blocks
             .get(block + 1)
@@ -287,8 +283,13 @@ impl GridLayout {
         row * self.stride + column
     }
 
-    /// Copies one component of a vector on points to the padded rows for which `wanted(row)` holds; other places keep what they have.
-    pub fn pad(&self, values: &[f64], wanted: impl Fn(usize) -> bool + Sync, padded: &mut [f64]) {
+    /// Copies the named columns of each row of one component of a vector on points to its padded rows; other places keep what they have.
+    pub fn pad(
+        &self,
+        values: &[f64],
+        columns: impl Fn(usize) -> Range<usize> + Sync,
+        padded: &mut [f64],
+    ) {
         // Whole rows to a task, or pieces of a very long one.
         if self.stride <= PIECE {
             let rows = PIECE / self.stride;
@@ -297,18 +298,23 @@ impl GridLayout {
                 .enumerate()
                 .for_each(|(group, padded)| {
                     for (k, padded) in padded.chunks_mut(self.stride).enumerate() {
-                        if wanted(group * rows + k) {
-                            self.pad_piece(group * rows + k, 0, values, padded);
+                        let row = group * rows + k;
+                        let columns = columns(row);
+                        if !columns.is_empty() {
+                            self.pad_piece(row, columns.start, values, &mut padded[columns]);
                         }
                     }
                 });
         } else {
             for (row, padded) in padded.chunks_mut(self.stride).enumerate() {
-                if wanted(row) {
-                    padded
+                let columns = columns(row);
+                if !columns.is_empty() {
+                    padded[columns.clone()]
                         .par_chunks_mut(PIECE)
                         .enumerate()
-                        .for_each(|(k, padded)| self.pad_piece(row, k * PIECE, values, padded));
+                        .for_each(|(k, padded)| {
+                            self.pad_piece(row, columns.start + k * PIECE, values, padded);
+                        });
                 }
             }
         }
@@ -339,23 +345,63 @@ impl GridLayout {
         }
     }
 
-    /// Marks the rows within `radius` (along y and z, in rows) of those that hold the points from `from` to before `to`.
-    pub fn mark_rows(&self, from: usize, to: usize, radius: [usize; 2], marks: &mut [bool]) {
-        let first = self
-            .row_start
-            .partition_point(|&start| start as usize <= from)
-            - 1;
-        for row in first..self.row_start.len() - 1 {
-            if self.row_start[row] as usize >= to {
-                break;
+    /// Calls `visit(row, [first column, end], chunk, lanes)` for every chunk with points of a run of consecutive ones. Runs must come in ascending order:
+    /// `row` is where the search for the first one's row begins, and ends up at the last one's.
+    pub fn for_each_chunk_of(
+        &self,
+        run: Range<usize>,
+        row: &mut usize,
+        mut visit: impl FnMut(usize, [u32; 2], usize, u8),
+    ) {
+        let mut point = run.start;
+        while point < run.end {
+            while self.row_start[*row + 1] as usize <= point {
+                *row += 1;
             }
-            let (y, z) = (row % self.shape[1], row / self.shape[1]);
-            for z in z.saturating_sub(radius[1])..=(z + radius[1]).min(self.shape[2] - 1) {
-                let low = y.saturating_sub(radius[0]) + self.shape[1] * z;
-                let high = (y + radius[0]).min(self.shape[1] - 1) + self.shape[1] * z;
-                marks[low..=high].fill(true);
+            let first = self.row_start[*row] as usize;
+            let end = run.end.min(self.row_start[*row + 1] as usize);
+            let column = |point: usize| match &self.columns {
+                None => point - first,
+                Some(columns) => columns[point] as usize,
+            };
+            while point < end {
+                let from = column(point);
+                let place = from / LANES;
+                let mut bits = 0;
+                let mut last = from;
+                while point < end {
+                    let here = column(point);
+                    if here / LANES != place {
+                        break;
+                    }
+                    bits |= 1 << (here % LANES);
+                    last = here;
+                    point += 1;
+                }
+                let chunk = self.chunk_at[*row * (self.stride / LANES) + place] as usize;
+                visit(*row, [from as u32, last as u32 + 1], chunk, bits);
             }
         }
+    }
+
+    /// Calls `visit` for a row and those within `radius` of it along y and z, in rows.
+    pub fn for_each_row_around(
+        &self,
+        row: usize,
+        radius: [usize; 2],
+        mut visit: impl FnMut(usize),
+    ) {
+        let (y, z) = (row % self.shape[1], row / self.shape[1]);
+        for z in z.saturating_sub(radius[1])..=(z + radius[1]).min(self.shape[2] - 1) {
+            let low = y.saturating_sub(radius[0]) + self.shape[1] * z;
+            let high = (y + radius[0]).min(self.shape[1] - 1) + self.shape[1] * z;
+            (low..=high).for_each(&mut visit);
+        }
+    }
+
+    /// Places of a padded row.
+    pub fn row_length(&self) -> usize {
+        self.stride
     }
 
     /// Number of rows.

@@ -4,6 +4,7 @@ use super::grid_force::GridForce;
 use super::grid_kernels::{energy_chunks, force_chunks, tangent_chunks};
 use super::grid_law::GridLaw;
 use super::grid_padded::Padded;
+use super::grid_wanted::WantedPoints;
 use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
@@ -131,6 +132,7 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
         let padded = Padded::<D>::bytes_for(&self.layout, self.stencil.farthest_shift());
         masks
             + padded
+            + WantedPoints::bytes_for(&self.layout)
             + self.layout.bytes()
             + self.held.as_ref().map_or(0, Vec::len)
             + size_of_val(&self.precut[..])

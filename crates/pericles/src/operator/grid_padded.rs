@@ -1,6 +1,9 @@
 //! Vectors on points, copied to padded rows for one evaluation.
 
+use std::ops::Range;
+
 use super::grid_layout::GridLayout;
+use super::grid_wanted::WantedPoints;
 use crate::parallel::components;
 
 /// Bytes of a cache line; numbers loaded across two lines cost twice.
@@ -14,8 +17,6 @@ pub(super) struct Padded<const D: usize> {
     places: usize,
     /// Unused places between the components and at both ends.
     margin: usize,
-    /// Rows to be filled.
-    marks: Vec<bool>,
 }
 
 impl<const D: usize> Padded<D> {
@@ -31,42 +32,30 @@ impl<const D: usize> Padded<D> {
             start,
             places,
             margin,
-            marks: vec![false; layout.rows()],
         }
     }
 
     /// Copies all points.
     pub fn fill(&mut self, layout: &GridLayout, field: &[f64]) {
-        self.copy(layout, field, |_, _| true);
+        let whole = 0..layout.row_length();
+        self.copy(layout, field, |_| whole.clone());
     }
 
-    /// Copies at least the points that those named by `spans` (pairs of first and last + 1) have as neighbours, which are at most
-    /// `radius` rows away along y and z.
-    pub fn fill_around(
-        &mut self,
-        layout: &GridLayout,
-        field: &[f64],
-        spans: impl Iterator<Item = (usize, usize)>,
-        radius: [usize; 2],
-    ) {
-        self.marks.fill(false);
-        for (from, to) in spans {
-            layout.mark_rows(from, to, radius, &mut self.marks);
-        }
-        self.copy(layout, field, |marks, row| marks[row]);
+    /// Copies at least the wanted points and their neighbours.
+    pub fn fill_around(&mut self, layout: &GridLayout, field: &[f64], wanted: &WantedPoints) {
+        self.copy(layout, field, |row| wanted.columns(row));
     }
 
     fn copy(
         &mut self,
         layout: &GridLayout,
         field: &[f64],
-        wanted: impl Fn(&[bool], usize) -> bool + Sync,
+        columns: impl Fn(usize) -> Range<usize> + Sync,
     ) {
-        let marks = &self.marks;
         let field = components::<D>(field, field.len() / D);
         let rows = self.values[self.start + self.margin..].chunks_mut(self.places + self.margin);
         for (padded, values) in rows.zip(field) {
-            layout.pad(values, |row| wanted(marks, row), &mut padded[..self.places]);
+            layout.pad(values, &columns, &mut padded[..self.places]);
         }
     }
 
@@ -88,6 +77,6 @@ impl<const D: usize> Padded<D> {
         let per_line = LINE / size_of::<f64>();
         let margin = farthest.next_multiple_of(per_line);
         let numbers = D * (layout.places() + margin) + margin + per_line;
-        numbers * size_of::<f64>() + layout.rows()
+        numbers * size_of::<f64>()
     }
 }

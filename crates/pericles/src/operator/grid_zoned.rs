@@ -37,8 +37,8 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         let rows = left
             .chunks_mut(self.stencil.len())
             .zip(intact.chunks(self.stencil.len()));
-        for (chunk, (left, intact)) in block.chunks.iter().zip(rows) {
-            if block.wanted.lanes(chunk) == 0 {
+        for (number, (chunk, (left, intact))) in block.chunks.iter().zip(rows).enumerate() {
+            if block.wanted(number) == 0 {
                 continue;
             }
             for (k, &cell) in self.stencil.cells().iter().enumerate() {

@@ -14,6 +14,7 @@
 mod assemble;
 mod bond_force;
 mod bond_kernels;
+mod graded;
 mod grid_block;
 mod grid_breaking;
 mod grid_build;
@@ -23,6 +24,7 @@ mod grid_law;
 mod grid_layout;
 mod grid_operator;
 mod grid_padded;
+mod grid_wanted;
 mod grid_zoned;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
@@ -36,6 +38,7 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use graded::{EndLaw, GradedBody};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;

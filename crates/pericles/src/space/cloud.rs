@@ -137,6 +137,19 @@ impl PointCloud {
         Ok(cloud)
     }
 
+    /// A cloud of cells of several sizes; the spacing is that of the largest.
+    pub(super) fn graded(
+        dimension: usize,
+        positions: Vec<f64>,
+        volumes: Vec<f64>,
+        section: f64,
+        spacing: f64,
+    ) -> Result<Self> {
+        let mut cloud = Self::new(dimension, positions, volumes, section)?;
+        cloud.spacing = spacing;
+        Ok(cloud)
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.volumes.len()
@@ -213,10 +226,13 @@ impl PointCloud {
     pub fn bounds(&self) -> [Point; 2] {
         let mut bounds = [[0.0; 3]; 2];
         for c in 0..self.dimension {
-            let half = 0.5 * self.spacing;
-            let axis = self.axis(c);
-            bounds[0][c] = axis.iter().copied().fold(f64::INFINITY, f64::min) - half;
-            bounds[1][c] = axis.iter().copied().fold(f64::NEG_INFINITY, f64::max) + half;
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (i, &x) in self.axis(c).iter().enumerate() {
+                let half = 0.5 * self.cell_size(i);
+                low = low.min(x - half);
+                high = high.max(x + half);
+            }
+            (bounds[0][c], bounds[1][c]) = (low, high);
         }
         bounds
     }

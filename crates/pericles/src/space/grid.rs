@@ -127,6 +127,22 @@ impl Grid {
 
     /// Makes the cloud, x fastest.
     pub fn points(&self) -> Result<PointCloud> {
+        let cells = self.cells()?;
+        let shape = cells.shape;
+        let total = shape.iter().product::<usize>();
+        let mut lattice = Lattice {
+            spacing: self.spacing,
+            shape,
+            node: Vec::new(),
+        };
+        lattice.node = (0..total as u32)
+            .filter(|&node| cells.holds(cells.centre(lattice.coordinates(node))))
+            .collect();
+        PointCloud::on_lattice(self.dimension(), cells.origin, lattice, self.section)
+    }
+
+    /// The cells of the bounding box, and which of them belong to the body.
+    pub(super) fn cells(&self) -> Result<Cells<'_>> {
         let spacing = positive("the spacing", self.spacing)?;
         let dimension = self.dimension();
         if !(1..=3).contains(&dimension) {
@@ -174,32 +190,17 @@ impl Grid {
         }
         let bounds = [corner, end];
         let outline = self.outline();
-        let tolerance = 1e-9 * spacing;
-        let total = shape.iter().product::<usize>();
-        let mut lattice = Lattice {
+        let simple = outline == Region::All && self.holes.is_empty();
+        Ok(Cells {
+            dimension,
             spacing,
             shape,
-            node: Vec::new(),
-        };
-        let simple = outline == Region::All && self.holes.is_empty();
-        lattice.node = (0..total as u32)
-            .filter(|&node| {
-                if simple {
-                    return true;
-                }
-                let cell = lattice.coordinates(node);
-                let mut centre = [0.0; 3];
-                for c in 0..dimension {
-                    centre[c] = origin[c] + f64::from(cell[c]) * spacing;
-                }
-                outline.contains(centre, &bounds, tolerance)
-                    && !self
-                        .holes
-                        .iter()
-                        .any(|hole| hole.contains(centre, &bounds, tolerance))
-            })
-            .collect();
-        PointCloud::on_lattice(dimension, origin, lattice, self.section)
+            origin,
+            bounds,
+            outline: (!simple).then_some(outline),
+            holes: &self.holes,
+            tolerance: 1e-9 * spacing,
+        })
     }
 
     fn outline(&self) -> Region {
@@ -217,6 +218,48 @@ impl Grid {
                 radius: *radius,
             },
         }
+    }
+}
+
+/// The cells of a grid's bounding box.
+pub(super) struct Cells<'a> {
+    pub(super) dimension: usize,
+    pub(super) spacing: f64,
+    /// Cells along each axis.
+    pub(super) shape: [usize; 3],
+    /// Centre of the first cell.
+    pub(super) origin: Point,
+    pub(super) bounds: [Point; 2],
+    /// None if every cell belongs to the body.
+    outline: Option<Region>,
+    holes: &'a [Region],
+    tolerance: f64,
+}
+
+impl Cells<'_> {
+    /// The centre of a cell.
+    pub(super) fn centre(&self, cell: [i32; 3]) -> Point {
+        std::array::from_fn(|c| {
+            if c < self.dimension {
+                self.origin[c] + f64::from(cell[c]) * self.spacing
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// Whether a place belongs to the body.
+    pub(super) fn holds(&self, place: Point) -> bool {
+        let inside = |region: &Region| self.is_in(region, place);
+        match &self.outline {
+            None => true,
+            Some(outline) => inside(outline) && !self.holes.iter().any(inside),
+        }
+    }
+
+    /// Whether a place lies in a region.
+    pub(super) fn is_in(&self, region: &Region, place: Point) -> bool {
+        region.contains(place, &self.bounds, self.tolerance)
     }
 }
 

@@ -1,17 +1,20 @@
 //! Points in space: clouds, regular grids, regions and named sets.
 //!
 //! A body is a set of points with volumes. [`PointCloud`] holds it as structure of arrays; [`Grid`] makes clouds of cell
-//! centres; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in [`surface`].
+//! centres, [`GradedGrid`] those with smaller cells in parts; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in
+//! [`surface`].
 //!
 //! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates handed to regions always have three components,
 //! the missing ones zero.
 
 mod cloud;
+mod graded;
 mod grid;
 mod region;
 pub mod surface;
 
 pub use cloud::{Lattice, PointCloud, PointSet};
+pub use graded::{Finer, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
 pub use region::{Face, Region};
 

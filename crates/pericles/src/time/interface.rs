@@ -24,7 +24,8 @@ pub enum Interpolant {
     /// The cubic through displacements and velocities at both ends.
     #[default]
     Hermite,
-    /// The stages of the coarse step, weighed to give values of the method's order in between.
+    /// The stages of the coarse step, weighed to give values of the method's order in between, as in the method's first description. Growth below the
+    /// stable limit was seen on one of two bodies whose fine points are stiffer (RK4, M = 4, sixteen times, at ω dt = 2.4 of 2.83).
     Stages,
 }
 

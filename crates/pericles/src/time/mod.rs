@@ -1,11 +1,13 @@
 //! Time integration: u(t) ↦ u(t + dt), any scheme.
 
 mod embedded;
+mod fine_region;
 mod frequency;
 mod interface;
 mod multi_time_step;
 mod newmark;
 mod refinement;
+mod refinement_report;
 mod respa;
 mod runge_kutta;
 mod tableau;
@@ -14,13 +16,14 @@ mod zone;
 mod zones;
 
 pub use embedded::AdaptiveRungeKutta;
+pub use fine_region::{Fine, Follow};
 pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
 pub use interface::{Interpolant, Predictor};
 pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
 pub use newmark::{
     DiscreteGradient, InnerIterations, InnerSolver, Newmark, NewmarkOptions, VelocityNorm,
 };
-pub use refinement::{Fine, Follow, RefinementReport};
+pub use refinement_report::RefinementReport;
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;

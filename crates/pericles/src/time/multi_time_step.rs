@@ -1,7 +1,9 @@
 //! Runge–Kutta with small steps where they are needed.
 
+use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
-use super::refinement::{Fine, Refinement, RefinementReport};
+use super::refinement::{Refinement, SchemeCost};
+use super::refinement_report::RefinementReport;
 use super::runge_kutta::{Stages, StepForm, start};
 use super::zone::Sum;
 use super::zones::Zones;
@@ -80,6 +82,11 @@ impl MultiTimeStep {
             predictor,
             interpolant,
         } = options;
+        let cost = SchemeCost {
+            name,
+            stages: tableau.len() as u32,
+            shares_border: false,
+        };
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         Ok(Self {
@@ -89,7 +96,7 @@ impl MultiTimeStep {
             form: StepForm::new(tableau),
             inside: Inside::new(interpolant, tableau),
             predictor,
-            refinement: Refinement::new(system, name, ratio, fine)?,
+            refinement: Refinement::new(system, cost, ratio, fine)?,
             everywhere: Zones::all_fine(system.points()),
             history: History::new(predictor.levels(order), entries),
             work: Work {

@@ -1,84 +1,29 @@
-//! Which points take the fine step.
+//! Which points take the fine step, from step to step.
 
 use super::State;
+use super::fine_region::{Fine, Follow, check, mark_regions};
 use super::frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
+use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
 use crate::archive::{Archive, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::ZonedForce;
-use crate::space::{PointCloud, PointSet};
 use crate::system::System;
 
-/// The points that take the fine step.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Fine {
-    /// These sets, from start to end; they may not overlap.
-    Fixed(Vec<PointSet>),
-    /// Those near to where bonds break or are about to.
-    Adaptive(Follow),
-}
-
-/// How the fine region follows damage and stretch.
-///
-/// Every so many coarse steps a point is a start point if its damage grew since the last look, or if one of its bonds is
-/// stretched beyond `threshold` of the critical stretch. It stays one for `hold` looks more, so that a region that comes and goes does not switch to and fro. Fine
-/// is everything within `layers` families of a start point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Follow {
-    /// Coarse steps between two looks.
-    pub every: u32,
-    /// Part of the critical stretch beyond which a bond is about to break.
-    pub threshold: f64,
-    /// Families around start points.
-    pub layers: u32,
-    /// Looks that a start point outlasts its cause.
-    pub hold: u32,
-}
-
-/// Four steps, 0.85 of the critical stretch, two families; one look of hysteresis.
-impl Default for Follow {
-    fn default() -> Self {
-        Self {
-            every: 4,
-            threshold: 0.85,
-            layers: 2,
-            hold: 1,
-        }
-    }
-}
-
-/// What a scheme with two time steps did so far.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RefinementReport {
-    /// Fine steps in a coarse one, M.
-    pub ratio: u32,
-    /// Points of the body.
-    pub points: u64,
-    /// Fine points now.
-    pub fine_points: u64,
-    /// Coarse points next to them now: r-RESPA evaluates these in every fine step, too.
-    pub border_points: u64,
-    /// Coarse steps taken, without those at the start that are fine everywhere.
-    pub steps: u64,
-    /// Steps at the start that were fine everywhere, because the predictor needs earlier levels.
-    pub starting_steps: u64,
-    /// Mean over the steps of the fraction of fine points; the present fraction before the first step.
-    pub mean_fraction: f64,
-    /// The largest fraction of a step.
-    pub largest_fraction: f64,
-}
-
-impl RefinementReport {
-    /// S = M/(1 + (M − 1) φ): evaluations of the same scheme with the fine step everywhere over those of this one.
-    pub fn speed_up(&self) -> f64 {
-        let m = f64::from(self.ratio);
-        m / (1.0 + (m - 1.0) * self.mean_fraction)
-    }
+/// What a scheme is called and what it evaluates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SchemeCost {
+    pub(super) name: &'static str,
+    /// Evaluations of a point in each of its steps.
+    pub(super) stages: u32,
+    /// Whether coarse points next to fine ones are evaluated in fine steps, too.
+    pub(super) shares_border: bool,
 }
 
 /// The fine points of a run, with their zones.
 pub(super) struct Refinement {
     pub(super) ratio: u32,
+    cost: SchemeCost,
     pub(super) zones: Zones,
     follow: Option<Looking>,
     /// Zones belong to other marks than the present ones, which come from a checkpoint.
@@ -88,6 +33,8 @@ pub(super) struct Refinement {
     /// Σ fine points over the steps.
     fine_total: u64,
     fine_most: u64,
+    /// Σ coarse points next to fine ones over the steps.
+    border_total: u64,
 }
 
 /// The state of following.
@@ -123,16 +70,11 @@ impl Refinement {
     ///
     /// # Errors
     /// A ratio below one; regions that are empty, overlap or are thinner than a horizon; parameters of following out of range; bodies whose force knows no bonds.
-    pub(super) fn new(
-        system: &System,
-        scheme: &'static str,
-        ratio: u32,
-        fine: Fine,
-    ) -> Result<Self> {
+    pub(super) fn new(system: &System, cost: SchemeCost, ratio: u32, fine: Fine) -> Result<Self> {
         if ratio < 1 {
             return Err(PericlesError::StepRatio { ratio });
         }
-        let force = zoned(system, scheme)?;
+        let force = zoned(system, cost.name)?;
         let n = system.points();
         let mut is_fine = vec![false; n];
         let follow = match fine {
@@ -153,6 +95,7 @@ impl Refinement {
         };
         Ok(Self {
             ratio,
+            cost,
             zones: Zones::new(force, is_fine),
             follow,
             stale: false,
@@ -160,6 +103,7 @@ impl Refinement {
             starting_steps: 0,
             fine_total: 0,
             fine_most: 0,
+            border_total: 0,
         })
     }
 
@@ -203,25 +147,33 @@ impl Refinement {
         self.steps += 1;
         self.fine_total += fine;
         self.fine_most = self.fine_most.max(fine);
+        self.border_total += self.zones.coarse_border.len() as u64;
     }
 
     pub(super) fn report(&self) -> RefinementReport {
         let points = self.zones.is_fine.len();
         let fraction = |fine: u64| fine as f64 / points as f64;
         let now = self.zones.fine.len() as u64;
+        let border = self.zones.coarse_border.len() as u64;
+        let mean = |total: u64, now: u64| match self.steps {
+            0 => fraction(now),
+            steps => fraction(total) / steps as f64,
+        };
         RefinementReport {
             ratio: self.ratio,
+            stages: self.cost.stages,
             points: points as u64,
             fine_points: now,
-            border_points: self.zones.coarse_border.len() as u64,
+            border_points: border,
             steps: self.steps,
             starting_steps: self.starting_steps,
-            mean_fraction: if self.steps == 0 {
-                fraction(now)
-            } else {
-                fraction(self.fine_total) / self.steps as f64
-            },
+            mean_fraction: mean(self.fine_total, now),
             largest_fraction: fraction(if self.steps == 0 { now } else { self.fine_most }),
+            mean_shared: if self.cost.shares_border {
+                mean(self.border_total, border)
+            } else {
+                0.0
+            },
         }
     }
 
@@ -256,6 +208,7 @@ impl Refinement {
             self.starting_steps,
             self.fine_total,
             self.fine_most,
+            self.border_total,
         ];
         archive.put("scheme/refinement", Values::U64(counts.to_vec()));
         if let Some(looking) = &self.follow {
@@ -267,13 +220,14 @@ impl Refinement {
     }
 
     pub(super) fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let mut counts = [0; 4];
+        let mut counts = [0; 5];
         archive.u64_into("scheme/refinement", &mut counts)?;
         [
             self.steps,
             self.starting_steps,
             self.fine_total,
             self.fine_most,
+            self.border_total,
         ] = counts;
         if let Some(looking) = &mut self.follow {
             let mut marks = vec![0; self.zones.is_fine.len()];
@@ -305,113 +259,4 @@ impl Looking {
         std::mem::swap(&mut self.damage, &mut self.now);
         grow(force, &mut self.marks, self.follow.layers);
     }
-}
-
-fn check(follow: &Follow) -> Result<()> {
-    let refuse = |parameter, value, allowed| {
-        Err(PericlesError::SchemeParameter {
-            parameter,
-            value,
-            allowed,
-        })
-    };
-    if !(follow.threshold > 0.0 && follow.threshold < 1.0) {
-        return refuse(
-            "the stretch threshold of the fine region",
-            follow.threshold,
-            "a part of the critical stretch, above 0 and below 1 (usual: 0.85)",
-        );
-    }
-    if follow.every < 1 {
-        return refuse(
-            "the number of steps between two looks",
-            f64::from(follow.every),
-            "at least 1",
-        );
-    }
-    if follow.layers < 1 {
-        return refuse(
-            "the number of families around start points",
-            f64::from(follow.layers),
-            "at least 1 (usual: 2)",
-        );
-    }
-    if follow.hold > 200 {
-        return refuse(
-            "the number of looks a start point outlasts its cause",
-            f64::from(follow.hold),
-            "at most 200",
-        );
-    }
-    Ok(())
-}
-
-fn mark_regions(
-    cloud: &PointCloud,
-    force: &dyn ZonedForce,
-    regions: &[PointSet],
-    is_fine: &mut [bool],
-) -> Result<()> {
-    for (region, points) in regions.iter().enumerate() {
-        if points.is_empty() {
-            return Err(PericlesError::FineRegionEmpty { region });
-        }
-        for &i in points {
-            if std::mem::replace(&mut is_fine[i as usize], true) {
-                let first = regions
-                    .iter()
-                    .position(|other| other.binary_search(&i).is_ok())
-                    .unwrap_or(region);
-                return Err(PericlesError::FineRegionsOverlap {
-                    first,
-                    second: region,
-                    point: cloud.user_number(i as usize),
-                });
-            }
-        }
-        thick_enough(cloud, force, region, points)?;
-    }
-    Ok(())
-}
-
-/// Along every axis a region is as long as its longest bond, unless the body ends there.
-fn thick_enough(
-    cloud: &PointCloud,
-    force: &dyn ZonedForce,
-    region: usize,
-    points: &[u32],
-) -> Result<()> {
-    let n = cloud.len();
-    let span = |axis: &[f64], points: &mut dyn Iterator<Item = usize>| {
-        points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], i| {
-            [low.min(axis[i]), high.max(axis[i])]
-        })
-    };
-    let mut reach: f64 = 0.0;
-    for &i in points {
-        let here = cloud.point(i as usize);
-        force.neighbours(i as usize, &mut |j| {
-            let there = cloud.point(j);
-            let square: f64 = (0..3).map(|c| (there[c] - here[c]).powi(2)).sum();
-            reach = reach.max(square);
-        });
-    }
-    let reach = reach.sqrt();
-    let half = 0.5 * cloud.spacing();
-    for c in 0..cloud.dimension() {
-        let axis = cloud.axis(c);
-        let own = span(axis, &mut points.iter().map(|&i| i as usize));
-        let body = span(axis, &mut (0..n));
-        let ends = own[0] - body[0] < half || body[1] - own[1] < half;
-        let extent = own[1] - own[0] + cloud.spacing();
-        if !ends && extent < reach * (1.0 - 1e-9) {
-            return Err(PericlesError::FineRegionThin {
-                region,
-                extent,
-                axis: ['x', 'y', 'z'][c],
-                reach,
-            });
-        }
-    }
-    Ok(())
 }

@@ -1,6 +1,8 @@
 //! r-RESPA: velocity Verlet with short steps for some bonds.
 
-use super::refinement::{Fine, Refinement, RefinementReport};
+use super::fine_region::Fine;
+use super::refinement::{Refinement, SchemeCost};
+use super::refinement_report::RefinementReport;
 use super::runge_kutta::start;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
@@ -35,8 +37,13 @@ impl Respa {
     /// A ratio below one; fine regions that are empty, overlap or are thinner than a horizon; operators that cannot be evaluated on a part of the body.
     pub fn new(ratio: u32, fine: Fine, system: &System) -> Result<Self> {
         let array = || vec![0.0; system.dimension() * system.points()];
+        let cost = SchemeCost {
+            name: "respa",
+            stages: 1,
+            shares_border: true,
+        };
         Ok(Self {
-            refinement: Refinement::new(system, "respa", ratio, fine)?,
+            refinement: Refinement::new(system, cost, ratio, fine)?,
             slow: array(),
             fast: array(),
             mean: array(),

@@ -1,0 +1,47 @@
+//! Bonds of a body with cells of several sizes.
+
+use pericles::PericlesError;
+use pericles::operator::{AssembledBonds, BondBody, BondForm, GradedBody};
+
+use crate::deck::Deck;
+use crate::error::DeckError;
+
+/// The grids of a body.
+#[derive(Clone, Copy)]
+pub(super) struct Grids<'a> {
+    /// Division of each grid's cells.
+    pub(super) ratios: &'a [u32],
+    /// The grid of each point.
+    pub(super) of_point: &'a [u8],
+}
+
+impl Deck {
+    pub(super) fn graded_bonds(
+        &self,
+        body: &BondBody<'_>,
+        grids: Grids<'_>,
+    ) -> Result<AssembledBonds, DeckError> {
+        if !matches!(self.material.form, BondForm::Fastest | BondForm::List) {
+            let error = PericlesError::Graded {
+                what: "bonds of this form",
+                reason: "there is no one lattice; leave `bonds` out or give \"list\"",
+            };
+            return Err(self.at("material.bonds", error));
+        }
+        let graded = GradedBody {
+            cloud: body.cloud,
+            ratios: grids.ratios,
+            grid_of_point: grids.of_point,
+            material: body.material,
+            state: self.body.state,
+            cracks: body.cracks,
+            no_fail: body.no_fail,
+            stiffness: body.stiffness,
+            damage: body.damage,
+        };
+        graded.operator().map_err(|error| match error {
+            PericlesError::Graded { .. } => self.at("material.fracture_energy", error),
+            error => self.at_material(error),
+        })
+    }
+}

@@ -1,0 +1,84 @@
+//! For which points of a lattice body an evaluation is wanted, as its loops need it.
+
+use super::On;
+use super::grid_layout::GridLayout;
+use crate::parallel::runs;
+
+/// The wanted points of an evaluation on a part of the body; made once, set at each evaluation.
+pub(super) struct WantedPoints {
+    /// The wanted lanes of each chunk.
+    lanes: Vec<u8>,
+    /// The columns, first and end, of the wanted points of each row.
+    own: Vec<[u32; 2]>,
+    /// The same of what they and their neighbours take of each row.
+    seen: Vec<[u32; 2]>,
+}
+
+/// No column.
+const NONE: [u32; 2] = [u32::MAX, 0];
+
+impl WantedPoints {
+    pub(super) fn new(layout: &GridLayout) -> Self {
+        Self {
+            lanes: vec![0; layout.chunks().len()],
+            own: vec![NONE; layout.rows()],
+            seen: vec![NONE; layout.rows()],
+        }
+    }
+
+    /// Takes the points named by `on`; their neighbours are at most `radius` cells away along each axis. Cost: the rows, and the chunks of the points.
+    pub(super) fn set(&mut self, layout: &GridLayout, on: &On<'_>, radius: [usize; 3]) {
+        self.lanes.fill(0);
+        self.own.fill(NONE);
+        let Self { lanes, own, .. } = self;
+        let mut row = 0;
+        let mut take = |run: std::ops::Range<usize>| {
+            layout.for_each_chunk_of(run, &mut row, |row, [from, to], chunk, bits| {
+                lanes[chunk] |= bits;
+                own[row] = union(own[row], [from, to]);
+            });
+        };
+        match on {
+            On::All => take(0..layout.first_point(layout.blocks())),
+            On::Range(range) => take(range.clone()),
+            On::Set(points) => runs(points).for_each(take),
+        }
+        self.look_around(layout, radius);
+    }
+
+    fn look_around(&mut self, layout: &GridLayout, [x, y, z]: [usize; 3]) {
+        self.seen.fill(NONE);
+        for (row, &[from, to]) in self.own.iter().enumerate() {
+            if from >= to {
+                continue;
+            }
+            let span = [
+                from.saturating_sub(x as u32),
+                (to + x as u32).min(layout.row_length() as u32),
+            ];
+            layout.for_each_row_around(row, [y, z], |near| {
+                self.seen[near] = union(self.seen[near], span);
+            });
+        }
+    }
+
+    /// The wanted lanes of each chunk.
+    pub(super) fn lanes(&self) -> &[u8] {
+        &self.lanes
+    }
+
+    /// The columns of a row that the wanted points and their neighbours take.
+    pub(super) fn columns(&self, row: usize) -> std::ops::Range<usize> {
+        let [from, to] = self.seen[row];
+        from as usize..(to as usize).max(from as usize)
+    }
+
+    /// Memory for a layout, bytes.
+    pub(super) fn bytes_for(layout: &GridLayout) -> usize {
+        layout.chunks().len() + 2 * layout.rows() * size_of::<[u32; 2]>()
+    }
+}
+
+fn union(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}

@@ -1,0 +1,242 @@
+//! Grids with smaller cells in parts of the body.
+
+use super::{Grid, Point, PointCloud, Region};
+use crate::error::{PericlesError, Result};
+
+/// A part with smaller cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finer {
+    /// Cells whose centres lie in it are divided.
+    pub region: Region,
+    /// Into how many along each axis; at least two.
+    pub ratio: u32,
+}
+
+/// A regular grid some of whose cells are divided into smaller ones.
+///
+/// ```
+/// use pericles::space::{Finer, GradedGrid, Grid, Region, Shape};
+/// let bar = Grid {
+///     shape: Shape::Box { origin: [0.0; 3], size: vec![1.0] },
+///     spacing: 0.1,
+///     section: 1.0,
+///     holes: vec![],
+/// };
+/// let end = Region::Box { min: [0.8, f64::NEG_INFINITY, f64::NEG_INFINITY], max: [f64::INFINITY; 3] };
+/// let graded = GradedGrid { grid: bar, finer: vec![Finer { region: end, ratio: 3 }] };
+/// let points = graded.points().unwrap();
+/// assert_eq!(points.cloud.len(), 8 + 6);
+/// assert_eq!(points.ratios, [1, 3]);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct GradedGrid {
+    /// The body with its large cells.
+    pub grid: Grid,
+    /// Parts with smaller ones, later ones before earlier ones.
+    pub finer: Vec<Finer>,
+}
+
+/// The points of a graded grid.
+#[derive(Debug, Clone)]
+pub struct GradedCloud {
+    /// The points.
+    pub cloud: PointCloud,
+    /// Division of the cells of each grid: one for the large cells, then one for each finer part.
+    pub ratios: Vec<u32>,
+    /// The grid of each point.
+    pub grid_of_point: Vec<u8>,
+}
+
+impl GradedCloud {
+    /// The points of one grid.
+    pub fn of_one_grid(cloud: PointCloud) -> Self {
+        Self {
+            grid_of_point: vec![0; cloud.len()],
+            ratios: vec![1],
+            cloud,
+        }
+    }
+}
+
+/// Grids are numbered by a byte.
+const MOST_PARTS: usize = 200;
+
+impl GradedGrid {
+    /// Makes the cloud: cells of the large grid in its order, x fastest, divided ones as their small cells in the same order. Which small cells belong to
+    /// the body is decided by their own centres.
+    ///
+    /// # Errors
+    /// Those of [`Grid::points`]; a part with a ratio below two or without cells; too many parts.
+    pub fn points(&self) -> Result<GradedCloud> {
+        let cells = self.grid.cells()?;
+        let dimension = self.grid.dimension();
+        if self.finer.len() > MOST_PARTS {
+            return Err(PericlesError::FinerParts {
+                parts: self.finer.len(),
+                most: MOST_PARTS,
+            });
+        }
+        for (part, finer) in self.finer.iter().enumerate() {
+            if finer.ratio < 2 {
+                return Err(PericlesError::FinerRatio {
+                    part,
+                    ratio: finer.ratio,
+                });
+            }
+        }
+        let (mut places, mut sizes): (Vec<Point>, Vec<f64>) = Default::default();
+        let mut grid_of_point = Vec::new();
+        let count = cells.shape.map(|count| count as i32);
+        for z in 0..count[2] {
+            for y in 0..count[1] {
+                for x in 0..count[0] {
+                    let centre = cells.centre([x, y, z]);
+                    let part = self
+                        .finer
+                        .iter()
+                        .rposition(|finer| cells.is_in(&finer.region, centre));
+                    let ratio = part.map_or(1, |part| self.finer[part].ratio);
+                    let size = self.grid.spacing / f64::from(ratio);
+                    for_each_part(dimension, ratio, |offset| {
+                        let place: Point = std::array::from_fn(|c| centre[c] + offset[c] * size);
+                        if cells.holds(place) {
+                            places.push(place);
+                            sizes.push(size);
+                            grid_of_point.push(part.map_or(0, |part| part as u8 + 1));
+                        }
+                    });
+                }
+            }
+        }
+        for part in 0..self.finer.len() {
+            if !grid_of_point.contains(&(part as u8 + 1)) {
+                return Err(PericlesError::FinerEmpty { part });
+            }
+        }
+        let positions = (0..dimension)
+            .flat_map(|c| places.iter().map(move |place| place[c]))
+            .collect();
+        let section = self.grid.section;
+        let volume = |size: &f64| section * size.powi(dimension as i32);
+        let volumes = sizes.iter().map(volume).collect();
+        Ok(GradedCloud {
+            cloud: PointCloud::graded(dimension, positions, volumes, section, self.grid.spacing)?,
+            ratios: std::iter::once(1)
+                .chain(self.finer.iter().map(|finer| finer.ratio))
+                .collect(),
+            grid_of_point,
+        })
+    }
+}
+
+/// Calls `visit` with the offset, in small cells, of each small cell's centre from that of the large one.
+fn for_each_part(dimension: usize, ratio: u32, mut visit: impl FnMut(Point)) {
+    let range = |c: usize| 0..if c < dimension { ratio } else { 1 };
+    let middle = 0.5 * f64::from(ratio - 1);
+    let offset = |c: usize, k: u32| {
+        if c < dimension {
+            f64::from(k) - middle
+        } else {
+            0.0
+        }
+    };
+    for z in range(2) {
+        for y in range(1) {
+            for x in range(0) {
+                visit([offset(0, x), offset(1, y), offset(2, z)]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Shape;
+
+    fn block(finer: Vec<Finer>) -> GradedGrid {
+        GradedGrid {
+            grid: Grid {
+                shape: Shape::Box {
+                    origin: [0.0; 3],
+                    size: vec![0.6, 0.4, 0.2],
+                },
+                spacing: 0.1,
+                section: 1.0,
+                holes: vec![],
+            },
+            finer,
+        }
+    }
+
+    #[test]
+    fn cells_fill_the_body_whatever_their_size() {
+        let region = Region::Box {
+            min: [0.2, 0.1, f64::NEG_INFINITY],
+            max: [0.4, 0.3, f64::INFINITY],
+        };
+        let points = block(vec![Finer { region, ratio: 3 }]).points().unwrap();
+        assert_eq!(points.cloud.len(), 48 - 8 + 8 * 27);
+        let volume: f64 = points.cloud.volumes().iter().sum();
+        assert!((volume / 0.048 - 1.0).abs() < 1e-12);
+        let [low, high] = points.cloud.bounds();
+        for (c, side) in [0.6, 0.4, 0.2].into_iter().enumerate() {
+            assert!(low[c].abs() < 1e-12 && (high[c] - side).abs() < 1e-12);
+        }
+        for (i, &grid) in points.grid_of_point.iter().enumerate() {
+            let size = [0.1, 0.1 / 3.0][usize::from(grid)];
+            assert!((points.cloud.cell_size(i) / size - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_ball_is_rounder_where_its_cells_are_smaller() {
+        let ball = |finer| GradedGrid {
+            grid: Grid {
+                shape: Shape::Ball {
+                    centre: [0.0; 3],
+                    radius: 1.0,
+                },
+                spacing: 0.25,
+                section: 1.0,
+                holes: vec![],
+            },
+            finer,
+        };
+        let error = |finer| {
+            let points = ball(finer).points().unwrap();
+            let volume: f64 = points.cloud.volumes().iter().sum();
+            (volume / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs()
+        };
+        let whole = Finer {
+            region: Region::All,
+            ratio: 4,
+        };
+        assert!(error(vec![whole]) < 0.5 * error(vec![]));
+    }
+
+    #[test]
+    fn parts_that_divide_nothing_are_refused() {
+        let part = |min: f64, ratio| Finer {
+            region: Region::Box {
+                min: [min; 3],
+                max: [f64::INFINITY; 3],
+            },
+            ratio,
+        };
+        let error = |finer| block(finer).points().unwrap_err();
+        assert!(matches!(
+            error(vec![part(0.0, 1)]),
+            PericlesError::FinerRatio { part: 0, ratio: 1 }
+        ));
+        assert!(matches!(
+            error(vec![part(0.0, 2), part(5.0, 2)]),
+            PericlesError::FinerEmpty { part: 1 }
+        ));
+        // A later part hides an earlier one completely.
+        assert!(matches!(
+            error(vec![part(0.1, 2), part(0.0, 3)]),
+            PericlesError::FinerEmpty { part: 0 }
+        ));
+    }
+}
