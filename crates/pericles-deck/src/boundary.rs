@@ -2,6 +2,7 @@
 
 use pericles::boundary::absorbing::Side;
 
+use crate::quantity::Quantity;
 use crate::reader::Table;
 
 /// A boundary with memory.
@@ -25,6 +26,18 @@ pub enum HistoryForm {
     Blocked,
     /// By direct sums: exact, and slow.
     Direct,
+    /// By sums of exponentials: memory for any number of steps in a few numbers.
+    Exponentials {
+        /// Error of a ghost's displacement, relative to displacements.
+        tolerance: f64,
+    },
+}
+
+#[derive(Clone, Copy)]
+enum Form {
+    Blocked,
+    Direct,
+    Exponentials,
 }
 
 #[derive(Clone, Copy)]
@@ -40,18 +53,45 @@ pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
     let side = table
         .required("side")
         .and_then(|item| item.choice("side", &sides));
-    let history = table.choice_or_first(
+    let form = table.choice_or_first(
         "history",
         "history",
         &[
-            ("blocked", HistoryForm::Blocked),
-            ("direct", HistoryForm::Direct),
+            ("blocked", Form::Blocked),
+            ("direct", Form::Direct),
+            ("exponentials", Form::Exponentials),
         ],
     );
+    let history = match form {
+        Some(Form::Exponentials) => {
+            tolerance(&table).map(|tolerance| HistoryForm::Exponentials { tolerance })
+        }
+        other => {
+            table.forbid(
+                "tolerance",
+                "a tolerance belongs to history = \"exponentials\"; the others are exact",
+            );
+            other.map(|form| match form {
+                Form::Direct => HistoryForm::Direct,
+                _ => HistoryForm::Blocked,
+            })
+        }
+    };
     table.finish();
     let Kind::Absorbing = kind?;
     Some(BoundaryCondition::Absorbing {
         side: side?,
         history: history?,
+    })
+}
+
+fn tolerance(table: &Table<'_>) -> Option<f64> {
+    const TOLERANCE: f64 = 1e-9;
+    table.or("tolerance", TOLERANCE, |item| {
+        item.within(
+            Quantity::Number,
+            "a number above 1e-14 and below 1",
+            |tolerance| tolerance > 1e-14 && tolerance < 1.0,
+        )
     })
 }

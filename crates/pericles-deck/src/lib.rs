@@ -124,7 +124,8 @@
 //! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet"
 //! kind = "absorbing"                     # the bar goes on for ever beyond this end, as its outermost points are; exact
 //! side = "-x"                            # or +x
-//! history = "blocked"                    # default; or direct: slow, for comparison
+//! history = "blocked"                    # default; or direct: slow, for comparison; or exponentials: not exact, but little memory, with
+//! # tolerance = 1e-9                     # of a displacement beyond the end, relative
 //!
 //! [[probe]]                              # displacement and velocity in the history
 //! name = "middle"

@@ -596,6 +596,22 @@ fn waves_leave_through_absorbing_ends() {
 }
 
 #[test]
+fn histories_by_exponentials_keep_their_tolerance() {
+    let displacement = |text: &str| {
+        let mut run = build(text).simulation();
+        run.run(|_| pericles::Control::Continue).unwrap();
+        run.state().u.clone()
+    };
+    let exact = displacement(BAR);
+    let history = "side = \"+x\"\nhistory = \"exponentials\"\ntolerance = 1e-8";
+    let fitted = displacement(&BAR.replace("side = \"+x\"", history));
+    let largest = exact.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
+    let pairs = exact.iter().zip(&fitted);
+    let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs())) / largest;
+    assert!(error < 1e-7 && error > 0.0, "{error:e}");
+}
+
+#[test]
 fn ends_that_cannot_be_continued_are_refused() {
     let cases: [(&str, &str, (usize, usize), &str); 7] = [
         (

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use pericles::boundary::absorbing::history::{BlockedHistory, DirectHistory, History};
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, GhostKernels, LatticeStencil, OuterLayer, Side, factor_kernels,
+    AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, OuterLayer,
+    Side, contour_kernels, factor_kernels, green_functions, green_functions_closed,
+    semi_discrete_kernels,
 };
 use pericles::boundary::{Load, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
@@ -331,5 +333,71 @@ fn what_cannot_be_continued_is_refused() {
                 made_for: 50
             }
         )))
+    ));
+}
+
+#[test]
+fn routes_to_the_kernels_agree() {
+    for (weights, dt) in [(weights(), 0.05), (vec![4.0, -1.0], 0.03), (vec![1.0], 0.9)] {
+        let stencil = LatticeStencil::new(&weights).unwrap();
+        let steps = 300;
+        let series = factor_kernels(&stencil, dt, steps);
+        let contour = contour_kernels(&stencil, dt, steps);
+        for (a, b) in series.iter().flatten().zip(contour.iter().flatten()) {
+            assert!((a - b).abs() < 1e-14, "{a:e} {b:e}");
+        }
+        // The semi-discrete kernels are those of the scheme to second order: equal in the limit, per step.
+        let fine = semi_discrete_kernels(&stencil, dt, steps);
+        let exact = GhostKernels::shift(series).expanded();
+        let sum = |series: &[Vec<f64>]| -> f64 { series.iter().flatten().sum() };
+        let (a, b) = (sum(fine.series()), sum(exact.series()));
+        assert!((a / b - 1.0).abs() < 0.05, "{a} {b}");
+    }
+}
+
+#[test]
+fn green_functions_obey_their_identity() {
+    // Σ k a_k (g_{m+k} − g_{m−k}) = −(2m/t) g_m', the derivative by central differences.
+    let stencil = LatticeStencil::new(&weights()).unwrap();
+    let (dt, steps) = (1e-3, 4000);
+    let g = green_functions(&stencil, dt, steps, 2 * REACH + 2);
+    let at = |m: isize, j: usize| g[m.unsigned_abs()][j];
+    let t = steps as f64 / 2.0 * dt;
+    let j = steps / 2;
+    for m in 1..REACH as isize {
+        let left: f64 = (1..=REACH as isize)
+            .map(|k| k as f64 * weights()[k as usize - 1] * (at(m + k, j) - at(m - k, j)))
+            .sum();
+        let slope =
+            (8.0 * (at(m, j + 1) - at(m, j - 1)) - (at(m, j + 2) - at(m, j - 2))) / (12.0 * dt);
+        let right = -2.0 * m as f64 / t * slope;
+        assert!((left - right).abs() < 1e-8, "{m}: {left} {right}");
+    }
+    // The paper's closure is exact, and its errors grow: quiet at t = 4 still.
+    let closed = green_functions_closed(&stencil, dt, steps);
+    for (a, b) in g.iter().zip(&closed) {
+        assert!((a[steps] - b[steps]).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn sums_of_exponentials_hold_their_tolerance() {
+    let stencil = LatticeStencil::new(&weights()).unwrap();
+    let (dt, steps) = (0.05, 1000);
+    let exact = GhostKernels::shift(factor_kernels(&stencil, dt, steps)).expanded();
+    for tolerance in [1e-6, 1e-9] {
+        let fit = ExponentialKernels::fit(&stencil, dt, steps, tolerance).unwrap();
+        assert!(fit.residual <= tolerance);
+        let largest = fit
+            .series(steps)
+            .iter()
+            .flatten()
+            .zip(exact.series().iter().flatten())
+            .fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+        assert!(largest < tolerance, "{largest:e}");
+    }
+    assert!(matches!(
+        ExponentialKernels::fit(&stencil, dt, steps, 0.0),
+        Err(AbsorbingError::Tolerance { .. })
     ));
 }

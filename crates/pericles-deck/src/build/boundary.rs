@@ -1,9 +1,11 @@
 //! Absorbing ends of a model.
 
 use pericles::System;
-use pericles::boundary::absorbing::history::{BlockedHistory, DirectHistory, History};
+use pericles::boundary::absorbing::history::{
+    BlockedHistory, DirectHistory, ExponentialHistory, History,
+};
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, OuterLayer, Side, cached_kernels,
+    AbsorbingEnd, AbsorbingError, ExponentialKernels, OuterLayer, Side, cached_kernels,
 };
 use pericles::cache::Cache;
 use pericles::time::{Integrator, State};
@@ -65,15 +67,20 @@ impl Deck {
         cache: &dyn Cache,
     ) -> Result<(), DeckError> {
         for end in ends {
-            let kernels = cached_kernels(&end.layer.stencil, steps.dt, steps.count as usize, cache);
-            let history: Box<dyn History> = match end.history {
-                HistoryForm::Blocked => Box::new(BlockedHistory::new(kernels)),
-                HistoryForm::Direct => Box::new(DirectHistory::new(kernels)),
-            };
             let path = end.path;
-            let end = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(|error| {
-                self.at_path(&path, pericles::PericlesError::from(error).into())
-            })?;
+            let refuse = |error| self.at_path(&path, pericles::PericlesError::from(error).into());
+            let stencil = end.layer.stencil.clone();
+            let count = steps.count as usize;
+            let kernels = || cached_kernels(&stencil, steps.dt, count, cache);
+            let history: Box<dyn History> = match end.history {
+                HistoryForm::Blocked => Box::new(BlockedHistory::new(kernels())),
+                HistoryForm::Direct => Box::new(DirectHistory::new(kernels())),
+                HistoryForm::Exponentials { tolerance } => {
+                    let fit = ExponentialKernels::fit(&stencil, steps.dt, count, tolerance);
+                    Box::new(ExponentialHistory::new(fit.map_err(refuse)?))
+                }
+            };
+            let end = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
             system.add_boundary(Box::new(end));
         }
         Ok(())

@@ -19,6 +19,7 @@
 //! |---|---|---|
 //! | [`DirectHistory`](history::DirectHistory) | K² N² | K N |
 //! | [`BlockedHistory`](history::BlockedHistory) | K N log² N + K² N log N | 7 K N numbers |
+//! | [`ExponentialHistory`](history::ExponentialHistory) | K p N, within a tolerance ([`ExponentialKernels`]) | K p numbers for p exponentials |
 //!
 //! **Kernels.** With the delay w of one step the factor 1 − Σ h_m z^m of the lattice's symbol whose zeros lie outside the unit circle gives u_{−n} = Σ_m h_m * u_{m−n}: K kernels instead
 //! of K², found as power series ([`factor_kernels`]); F follows by F_{n+1}^m = F_n^1 * h_m + F_n^{m+1}.
