@@ -1,6 +1,8 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
-use pericles_deck::Deck;
+use pericles::material::SurfaceBond;
+use pericles::space::surface::AreaRule;
+use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
 
 use crate::args::CheckArgs;
 use crate::console;
@@ -24,7 +26,10 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         console::note(format_args!("warning: {warning}"));
     }
     let mut lines = body(&deck, &facts);
-    lines.extend(material(&deck, &facts));
+    match &deck.surface {
+        Some(surface) => lines.extend(surface_material(surface)),
+        None => lines.extend(material(&deck, &facts)),
+    }
     lines.extend(time(&facts));
     model.integrator.start(&mut model.system, &mut model.state);
     let comparison = Comparison::measure(&deck, &mut model)?;
@@ -63,9 +68,12 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
 type Line = (&'static str, String);
 
 fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
-    let state = deck.body.state.name();
+    let body = match &deck.surface {
+        Some(_) => "surface in 3D".into(),
+        None => format!("{}D, {}", facts.dimension, deck.body.state.name()),
+    };
     let mut lines = vec![
-        ("body", format!("{}D, {state}", facts.dimension)),
+        ("body", body),
         ("points", count(facts.points as u64)),
         (
             "bonds",
@@ -131,6 +139,47 @@ fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
     }
     lines.push(("waves", waves));
     lines
+}
+
+fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
+    let material = &surface.material;
+    let law = match material.bond {
+        SurfaceBond::Displacement => "κ |η|^(p−2) η / d^(2+αp)",
+        SurfaceBond::Chord => "κ |ℓ−ℓ₀|^(p−2) (ℓ−ℓ₀) n / d^(2+αp), frame-indifferent",
+    };
+    let areas = match surface.areas {
+        VertexAreas::Rule(AreaRule::Barycentric) => "a third of each triangle".into(),
+        VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
+        VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
+    };
+    let own_cell = if material.self_cell {
+        "added"
+    } else if material.alpha >= 0.5 {
+        "left out: for α of 1/2 and more results depend on the mesh"
+    } else {
+        "left out"
+    };
+    let breaking = if material.critical_stretch.is_finite() {
+        format!(
+            "beyond |η|/d = {}",
+            significant(material.critical_stretch, 4)
+        )
+    } else {
+        "never".into()
+    };
+    vec![
+        (
+            "force",
+            format!(
+                "{law}; p = {}, α = {}, κ = {}",
+                material.p, material.alpha, material.kappa
+            ),
+        ),
+        ("distances", surface.method.to_string()),
+        ("areas", areas),
+        ("own cell", own_cell.into()),
+        ("breaking", breaking),
+    ]
 }
 
 fn time(facts: &Facts) -> Vec<Line> {

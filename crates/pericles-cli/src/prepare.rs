@@ -1,13 +1,15 @@
 //! From a model to a simulation with all its observers, and the facts about it that reports need.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use pericles::Simulation;
-use pericles::observe::{CrackTracker, Schedule};
+use pericles::observe::{CrackTracker, Schedule, SurfaceMeasure};
+use pericles::space::surface::Surface;
 use pericles_deck::{Deck, Model, Precision};
 use pericles_io::OutputFolder;
 use pericles_io::observers::{
-    Cracks, FieldSeries, History, PictureOf, Pictures, Probes, Reactions,
+    Cracks, FieldSeries, History, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
 use serde::Serialize;
 
@@ -65,7 +67,12 @@ impl Facts {
             dimension,
             points,
             spacing: model.cloud.spacing(),
-            horizon: deck.material.bonds.horizon,
+            horizon: deck
+                .surface
+                .as_ref()
+                .map_or(deck.material.bonds.horizon, |surface| {
+                    surface.material.horizon
+                }),
             bonds: directed_bonds / 2,
             directed_bonds,
             precut_bonds: model.precut_bonds,
@@ -84,7 +91,12 @@ impl Facts {
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
             instruction_set: operator.instruction_set().name(),
-            warnings: model.warnings.iter().map(|w| w.line()).collect(),
+            warnings: model
+                .warnings
+                .iter()
+                .chain(&deck.judge_waves(model))
+                .map(|w| w.line())
+                .collect(),
         }
     }
 }
@@ -119,9 +131,14 @@ pub(crate) fn simulation(
     let reactions = (!model.system.motions().is_empty())
         .then(|| Reactions::new(folder.file("reactions.csv"), model.system.motions()));
     let (probes, cracks) = (model.probes.clone(), model.cracks.clone());
+    let surface = model.surface.clone();
     let mut simulation = model.simulation();
 
-    let history = History::new(folder.file("history.csv"), dimension);
+    let history = folder.file("history.csv");
+    let history = match simulation.integrator().inner_iterations() {
+        Some(_) => History::with_inner_iterations(history, dimension),
+        None => History::new(history, dimension),
+    };
     simulation.observe(output.history, Box::new(history));
     if let Some(reactions) = reactions {
         simulation.observe(output.history, Box::new(reactions));
@@ -135,19 +152,28 @@ pub(crate) fn simulation(
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
         simulation.observe(output.cracks.schedule, Box::new(cracks));
     }
+    if let Some(surface) = &surface {
+        let measure = SurfaceMeasure::new(surface.clone());
+        let course = SurfaceCourse::new(folder.file("surface.csv"), measure);
+        simulation.observe(output.history, Box::new(course));
+    }
     if output.fields != Schedule::Never {
         folder.subfolder("fields")?;
         let single = output.precision == Precision::Single;
-        let fields = FieldSeries::new(folder.path(), single);
+        let mut fields = FieldSeries::new(folder.path(), single);
+        if let Some(surface) = &surface {
+            fields = fields.of_surface(surface.clone());
+        }
         simulation.observe(output.fields, Box::new(fields));
     }
-    add_pictures(deck, folder, &mut simulation)?;
+    add_pictures(deck, folder, surface.as_ref(), &mut simulation)?;
     Ok(simulation)
 }
 
 fn add_pictures(
     deck: &Deck,
     folder: &OutputFolder,
+    surface: Option<&Arc<Surface>>,
     simulation: &mut Simulation,
 ) -> Result<(), CliError> {
     if deck.output.pictures.is_empty() {
@@ -162,6 +188,8 @@ fn add_pictures(
             scale: picture.scale,
             range: picture.range,
             title: deck.title.clone().unwrap_or_default(),
+            view: picture.view,
+            surface: surface.cloned(),
         };
         // Two pictures of one field get two names.
         let uses = uses.entry(what.name()).or_default();

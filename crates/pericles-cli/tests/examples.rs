@@ -144,6 +144,24 @@ fn check_says_whether_two_time_steps_pay() {
     assert!(line.contains("the same stable step"), "{line}");
 }
 
+#[test]
+fn surfaces() {
+    let (_place, out) = check("surface", "sphere");
+    // No energy comes from nowhere: the bound holds at every row, and the account closes.
+    let margin = table(&out, "surface.csv");
+    let margin = margin.column("bound_margin").unwrap();
+    assert!(margin.iter().all(|margin| *margin >= -1e-9));
+    let history = table(&out, "history.csv");
+    let column = |name: &str| history.column(name).unwrap();
+    let scale = column("external_work").iter().copied().fold(0.0, f64::max);
+    assert!(column("balance").iter().all(|b| b.abs() < 1e-6 * scale));
+    let (_place, out) = check("surface", "torus");
+    for k in 0..=4 {
+        let name = format!("pictures/Strain_Energy_Density-{k:06}.png");
+        assert!(out.join(name).is_file());
+    }
+}
+
 fn table(out: &Path, name: &str) -> CsvData {
     read_csv(out.join(name)).unwrap()
 }

@@ -99,6 +99,9 @@ fn all_studies_are_listed() {
         "dispersion/pulse",
         "fracture/branching",
         "fracture/inclined",
+        "manifolds/figure-2",
+        "manifolds/figure-6",
+        "manifolds/convergence",
         "multi-time-step/plate",
         "multi-time-step/two-grid",
     ] {

@@ -6,6 +6,7 @@ use pericles::space::{Finer, Grid, Region, Shape};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::region::{self, Frame};
+use crate::surface::{self, SurfaceKind, SurfaceShape, VertexAreas};
 
 /// The body.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +24,14 @@ pub(crate) struct BodyRead {
     pub(crate) body: Option<Body>,
     pub(crate) frame: Frame,
     pub(crate) state: Option<StressState>,
+    /// The body if it is a surface.
+    pub(crate) surface: Option<SurfaceRead>,
+}
+
+/// A surface, as far as it could be read.
+pub(crate) struct SurfaceRead {
+    pub(crate) shape: Option<SurfaceShape>,
+    pub(crate) areas: Option<VertexAreas>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,15 +42,21 @@ enum Kind {
     Block,
     Cylinder,
     Ball,
+    Surface(SurfaceKind),
 }
 
-const KINDS: [(&str, Kind); 6] = [
+const KINDS: [(&str, Kind); 11] = [
     ("bar", Kind::Bar),
     ("plate", Kind::Plate),
     ("disc", Kind::Disc),
     ("block", Kind::Block),
     ("cylinder", Kind::Cylinder),
     ("ball", Kind::Ball),
+    ("icosphere", Kind::Surface(SurfaceKind::Icosphere)),
+    ("uv-sphere", Kind::Surface(SurfaceKind::UvSphere)),
+    ("ellipsoid", Kind::Surface(SurfaceKind::Ellipsoid)),
+    ("torus", Kind::Surface(SurfaceKind::Torus)),
+    ("capsule", Kind::Surface(SurfaceKind::Capsule)),
 ];
 
 impl Kind {
@@ -49,7 +64,7 @@ impl Kind {
         match self {
             Self::Bar => 1,
             Self::Plate | Self::Disc => 2,
-            Self::Block | Self::Cylinder | Self::Ball => 3,
+            Self::Block | Self::Cylinder | Self::Ball | Self::Surface(_) => 3,
         }
     }
 }
@@ -62,11 +77,15 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
             spacing: None,
         },
         state: None,
+        surface: None,
     };
     let Some(table) = table else { return read };
     let kind = table
         .required("shape")
         .and_then(|item| item.choice("shape", &KINDS));
+    if let Some(Kind::Surface(kind)) = kind {
+        return surface(table, kind, read);
+    }
     read.frame.spacing = table
         .required("spacing")
         .and_then(|item| item.positive(Quantity::Length));
@@ -90,6 +109,23 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .collect();
     table.finish();
     read.body = assemble(&read, outline, section, holes, finer);
+    read
+}
+
+fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead {
+    let shape = surface::shape(&table, kind);
+    let areas = surface::areas(&table);
+    table.finish();
+    read.frame = Frame {
+        dimension: Some(3),
+        spacing: shape.map(|(_, spacing)| spacing),
+    };
+    read.state = Some(StressState::Spatial);
+    read.body = Some(surface::no_grid());
+    read.surface = Some(SurfaceRead {
+        shape: shape.map(|(shape, _)| shape),
+        areas,
+    });
     read
 }
 
@@ -174,6 +210,8 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
                 bore: inner?.map(|radius| Region::Ball { centre, radius }),
             })
         }
+        // Read by `surface`.
+        Kind::Surface(_) => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
             let axis = region::axis(table);

@@ -37,6 +37,23 @@ pub enum Caution {
         /// The step that is surely stable, s.
         limit: f64,
     },
+    /// Waves that the grid does not carry.
+    #[error(
+        "{:.0} % of the energy of this {what} is in waves shorter than {length:.3e} m or faster than a period of {period:.3e} s, which the grid delays by more than {:.0} %",
+        100.0 * share, 100.0 * tolerance
+    )]
+    ShortWaves {
+        /// What sends them out.
+        what: &'static str,
+        /// Their share of the energy.
+        share: f64,
+        /// The deviation of their speed, relative.
+        tolerance: f64,
+        /// The shortest period that the grid carries, s.
+        period: f64,
+        /// The shortest wave that it carries, m.
+        length: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -63,6 +80,9 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::ShortWaves { .. } => {
+                "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -76,6 +96,7 @@ impl Subject for Caution {
             Self::CrackCutsNothing => "no effect",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::ShortWaves { .. } => "short waves",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }

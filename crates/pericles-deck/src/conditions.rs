@@ -20,6 +20,17 @@ pub struct Initial {
     pub displacement: Option<VectorField>,
     /// Velocity, m/s.
     pub velocity: Option<VectorField>,
+    /// Random velocities, added to that.
+    pub random_velocity: Option<RandomVelocity>,
+}
+
+/// Velocities uniform in a ball, one after the other in the user's order of points, by the generator SplitMix64.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RandomVelocity {
+    /// Radius of the ball, m/s.
+    pub radius: f64,
+    /// Seed.
+    pub seed: u64,
 }
 
 /// A prescribed motion.
@@ -98,14 +109,29 @@ pub(crate) fn initial(
     let velocity = table.maybe("velocity", |item| {
         vector_field(&item, Quantity::Velocity, variables)
     });
-    if let (Some(None), Some(None)) = (&displacement, &velocity) {
-        table.lacks_one_of(&["displacement", "velocity"]);
+    let random_velocity = table.maybe("random_velocity", |item| random(item.table()?));
+    if let (Some(None), Some(None), Some(None)) = (&displacement, &velocity, &random_velocity) {
+        table.lacks_one_of(&["displacement", "velocity", "random_velocity"]);
     }
     table.finish();
     Some(Initial {
         set: set?,
         displacement: displacement?,
         velocity: velocity?,
+        random_velocity: random_velocity?,
+    })
+}
+
+fn random(table: Table<'_>) -> Option<RandomVelocity> {
+    table.choice_or_first("generator", "generator", &[("splitmix64", ())]);
+    let radius = table
+        .required("radius")
+        .and_then(|item| item.positive(Quantity::Velocity));
+    let seed = table.or("seed", 1, |item| item.count());
+    table.finish();
+    Some(RandomVelocity {
+        radius: radius?,
+        seed: seed?,
     })
 }
 

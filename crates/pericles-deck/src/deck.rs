@@ -4,7 +4,7 @@ use std::path::Path as FilePath;
 
 use serde_json::Value as Json;
 
-use crate::body::{self, Body};
+use crate::body::{self, Body, SurfaceRead};
 use crate::boundary::{self, BoundaryCondition};
 use crate::conditions::{self, Initial, Load, Prescribe, Probe};
 use crate::crack::{self, PreCrack};
@@ -14,8 +14,10 @@ use crate::material::{self, Material};
 use crate::output::{self, Checkpoint, Output};
 use crate::overrides;
 use crate::reader::{Ledger, Record, Table};
-use crate::set::{self, NamedSet};
+use crate::region::Frame;
+use crate::set::{self, NamedSet, SetNames};
 use crate::source::Sources;
+use crate::surface::{self, SurfaceDeck};
 use crate::time::{self, Time};
 
 /// Everything a deck says, in SI units.
@@ -27,6 +29,8 @@ pub struct Deck {
     pub body: Body,
     /// `[material]`
     pub material: Material,
+    /// A surface with its material, if the body is one; `body` and `material` are then those of a unit cube that is not used.
+    pub surface: Option<SurfaceDeck>,
     /// `[sets]`, without the set "all" of all points.
     pub sets: Vec<NamedSet>,
     /// `[[crack]]`
@@ -106,9 +110,21 @@ impl Deck {
         let body = body::read(root.required("body").and_then(|item| item.table()));
         let frame = body.frame;
         let (sets, names) = set::read(root.table_or_empty("sets"), frame);
-        let material = root
-            .required("material")
-            .and_then(|item| material::read(item.table()?, &body, &names));
+        let material = root.required("material").and_then(|item| item.table());
+        let (material, surface) = match &body.surface {
+            Some(read) => (
+                Some(surface::no_bonds()),
+                surface_of(&root, read, material, frame, &names).map(Some),
+            ),
+            None => {
+                root.forbid(
+                    "geodesics",
+                    "only surfaces (shape = \"icosphere\", \"torus\" …) have distances along them",
+                );
+                let read = material.and_then(|table| material::read(table, &body, &names));
+                (read, Some(None))
+            }
+        };
         let cracks = each(&root, "crack", |table| crack::read(table, frame));
         let initial = each(&root, "initial", |table| {
             conditions::initial(table, frame.dimension, &names)
@@ -135,6 +151,7 @@ impl Deck {
             title: title?,
             body: body.body?,
             material: material?,
+            surface: surface?,
             sets: sets?,
             cracks: cracks?,
             initial: initial?,
@@ -148,6 +165,27 @@ impl Deck {
             record: Record::default(),
         })
     }
+}
+
+/// What is said of a surface outside `[body]`.
+fn surface_of(
+    root: &Table<'_>,
+    read: &SurfaceRead,
+    material: Option<Table<'_>>,
+    frame: Frame,
+    names: &SetNames,
+) -> Option<SurfaceDeck> {
+    root.forbid("crack", "surfaces have no pre-cracks");
+    let method = root.table_or_empty("geodesics").and_then(surface::method);
+    let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
+    Some(SurfaceDeck {
+        shape: read.shape?,
+        areas: read.areas?,
+        material,
+        no_fail,
+        inclusions,
+        method: method?,
+    })
 }
 
 fn each<'a, T>(

@@ -135,9 +135,12 @@
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
 //! safety = 0.95                          # default; only with "auto"
-//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa
+//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, newmark, discrete-gradient, rk3-mts, rk4-mts, respa
 //! # rk3, rk3-mts: alpha = 0.75
 //! # dormand-prince: tolerance = 1e-6, of its own sub-steps within dt, which must be given
+//! # newmark: beta = 0.25, gamma = 0.5; tolerance = 1e-7 (change of the velocity, m/s), norm = "l2" (default) | "area-weighted" | "max", iterations = 50;
+//! #   solver = "fixed-point" (default: P-(EC)^k) | "anderson" (depth = 4) | "newton-krylov" (any step)
+//! # discrete-gradient: conserves energy for any elastic forces and step; tolerance = 1e-10, of the energy; dt must be given
 //! # rk3-mts, rk4-mts, respa: two time steps, `dt` and `dt`/`ratio`, the smaller one for
 //! # ratio = 4
 //! # fine = ["notch", "inclusion"]        # these sets, which may not overlap; or
@@ -165,6 +168,40 @@
 //! `layer = { side, depth }` (side −x, +x, …, +z of the body's bounding box; `cells` counts spacings instead), `polygon = { corners = [[x, y], …] }`,
 //! `union = [ … ]`, `intersection = [ … ]`, `complement = { … }`.
 //!
+//! # Surfaces
+//! A body may be a closed surface of triangles. Its points are the vertices, with areas in place of volumes: densities are per area, forces are tractions.
+//! ```toml
+//! [body]
+//! shape = "icosphere"                    # level, radius; or
+//! # "uv-sphere" (segments, rings, radius) | "ellipsoid" (level, half_axes) | "torus" (major_radius, minor_radius, around, across) |
+//! # "capsule" (radius, length, segments)
+//! level = 4                              # halvings of the icosahedron's edges
+//! radius = "1 m"
+//! areas = "barycentric"                  # default; or mixed-voronoi, or one area for every vertex
+//!
+//! [geodesics]
+//! method = "exact"                       # default; or edge, edge-diagonals, steiner(1) to steiner(32)
+//!
+//! [material]
+//! model = "power"                        # default, the only one: κ |η|^(p−2) η / d^(2+αp)
+//! density = "1 kg/m2"
+//! alpha = 0.5                            # between 0 and 1
+//! p = 3                                  # at least 2
+//! kappa = 1                              # default; SI units, which depend on p and α
+//! horizon = "0.5 m"                      # along the surface
+//! bond = "displacement"                  # default; or chord: indifferent to rigid motions
+//! self_cell = false                      # default; true, for p = 2: adds the integral over the point's own cell
+//! # critical_stretch, no_fail, [[material.inclusion]] as for other bodies; a bond breaks beyond |η|/d
+//!
+//! [[initial]]                            # random_velocity is for all bodies
+//! random_velocity = { radius = "0.1 m/s", seed = 1 }   # uniform in the ball, added to `velocity`; generator = "splitmix64" is the default
+//!
+//! [[load]]
+//! set = "north"
+//! traction = [0, 0, "1 mPa"]             # on the area of each vertex
+//! ```
+//! Cracks, body forces and sets in spacings belong to grids. `[[output.picture]]` takes `view = [x, y, z]`, the direction a body in space is seen from.
+//!
 //! # Overrides
 //! `key=value` changes the document before it is read. The key is a dotted path with indices from zero (`crack.0.ends`, `load.0.traction`); the value is TOML
 //! if it parses as such, else a string, so that `time.dt=25 ns` needs no quotes. A key replaces the same key under another name and those
@@ -187,6 +224,7 @@ mod finding;
 mod influence;
 mod material;
 mod nearest;
+mod newmark;
 mod output;
 mod overrides;
 mod quantity;
@@ -195,6 +233,7 @@ mod region;
 mod scheme;
 mod set;
 mod source;
+mod surface;
 mod time;
 mod units;
 mod vocabulary;
@@ -204,7 +243,7 @@ pub use boundary::{BoundaryCondition, HistoryForm};
 pub use build::{Model, Sets};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
-pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace};
+pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
 pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
@@ -216,4 +255,5 @@ pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, NamedSet};
 pub use source::Location;
+pub use surface::{SurfaceDeck, SurfaceShape, VertexAreas};
 pub use time::{Time, TimeStep};

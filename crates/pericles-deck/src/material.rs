@@ -113,7 +113,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
     })
 }
 
-fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> {
+pub(crate) fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> {
     let set = table.required("set").and_then(|item| sets.reference(&item));
     let stiffness = table
         .required("stiffness")

@@ -1,6 +1,7 @@
 //! `[output]` and `[checkpoint]`: what is written, and when.
 
 use pericles::observe::{Field, Schedule};
+use pericles::space::Point;
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -50,6 +51,8 @@ pub struct Picture {
     pub scale: f64,
     /// Values at the ends of the colour bar; those of the field if none.
     pub range: Option<[f64; 2]>,
+    /// The direction from which a body in space is seen; if none, from the front right and above.
+    pub view: Option<Point>,
     /// When it is drawn.
     pub schedule: Schedule,
 }
@@ -191,6 +194,24 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
     });
     let quantity = field.map_or(Quantity::Number, |(field, _)| quantity(field));
     let range = table.maybe("range", |item| range(&item, quantity));
+    let view = if dimension == Some(3) {
+        table.maybe("view", |item| {
+            let view = item.vector(Quantity::Number, Some(3))?;
+            if view == [0.0; 3] {
+                item.out_of_range("a direction that is not zero");
+                return None;
+            }
+            Some(view)
+        })
+    } else {
+        if dimension.is_some() {
+            table.forbid(
+                "view",
+                "only bodies in three dimensions are seen from somewhere",
+            );
+        }
+        Some(None)
+    };
     let schedule = schedule(&table, Schedule::Count(4));
     table.finish();
     let (field, component) = field?;
@@ -199,6 +220,7 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         component,
         scale: scale?,
         range: range?,
+        view: view?,
         schedule: schedule?,
     })
 }

@@ -1,7 +1,8 @@
 //! The scheme of `[time]` and its parameters.
 
-use pericles::time::{Follow, Interpolant, Predictor};
+use pericles::time::{Follow, Interpolant, NewmarkOptions, Predictor};
 
+use crate::newmark;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
@@ -40,6 +41,13 @@ pub enum Scheme {
         fine: FineStep,
         /// How the two talk.
         interface: Interface,
+    },
+    /// Newmark's method.
+    Newmark(NewmarkOptions),
+    /// Discrete gradients, which conserve energy.
+    DiscreteGradient {
+        /// Relative error of the energy in a step.
+        tolerance: f64,
     },
     /// r-RESPA.
     Respa {
@@ -84,6 +92,8 @@ enum Kind {
     Rk3Mts,
     Rk4Mts,
     Respa,
+    Newmark,
+    DiscreteGradient,
 }
 
 pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
@@ -98,6 +108,8 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             ("rk3-mts", Kind::Rk3Mts),
             ("rk4-mts", Kind::Rk4Mts),
             ("respa", Kind::Respa),
+            ("newmark", Kind::Newmark),
+            ("discrete-gradient", Kind::DiscreteGradient),
         ],
     );
     let Some(kind) = kind else {
@@ -110,7 +122,10 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             "adaptive",
             "predictor",
             "interpolant",
-        ] {
+        ]
+        .into_iter()
+        .chain(newmark::KEYS)
+        {
             table.optional(key);
         }
         return None;
@@ -122,12 +137,23 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             Some(f64::NAN)
         }
     };
+    let newmark = if kind == Kind::Newmark {
+        newmark::read(table).map(Some)
+    } else {
+        for key in newmark::KEYS {
+            table.forbid(key, "it belongs to scheme = \"newmark\"");
+        }
+        Some(None)
+    };
     let tolerance = match kind {
         Kind::DormandPrince => tolerance(table),
+        Kind::DiscreteGradient => energy_tolerance(table),
+        // Its own, a velocity.
+        Kind::Newmark => Some(f64::NAN),
         _ => {
             table.forbid(
                 "tolerance",
-                "a tolerance belongs to scheme = \"dormand-prince\"",
+                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\" or \"discrete-gradient\"",
             );
             Some(f64::NAN)
         }
@@ -153,6 +179,9 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         Some(None)
     };
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
+    if let Some(options) = newmark? {
+        return Some(Scheme::Newmark(options));
+    }
     Some(match (kind, fine, interface) {
         (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
             alpha,
@@ -164,6 +193,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         (Kind::Rk3, ..) => Scheme::RungeKutta3 { alpha },
         (Kind::Rk4, ..) => Scheme::RungeKutta4,
         (Kind::DormandPrince, ..) => Scheme::DormandPrince { tolerance },
+        (Kind::DiscreteGradient, ..) => Scheme::DiscreteGradient { tolerance },
         _ => Scheme::VelocityVerlet,
     })
 }
@@ -187,6 +217,17 @@ fn tolerance(table: &Table<'_>) -> Option<f64> {
             Quantity::Number,
             "a number above 0 and below 1",
             |tolerance| tolerance > 0.0 && tolerance < 1.0,
+        )
+    })
+}
+
+fn energy_tolerance(table: &Table<'_>) -> Option<f64> {
+    const TOLERANCE: f64 = 1e-10;
+    table.or("tolerance", TOLERANCE, |item| {
+        item.within(
+            Quantity::Number,
+            "a number from 1e-14 to 0.01",
+            |tolerance| (1e-14..1e-2).contains(&tolerance),
         )
     })
 }

@@ -113,11 +113,13 @@ fn conditions_time_and_output_arrive() {
                 set: "all".into(),
                 displacement: None,
                 velocity: Some([0.0, 1.0, 0.0].map(Into::into)),
+                random_velocity: None,
             },
             Initial {
                 set: "top".into(),
                 displacement: Some([1e-6, 0.0, 0.0].map(Into::into)),
                 velocity: Some([0.0, 20.0, 0.0].map(Into::into)),
+                random_velocity: None,
             }
         ]
     );
@@ -193,6 +195,7 @@ fn conditions_time_and_output_arrive() {
         component: None,
         scale: 1.0,
         range: Some([0.0, 1.0]),
+        view: None,
         schedule: Schedule::Count(2),
     };
     let uplift = Picture {
@@ -200,6 +203,7 @@ fn conditions_time_and_output_arrive() {
         component: Some(1),
         scale: 10.0,
         range: Some([-1e-3, 1e-3]),
+        view: None,
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(

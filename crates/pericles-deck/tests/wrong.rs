@@ -172,6 +172,67 @@ const WRONG: &[Wrong] = &[
     wrong("shape = \"plate\"", "shape = \"plate\"\nshape = \"bar\"", (5, 1), "shape", &["duplicate key"]),
 ];
 
+/// A right deck of a surface.
+const SURFACE: &str = r#"[body]
+shape = "icosphere"
+level = 2
+radius = 1
+
+[geodesics]
+method = "edge"
+
+[material]
+model = "power"
+density = "1 kg/m2"
+alpha = 0.5
+p = 3
+horizon = 0.8
+
+[[initial]]
+random_velocity = { radius = 0.1, seed = 3 }
+
+[[load]]
+set = "all"
+traction = [0, 0, 1]
+
+[time]
+end = 1
+dt = 0.1
+scheme = "newmark"
+"#;
+
+#[rustfmt::skip]
+const WRONG_SURFACES: &[Wrong] = &[
+    wrong("\"icosphere\"", "\"icosfere\"", (2, 9), "\"icosfere\"", &["unknown shape", "did you mean `icosphere`?", "torus"]),
+    wrong("radius = 1\n", "radius = 0\n", (4, 10), "0", &["a positive number"]),
+    wrong("level = 2", "level = 30", (1, 1), "[body]", &["vertices"]),
+    wrong("radius = 1\n", "radius = 1\nspacing = 1\n", (5, 1), "spacing", &["unknown key `spacing`", "`areas`"]),
+    wrong("radius = 1\n", "radius = 1\nareas = \"barycentre\"\n", (5, 9), "\"barycentre\"", &["did you mean `barycentric`?"]),
+    wrong("\"edge\"", "\"edges\"", (7, 10), "\"edges\"", &["exact, edge, edge-diagonals, steiner(1)"]),
+    wrong("alpha = 0.5", "alpha = 1", (12, 9), "1", &["above 0 and below 1"]),
+    wrong("alpha = 0.5", "alpha = 0", (12, 9), "0", &["above 0 and below 1"]),
+    wrong("alpha = 0.5\n", "", (9, 1), "[material]", &["[material] lacks `alpha`"]),
+    wrong("p = 3", "p = 1.5", (13, 5), "1.5", &["at least 2"]),
+    wrong("horizon = 0.8", "horizon = 0.01", (14, 11), "0.01", &["mean distance of vertices"]),
+    wrong("\"power\"", "\"linear\"", (10, 9), "\"linear\"", &["unknown model", "power"]),
+    wrong("horizon = 0.8", "horizon = 0.8\nself_cell = true", (15, 13), "true", &["p = 2"]),
+    wrong("horizon = 0.8", "horizon = 0.8\nbond = \"rod\"", (15, 8), "\"rod\"", &["\"displacement\"", "\"chord\""]),
+    wrong("horizon = 0.8", "horizon = 0.8\nyoungs_modulus = 1", (15, 1), "youngs_modulus", &["unknown key"]),
+    wrong("\"1 kg/m2\"", "\"1 kg/m3\"", (11, 11), "\"1 kg/m3\"", &["a mass per area"]),
+    wrong("radius = 0.1, seed", "radius = -1, seed", (17, 31), "-1", &["a positive number"]),
+    wrong("seed = 3", "seed = 3, generator = \"mt19937\"", (17, 57), "\"mt19937\"", &["splitmix64"]),
+    wrong("[[load]]", "[[crack]]\nsection = 1\n[[load]]", (19, 3), "crack", &["no pre-cracks"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nbeta = 0.6", (27, 8), "0.6", &["from 0 to 0.5"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\ngamma = 0.4", (27, 9), "0.4", &["from 0.5 to 1"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\ndepth = 3", (27, 1), "depth", &["anderson"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nsolver = \"anderson\"\ndepth = 9", (28, 9), "9", &["from 1 to 8"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nbeta = 0\nsolver = \"newton-krylov\"", (27, 8), "0", &["above 0"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nnorm = \"l1\"", (27, 8), "\"l1\"", &["\"l2\"", "area-weighted"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\niterations = 0", (27, 14), "0", &["at least 1"]),
+    wrong("scheme = \"newmark\"", "scheme = \"rk4\"\nsolver = \"anderson\"", (27, 1), "solver", &["newmark"]),
+    wrong("scheme = \"newmark\"", "scheme = \"discrete-gradient\"\ntolerance = 1", (27, 13), "1", &["1e-14"]),
+];
+
 fn refusal(text: &str) -> DeckError {
     match Deck::parse(text, "plate.toml", &[]) {
         Ok(_) => panic!("this deck is wrong:\n{text}"),
@@ -186,14 +247,36 @@ fn the_right_deck_is_right() {
 
 #[test]
 fn every_wrong_deck_is_explained() {
-    for case in WRONG {
+    explained(RIGHT, WRONG);
+}
+
+#[test]
+fn every_wrong_deck_of_a_surface_is_explained() {
+    Deck::parse(SURFACE, "plate.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
+    explained(SURFACE, WRONG_SURFACES);
+}
+
+#[test]
+fn what_surfaces_do_not_have_is_refused_when_they_are_built() {
+    for (replace, by, at, says) in [
+        ("traction", "body_force", "plate.toml:21:", "`traction`"),
+        ("dt = 0.1\n", "", "plate.toml:23:", "give dt"),
+    ] {
+        let deck = Deck::parse(&SURFACE.replace(replace, by), "plate.toml", &[]).unwrap();
+        let message = deck.build().map(|_| ()).unwrap_err().to_string();
+        assert!(message.contains(at) && message.contains(says), "{message}");
+    }
+}
+
+fn explained(right: &str, wrong: &[Wrong]) {
+    for case in wrong {
         assert_eq!(
-            RIGHT.matches(case.replace).count(),
+            right.matches(case.replace).count(),
             1,
             "`{}` must be unique",
             case.replace
         );
-        let error = refusal(&RIGHT.replace(case.replace, case.by));
+        let error = refusal(&right.replace(case.replace, case.by));
         let message = error.to_string();
         let found = error.problems().iter().any(|problem| {
             let at = problem.location();

@@ -143,6 +143,7 @@ impl Simulation {
             .integrator
             .energy_correction(&self.system, &self.state, self.dt);
         Snapshot::new(&self.system, &self.state, self.start, scheme)
+            .with_inner(self.integrator.inner_iterations())
     }
 
     /// Runs to the end, or until `control` says stop; `control` is asked after every step.

@@ -9,6 +9,7 @@
 mod absorbing_boundaries;
 mod dispersion;
 mod fracture;
+mod manifolds;
 mod multi_time_step;
 mod row;
 mod table;
@@ -39,10 +40,11 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 4] = [
+const TOPICS: [&[Study]; 5] = [
     &absorbing_boundaries::STUDIES,
     &dispersion::STUDIES,
     &fracture::STUDIES,
+    &manifolds::STUDIES,
     &multi_time_step::STUDIES,
 ];
 

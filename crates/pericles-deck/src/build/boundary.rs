@@ -10,6 +10,7 @@ use pericles::boundary::absorbing::{
 use pericles::cache::Cache;
 use pericles::time::{Integrator, State};
 
+use super::Sets;
 use super::step::Steps;
 use crate::boundary::{BoundaryCondition, HistoryForm};
 use crate::deck::Deck;
@@ -29,9 +30,13 @@ impl Deck {
         &self,
         system: &System,
         state: &State,
-        no_fail: &[u32],
+        sets: &Sets,
         integrator: &dyn Integrator,
     ) -> Result<Vec<End>, DeckError> {
+        if self.boundaries.is_empty() {
+            return Ok(Vec::new());
+        }
+        let no_fail = self.no_fail(sets)?;
         let mut ends = Vec::new();
         let mut sides: Vec<Side> = Vec::new();
         for (k, boundary) in self.boundaries.iter().enumerate() {
@@ -48,7 +53,7 @@ impl Deck {
                 return Err(self.at("time.scheme", error.into()));
             }
             sides.push(side);
-            let layer = OuterLayer::of(system, side, state, no_fail).map_err(refuse)?;
+            let layer = OuterLayer::of(system, side, state, &no_fail).map_err(refuse)?;
             ends.push(End {
                 path,
                 layer,

@@ -2,6 +2,7 @@
 
 use pericles::System;
 use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
+use pericles::noise::uniform_in_ball;
 use pericles::observe::Probe as PointProbe;
 use pericles::space::{Point, PointCloud};
 use pericles::time::State;
@@ -9,7 +10,7 @@ use pericles::time::State;
 use super::{Sets, area};
 use crate::caution::Caution;
 use crate::component::VectorField;
-use crate::conditions::{LoadAmplitude, ProbePlace};
+use crate::conditions::{LoadAmplitude, ProbePlace, RandomVelocity};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -44,8 +45,35 @@ impl Deck {
                     }
                 }
             }
+            if let Some(random) = initial.random_velocity {
+                if initial.velocity.is_none() {
+                    for c in 0..cloud.dimension() {
+                        for &i in points {
+                            state.v[c * n + i as usize] = 0.0;
+                        }
+                    }
+                }
+                Self::add_random(random, cloud, points, &mut state.v);
+            }
         }
         Ok(state)
+    }
+
+    /// The whole body is drawn, in the user's order, whatever the set: a point's velocity depends on seed and number only.
+    fn add_random(
+        random: RandomVelocity,
+        cloud: &PointCloud,
+        points: &[u32],
+        velocity: &mut [f64],
+    ) {
+        let n = cloud.len();
+        let drawn = uniform_in_ball(cloud.dimension(), random.radius, random.seed, n);
+        for &i in points {
+            let vector = drawn[cloud.user_number(i as usize)];
+            for c in 0..cloud.dimension() {
+                velocity[c * n + i as usize] += vector[c];
+            }
+        }
     }
 
     pub(super) fn add_loads(
@@ -59,6 +87,10 @@ impl Deck {
             let points = self.members(sets, &load.set, &path)?.clone();
             let (field, factor) = match &load.amplitude {
                 LoadAmplitude::BodyForce(density) => (density, 1.0),
+                // On a surface a traction is the force per area itself.
+                LoadAmplitude::Traction { traction, .. } if self.surface.is_some() => {
+                    (traction, 1.0)
+                }
                 LoadAmplitude::Traction { traction, area } => {
                     let area = match area {
                         Some(area) => *area,

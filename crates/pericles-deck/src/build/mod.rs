@@ -3,10 +3,12 @@
 mod area;
 mod boundary;
 mod conditions;
+mod content;
 mod fields;
 mod graded;
 mod scheme;
 mod step;
+mod surface;
 
 use std::sync::Arc;
 
@@ -14,6 +16,7 @@ use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
+use pericles::space::surface::Surface;
 use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
@@ -24,8 +27,10 @@ use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
 use crate::finding::{Finding, Subject, Warning};
+use crate::material::Inclusion;
 use crate::reader::Path;
 use crate::set::ALL;
+use crate::surface::SurfaceDeck;
 
 /// Sets of points by name.
 pub type Sets = Vec<(String, PointSet)>;
@@ -36,7 +41,9 @@ pub struct Model {
     pub cloud: Arc<PointCloud>,
     /// The sets by name, "all" first.
     pub sets: Sets,
-    /// The constants of the bonds.
+    /// The surface, if the body is one.
+    pub surface: Option<Arc<Surface>>,
+    /// The constants of the bonds; not numbers for a surface.
     pub constants: BondConstants,
     /// How the bonds are kept.
     pub form: BondForm,
@@ -60,6 +67,17 @@ pub struct Model {
     pub probes: Vec<PointProbe>,
     /// What is odd.
     pub warnings: Vec<Warning>,
+}
+
+/// What differs between bodies on a grid and surfaces.
+struct Assembled {
+    cloud: Arc<PointCloud>,
+    surface: Option<Arc<Surface>>,
+    sets: Sets,
+    constants: BondConstants,
+    bonds: AssembledBonds,
+    cracks: Vec<TrackedCrack>,
+    density: f64,
 }
 
 impl Model {
@@ -98,35 +116,20 @@ impl Deck {
     /// # Errors
     /// As [`Deck::build`].
     pub fn build_with(&self, cache: &dyn Cache) -> Result<Model, DeckError> {
-        let GradedCloud {
-            cloud,
-            ratios,
-            grid_of_point,
-        } = self.points()?;
-        let cloud = Arc::new(cloud);
-        let sets = self.select(&cloud)?;
-        let material = &self.material.bonds;
-        let constants = material
-            .constants(&cloud, self.body.state)
-            .map_err(|error| self.at_material(error))?;
         let mut warnings = Vec::new();
-        let no_fail = self.no_fail(&sets)?;
-        let stiffness = self.stiffness(&cloud, &sets)?;
-        let body = BondBody {
-            cloud: &cloud,
-            material,
-            constants: &constants,
-            cracks: &[],
-            no_fail: &no_fail,
-            stiffness: &stiffness,
-            damage: self.material.damage,
+        let Assembled {
+            cloud,
+            surface,
+            sets,
+            constants,
+            bonds,
+            cracks,
+            density,
+        } = match &self.surface {
+            Some(deck) => self.assemble_surface(deck, cache)?,
+            None => self.assemble_grid(&mut warnings)?,
         };
-        let grids = Grids {
-            ratios: &ratios,
-            of_point: &grid_of_point,
-        };
-        let (bonds, cracks) = self.bonds(body, grids, &mut warnings)?;
-        let density = PointScalar::Uniform(material.density);
+        let density = PointScalar::Uniform(density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
         let state = self.initial_state(&cloud, &sets)?;
@@ -134,13 +137,14 @@ impl Deck {
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
-        let ends = self.ends(&system, &state, &no_fail, &*integrator)?;
+        let ends = self.ends(&system, &state, &sets, &*integrator)?;
         let exterior = boundary::exterior_frequency(&ends);
         let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
         self.add_ends(&mut system, ends, &steps, cache)?;
         Ok(Model {
             cloud,
+            surface,
             sets,
             constants,
             form: bonds.form,
@@ -154,6 +158,76 @@ impl Deck {
             steps: steps.count,
             probes,
             warnings,
+        })
+    }
+
+    fn assemble_grid(&self, warnings: &mut Vec<Warning>) -> Result<Assembled, DeckError> {
+        let GradedCloud {
+            cloud,
+            ratios,
+            grid_of_point,
+        } = self.points()?;
+        let cloud = Arc::new(cloud);
+        let sets = self.select(&cloud)?;
+        let material = &self.material.bonds;
+        let constants = material
+            .constants(&cloud, self.body.state)
+            .map_err(|error| self.at_material(error))?;
+        let no_fail = self.union_of(&sets, &self.material.no_fail)?;
+        let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
+        let body = BondBody {
+            cloud: &cloud,
+            material,
+            constants: &constants,
+            cracks: &[],
+            no_fail: &no_fail,
+            stiffness: &stiffness,
+            damage: self.material.damage,
+        };
+        let grids = Grids {
+            ratios: &ratios,
+            of_point: &grid_of_point,
+        };
+        let (bonds, cracks) = self.bonds(body, grids, warnings)?;
+        Ok(Assembled {
+            surface: None,
+            sets,
+            bonds,
+            cracks,
+            density: material.density,
+            constants,
+            cloud,
+        })
+    }
+
+    fn assemble_surface(
+        &self,
+        deck: &SurfaceDeck,
+        cache: &dyn Cache,
+    ) -> Result<Assembled, DeckError> {
+        let (surface, cloud) = self.surface_points(deck)?;
+        let cloud = Arc::new(cloud);
+        let sets = self.select(&cloud)?;
+        self.refuse_body_forces()?;
+        let operator = self.surface_operator(deck, &surface, &cloud, &sets, cache)?;
+        Ok(Assembled {
+            surface: Some(Arc::new(surface)),
+            sets,
+            bonds: AssembledBonds {
+                operator,
+                cuts: Vec::new(),
+                form: BondForm::List,
+            },
+            cracks: Vec::new(),
+            density: deck.material.density,
+            constants: BondConstants {
+                young: f64::NAN,
+                micromodulus: f64::NAN,
+                critical_stretch: deck.material.critical_stretch,
+                fracture_energy: f64::NAN,
+                stiffness_error: f64::NAN,
+            },
+            cloud,
         })
     }
 
@@ -216,9 +290,10 @@ impl Deck {
         }
     }
 
-    fn no_fail(&self, sets: &Sets) -> Result<PointSet, DeckError> {
+    /// The points of the sets whose bonds never break.
+    fn union_of(&self, sets: &Sets, names: &[String]) -> Result<PointSet, DeckError> {
         let mut points = PointSet::new();
-        for name in &self.material.no_fail {
+        for name in names {
             points.extend(self.members(sets, name, &"material.no_fail".into())?);
         }
         points.sort_unstable();
@@ -227,8 +302,12 @@ impl Deck {
     }
 
     /// Stiffness of each point over the material's; empty without inclusions.
-    fn stiffness(&self, cloud: &PointCloud, sets: &Sets) -> Result<Vec<f64>, DeckError> {
-        let inclusions = &self.material.inclusions;
+    fn stiffness_of(
+        &self,
+        inclusions: &[Inclusion],
+        cloud: &PointCloud,
+        sets: &Sets,
+    ) -> Result<Vec<f64>, DeckError> {
         let mut stiffness = vec![
             1.0;
             if inclusions.is_empty() {

@@ -1,8 +1,8 @@
 //! The integrator of a model.
 
 use pericles::time::{
-    AdaptiveRungeKutta, Fine, Integrator, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
-    RungeKutta, Tableau, VelocityVerlet,
+    AdaptiveRungeKutta, DiscreteGradient, Fine, Integrator, MultiTimeStep, MultiTimeStepOptions,
+    Newmark, Predictor, Respa, RungeKutta, Tableau, VelocityVerlet,
 };
 use pericles::{PericlesError, System};
 
@@ -43,6 +43,12 @@ impl Deck {
             Scheme::MultiTimeStep4 { fine, interface } => {
                 self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
             }
+            Scheme::Newmark(options) => {
+                Box::new(Newmark::new(*options, system).map_err(|error| self.at_scheme(error))?)
+            }
+            Scheme::DiscreteGradient { tolerance } => Box::new(
+                DiscreteGradient::new(*tolerance, system).map_err(|error| self.at_scheme(error))?,
+            ),
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
                 Box::new(

@@ -2,9 +2,11 @@
 
 use std::borrow::Cow;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
+use pericles::space::surface::Surface;
 use pericles::{Archive, Result, Saved, Values};
 
 use super::table::misfit;
@@ -20,6 +22,7 @@ pub struct FieldSeries {
     folder: PathBuf,
     single_precision: bool,
     series: Option<PvdSeries>,
+    surface: Option<Arc<Surface>>,
 }
 
 impl FieldSeries {
@@ -29,7 +32,14 @@ impl FieldSeries {
             folder: folder.into(),
             single_precision,
             series: None,
+            surface: None,
         }
+    }
+
+    /// The same for a surface, whose triangles become cells; its files hold the kinetic energy density besides.
+    pub fn of_surface(mut self, surface: Arc<Surface>) -> Self {
+        self.surface = Some(surface);
+        self
     }
 
     fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
@@ -49,6 +59,25 @@ impl FieldSeries {
                 VtkField::scalar(field.name(), array)
             };
             file = file.field(if self.single_precision {
+                column.in_single_precision()
+            } else {
+                column
+            });
+        }
+        let triangles: Vec<[u32; 3]>;
+        let kinetic: Vec<f64>;
+        if let Some(surface) = &self.surface {
+            let number = |vertex: u32| surface.user_number(vertex as usize) as u32;
+            triangles = surface
+                .triangles()
+                .iter()
+                .map(|triangle| triangle.map(number))
+                .collect();
+            kinetic = numbering
+                .apply(&snapshot.kinetic_energy_density())
+                .into_owned();
+            let column = VtkField::scalar("Kinetic_Energy_Density", &kinetic);
+            file = file.triangles(&triangles).field(if self.single_precision {
                 column.in_single_precision()
             } else {
                 column

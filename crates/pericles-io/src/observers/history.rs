@@ -16,11 +16,21 @@ use crate::csv::{Cell, Column};
 pub struct History {
     table: ObserverTable,
     dimension: usize,
+    inner: bool,
 }
 
 impl History {
     /// A history of a body of this dimension.
     pub fn new(path: impl Into<PathBuf>, dimension: usize) -> Self {
+        Self::with_columns(path.into(), dimension, false)
+    }
+
+    /// The same for a scheme with inner iterations, which adds two columns: the iterations of the last step, and the last change of the velocity.
+    pub fn with_inner_iterations(path: impl Into<PathBuf>, dimension: usize) -> Self {
+        Self::with_columns(path.into(), dimension, true)
+    }
+
+    fn with_columns(path: PathBuf, dimension: usize, inner: bool) -> Self {
         let mut columns = step_and_time();
         for name in [
             "kinetic_energy",
@@ -36,9 +46,14 @@ impl History {
             columns.push(Column::real(format!("momentum_{axis}"), "kg m/s"));
         }
         columns.push(Column::integer("broken_bonds"));
+        if inner {
+            columns.push(Column::integer("inner_iterations"));
+            columns.push(Column::real("inner_change", "m/s"));
+        }
         Self {
-            table: ObserverTable::new(path.into(), "observer/history", columns),
+            table: ObserverTable::new(path, "observer/history", columns),
             dimension,
+            inner,
         }
     }
 }
@@ -60,6 +75,11 @@ impl Observer for History {
         let momentum = system.momentum(&state.v);
         row.extend(momentum[..self.dimension].iter().map(|&p| Cell::Real(p)));
         row.push(whole(system.operator().broken_bonds()));
+        if self.inner {
+            let inner = snapshot.inner_iterations().unwrap_or_default();
+            row.push(whole(inner.last));
+            row.push(inner.change.into());
+        }
         Ok(self.table.append(&row)?)
     }
 }

@@ -7,6 +7,7 @@
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
 //! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
+//! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, concentrations of energy |
 //! | [`Pictures`] | `pictures/Damage-000000.png` … | a field as a picture |
 //!
 //! What they write depends on the states they are shown alone: no clock, path or number of threads enters a file. Each remembers in a checkpoint how
@@ -53,6 +54,7 @@ mod history;
 mod pictures;
 mod probes;
 mod reactions;
+mod surface;
 mod table;
 
 pub use cracks::Cracks;
@@ -61,6 +63,7 @@ pub use history::History;
 pub use pictures::{PictureOf, Pictures};
 pub use probes::Probes;
 pub use reactions::Reactions;
+pub use surface::SurfaceCourse;
 
 #[cfg(test)]
 mod tests;

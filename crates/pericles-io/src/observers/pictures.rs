@@ -2,8 +2,10 @@
 
 use std::borrow::Cow;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
+use pericles::space::surface::Surface;
 use pericles::{Archive, Result, Saved, Values};
 
 use super::table::AXES;
@@ -23,6 +25,10 @@ pub struct PictureOf {
     pub range: Option<[f64; 2]>,
     /// The line above the picture.
     pub title: String,
+    /// The direction from which a body in space is seen; if none, from the front right and above.
+    pub view: Option<[f64; 3]>,
+    /// The surface whose vertices the points are: its triangles are drawn.
+    pub surface: Option<Arc<Surface>>,
 }
 
 impl PictureOf {
@@ -34,6 +40,8 @@ impl PictureOf {
             scale: 1.0,
             range: None,
             title: String::new(),
+            view: None,
+            surface: None,
         }
     }
 
@@ -65,13 +73,24 @@ impl PictureOf {
         } else {
             ColourMap::Viridis
         };
+        // On a surface densities are per area.
+        let unit = match &self.surface {
+            Some(_) => self.field.unit().replace("/m³", "/m²"),
+            None => self.field.unit().to_owned(),
+        };
         let mut picture = FieldPicture::new(cloud.dimension(), cloud.positions(), &values, cell)
-            .label(self.name(), self.field.unit())
+            .label(self.name(), unit)
             .displacement(&state.u, self.scale)
             .title(&self.title)
             .time(state.t)
             .colours(colours);
         let whole = (self.field == Field::Damage).then_some([0.0, 1.0]);
+        if let Some(surface) = &self.surface {
+            picture = picture.triangles(surface.triangles());
+        }
+        if let Some(view) = self.view {
+            picture = picture.view(view);
+        }
         if let Some([low, high]) = self.range.or(whole) {
             picture = picture.range(low, high);
         }

@@ -39,6 +39,7 @@ pub struct FieldPicture<'a> {
     dimension: usize,
     positions: &'a [f64],
     values: &'a [f64],
+    triangles: &'a [[u32; 3]],
     cell: CellSize<'a>,
     displacement: Option<(&'a [f64], f64)>,
     name: String,
@@ -60,11 +61,33 @@ pub(super) struct Drawn {
     pub(super) colour: Rgb,
 }
 
+/// A triangle of a surface as it is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facet {
+    pub(super) corners: [[f64; 3]; 3],
+    /// Sums of the normals of the triangles that meet in each corner.
+    pub(super) normals: [[f64; 3]; 3],
+    pub(super) values: [f64; 3],
+}
+
+/// Across a triangle, as long as twice its area.
+fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
+    let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
+    [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ]
+}
+
 /// What the plane and the solid picture have in common.
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) width: usize,
     pub(super) cells: Vec<Drawn>,
+    /// Triangles in place of cells.
+    pub(super) facets: Vec<Facet>,
     /// Opposite corners of the part that is shown.
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
@@ -85,6 +108,7 @@ impl<'a> FieldPicture<'a> {
             dimension,
             positions,
             values,
+            triangles: &[],
             cell,
             displacement: None,
             name: String::new(),
@@ -98,6 +122,12 @@ impl<'a> FieldPicture<'a> {
             view: [0.5, -1.0, 0.6],
             width: 1200,
         }
+    }
+
+    /// Draws triangles between the points, in three dimensions, in place of the points' cells: a shaded surface.
+    pub fn triangles(mut self, triangles: &'a [[u32; 3]]) -> Self {
+        self.triangles = triangles;
+        self
     }
 
     /// What the values are, and their SI unit; empty for a pure number.
@@ -169,7 +199,7 @@ impl<'a> FieldPicture<'a> {
             return self.along_the_bar().draw(path);
         }
         let scene = self.scene();
-        if scene.cells.is_empty() {
+        if scene.cells.is_empty() && scene.facets.is_empty() {
             return Err(IoError::Unsuitable {
                 path: path.to_path_buf(),
                 reason: "no point has a finite position".into(),
@@ -221,6 +251,11 @@ impl<'a> FieldPicture<'a> {
                     given,
                 });
             }
+        }
+        if self.triangles.iter().flatten().any(|&k| k as usize >= n) {
+            return Err(unsuitable(format!(
+                "triangles have corners beyond the {n} points"
+            )));
         }
         if let Some((low, high)) = self.window {
             let fits =
@@ -292,11 +327,13 @@ impl<'a> FieldPicture<'a> {
                 high[c] = high[c].max(middle[c] + half[c]);
             }
             let colour = bar.colour(value);
-            cells.push(Drawn {
-                middle,
-                half,
-                colour,
-            });
+            if self.triangles.is_empty() {
+                cells.push(Drawn {
+                    middle,
+                    half,
+                    colour,
+                });
+            }
         }
         let (low, high) = self.window.unwrap_or((low, high));
         let header = Header {
@@ -307,12 +344,44 @@ impl<'a> FieldPicture<'a> {
         Scene {
             width: self.width as usize,
             cells,
+            facets: self.facets(),
             low,
             high,
             bar,
             header,
             view: self.view,
         }
+    }
+
+    /// The triangles whose corners are all at finite places.
+    fn facets(&self) -> Vec<Facet> {
+        if self.triangles.is_empty() {
+            return Vec::new();
+        }
+        let places: Vec<[f64; 3]> = (0..self.values.len())
+            .map(|point| self.place(point))
+            .collect();
+        let corners = |triangle: [u32; 3]| triangle.map(|point| places[point as usize]);
+        let is_finite =
+            |triangle: &&[u32; 3]| corners(**triangle).iter().flatten().all(|x| x.is_finite());
+        let mut normals = vec![[0.0; 3]; places.len()];
+        for triangle in self.triangles.iter().filter(is_finite) {
+            let normal = normal(corners(*triangle));
+            for &point in triangle {
+                for c in 0..3 {
+                    normals[point as usize][c] += normal[c];
+                }
+            }
+        }
+        self.triangles
+            .iter()
+            .filter(is_finite)
+            .map(|triangle| Facet {
+                corners: corners(*triangle),
+                normals: triangle.map(|point| normals[point as usize]),
+                values: triangle.map(|point| self.values[point as usize]),
+            })
+            .collect()
     }
 
     fn stamp(&self) -> String {

@@ -105,6 +105,44 @@ impl Raster {
         }
     }
 
+    /// A triangle in space, (x, y) in pixels and the distance from the viewer; `colour` takes the shares of the three corners. A seam of half a pixel around it
+    /// keeps neighbours closed.
+    pub(super) fn triangle(&mut self, corners: [[f64; 3]; 3], colour: impl Fn([f64; 3]) -> Rgb) {
+        let fine = self.fine as f64;
+        let [a, b, c] = corners.map(|[x, y, depth]| [x * fine, y * fine, depth]);
+        let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+        // seen edge on: nothing to fill
+        if doubled.abs() < 1e-9 {
+            return;
+        }
+        let edge = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        // Half a pixel over the height above each corner's opposite edge.
+        let slack = [edge(b, c), edge(c, a), edge(a, b)].map(|edge| 0.5 * edge / doubled.abs());
+        let bounds = |k: usize| {
+            let values = [a[k], b[k], c[k]];
+            let low = values.into_iter().fold(f64::INFINITY, f64::min);
+            let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            (low - 1.0, high + 1.0)
+        };
+        let (left, right) = bounds(0);
+        let (top, bottom) = bounds(1);
+        let columns = Self::range(left, right, self.width);
+        for j in Self::range(top, bottom, self.height) {
+            let y = j as f64 + 0.5;
+            for i in columns.clone() {
+                let x = i as f64 + 0.5;
+                let area = |p: [f64; 3], q: [f64; 3]| {
+                    ((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)) / doubled
+                };
+                let shares = [area(b, c), area(c, a), area(a, b)];
+                if (0..3).all(|k| shares[k] >= -slack[k]) {
+                    let depth = shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2];
+                    self.put(i, j, depth as f32, colour(shares));
+                }
+            }
+        }
+    }
+
     /// Lays the picture on a bitmap, its corner at (left, top). What no cell covers stays as it was.
     pub(super) fn lay_on(&self, bitmap: &mut Bitmap, left: usize, top: usize) {
         let fine = self.fine;

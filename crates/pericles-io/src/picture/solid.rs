@@ -56,6 +56,20 @@ impl View {
         [dot(p, self.right), dot(p, self.up), dot(p, self.eye)]
     }
 
+    /// The light on a surface with this normal, from above the left shoulder; the side towards the eye is seen.
+    fn light_on(&self, normal: [f64; 3]) -> f64 {
+        /// The light where the lamp does not reach.
+        const AMBIENT: f64 = 0.6;
+        let lamp: [f64; 3] =
+            std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k]);
+        let size = (dot(normal, normal) * dot(lamp, lamp)).sqrt();
+        if size == 0.0 {
+            return 1.0;
+        }
+        let towards = dot(normal, lamp) * dot(normal, self.eye).signum() / size;
+        AMBIENT + (1.0 - AMBIENT) * towards.max(0.0)
+    }
+
     /// The light on the visible faces across the three axes, from above the left shoulder; the brightest has all of it.
     fn light(&self) -> [f64; 3] {
         let lamp: [f64; 3] =
@@ -143,6 +157,22 @@ pub(super) fn draw(scene: &Scene) -> Bitmap {
             face.middle[1] += 0.5 * height;
             raster.face(&face, shaded(cell.colour, light));
         }
+    }
+
+    for facet in &scene.facets {
+        let place = |p: [f64; 3]| -> [f64; 3] {
+            let [x, y, near] = view.project(p);
+            [
+                (x - middle[0]) * per_metre + 0.5 * area.width(),
+                (middle[1] - y) * per_metre + 0.5 * height,
+                -near,
+            ]
+        };
+        raster.triangle(facet.corners.map(place), |shares| {
+            let mix = |values: [f64; 3]| (0..3).map(|k| shares[k] * values[k]).sum::<f64>();
+            let normal = std::array::from_fn(|c| mix(facet.normals.map(|normal| normal[c])));
+            shaded(scene.bar.colour(mix(facet.values)), view.light_on(normal))
+        });
     }
 
     let arm = 3.0 * sizes.tick_text;

@@ -9,6 +9,8 @@ use crate::{IoError, write_atomically};
 
 /// The cell type of a single point in VTK.
 const VTK_VERTEX: u8 = 1;
+/// That of a triangle.
+const VTK_TRIANGLE: u8 = 5;
 
 /// Room for an offset: `offset="` + 20 digits of the largest u64 + `"`.
 const OFFSET_WIDTH: usize = 29;
@@ -146,6 +148,7 @@ pub struct VtuFile<'a> {
     positions: &'a [f64],
     time: f64,
     fields: Vec<VtkField<'a>>,
+    triangles: &'a [[u32; 3]],
 }
 
 impl<'a> VtuFile<'a> {
@@ -156,12 +159,19 @@ impl<'a> VtuFile<'a> {
             positions,
             time: 0.0,
             fields: Vec::new(),
+            triangles: &[],
         }
     }
 
     /// The time of the output in seconds.
     pub fn time(mut self, time: f64) -> Self {
         self.time = time;
+        self
+    }
+
+    /// Takes triangles between the points as cells, in place of the points themselves.
+    pub fn triangles(mut self, triangles: &'a [[u32; 3]]) -> Self {
+        self.triangles = triangles;
         self
     }
 
@@ -202,6 +212,16 @@ impl<'a> VtuFile<'a> {
                 given: self.positions.len(),
             });
         }
+        if let Some(corner) = self
+            .triangles
+            .iter()
+            .flatten()
+            .find(|&&corner| corner as usize >= points)
+        {
+            return Err(unsuitable(format!(
+                "a triangle has the corner {corner}, of {points} points"
+            )));
+        }
         for (number, field) in self.fields.iter().enumerate() {
             field.check(path, points)?;
             let name = field.name;
@@ -218,6 +238,19 @@ impl<'a> VtuFile<'a> {
     }
 
     fn write_into(&self, out: &mut (impl Write + Seek), points: usize) -> io::Result<()> {
+        let (corners, kind) = if self.triangles.is_empty() {
+            (1, VTK_VERTEX)
+        } else {
+            (3, VTK_TRIANGLE)
+        };
+        let cells = match self.triangles.len() {
+            0 => points,
+            triangles => triangles,
+        };
+        let corner = |k: usize| match self.triangles.get(k / 3) {
+            Some(triangle) => i64::from(triangle[k % 3]),
+            None => k as i64,
+        };
         // Places in the file where the offsets go, in the order of the appended arrays.
         let mut places = Vec::new();
         write!(
@@ -226,7 +259,7 @@ impl<'a> VtuFile<'a> {
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
              compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n\
              <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:?}</DataArray>\n</FieldData>\n\
-             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n<PointData>\n",
+             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<PointData>\n",
             self.time
         )?;
         for field in &self.fields {
@@ -260,11 +293,11 @@ impl<'a> VtuFile<'a> {
             interleaved(self.positions, points, k).to_le_bytes()
         })?;
         offsets.push(out.stream_position()? - start);
-        write_array(out, points, |i| (i as i64).to_le_bytes())?;
+        write_array(out, corners * cells, |k| corner(k).to_le_bytes())?;
         offsets.push(out.stream_position()? - start);
-        write_array(out, points, |i| (i as i64 + 1).to_le_bytes())?;
+        write_array(out, cells, |i| ((corners * (i + 1)) as i64).to_le_bytes())?;
         offsets.push(out.stream_position()? - start);
-        write_array(out, points, |_| [VTK_VERTEX])?;
+        write_array(out, cells, |_| [kind])?;
         write!(out, "\n</AppendedData>\n</VTKFile>\n")?;
 
         for (place, offset) in places.into_iter().zip(offsets) {

@@ -7,11 +7,13 @@ mod crack;
 mod probe;
 mod schedule;
 mod snapshot;
+mod surface;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
 pub use snapshot::{Energies, Field, Snapshot, StartEnergy};
+pub use surface::{EnergyBound, EnergyZone, SurfaceMeasure, SurfaceReading};
 
 use crate::archive::Saved;
 

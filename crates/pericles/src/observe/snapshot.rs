@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use crate::system::System;
-use crate::time::State;
+use crate::time::{InnerIterations, State};
 
 /// A field on the points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,6 +101,7 @@ pub struct Snapshot<'a> {
     state: &'a State,
     start: StartEnergy,
     scheme: f64,
+    inner: Option<InnerIterations>,
     force: OnceCell<Vec<f64>>,
     damage: OnceCell<Vec<f64>>,
     energy_density: OnceCell<Vec<f64>>,
@@ -114,10 +115,22 @@ impl<'a> Snapshot<'a> {
             state,
             start,
             scheme,
+            inner: None,
             force: OnceCell::new(),
             damage: OnceCell::new(),
             energy_density: OnceCell::new(),
         }
+    }
+
+    /// The same with what the scheme's inner iterations did.
+    pub fn with_inner(mut self, inner: Option<InnerIterations>) -> Self {
+        self.inner = inner;
+        self
+    }
+
+    /// What the scheme's inner iterations did, if it has some.
+    pub fn inner_iterations(&self) -> Option<InnerIterations> {
+        self.inner
     }
 
     /// The equation of motion.
@@ -154,6 +167,21 @@ impl<'a> Snapshot<'a> {
                 density
             }),
         }
+    }
+
+    /// ½ ρ |v|² of every point, J/m³ (J/m² on surfaces).
+    pub fn kinetic_energy_density(&self) -> Vec<f64> {
+        let n = self.system.points();
+        let square = |i: usize| -> f64 {
+            self.state
+                .v
+                .chunks(n)
+                .map(|component| component[i].powi(2))
+                .sum()
+        };
+        (0..n)
+            .map(|i| 0.5 * self.system.density().at(i) * square(i))
+            .collect()
     }
 
     /// The energy account.

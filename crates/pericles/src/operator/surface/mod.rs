@@ -7,12 +7,7 @@
 //! For p = 2 the operator is linear, the same for the three components. The exponents 2, 2.5 … 5.5 are computed by roots and products, others by
 //! the power function.
 //!
-//! | p | ns per directed bond and thread (AVX-512) |
-//! |---|---|
-//! | 2 | 0.8 |
-//! | 3 | 1.0 |
-//!
-//! (10 242 vertices, 6.4 million directed bonds, one core of an Intel Xeon of 2023; `cargo bench -p pericles --bench surface`.)
+//! A bond costs a load of 12 bytes and of its neighbour's row; `cargo bench -p pericles --bench surface` measures it beside the memory's bandwidth.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -1,0 +1,85 @@
+//! Points and operator of a surface.
+
+use std::sync::Arc;
+
+use pericles::PericlesError;
+use pericles::cache::Cache;
+use pericles::family::geodesic::geodesic_pairs_cached;
+use pericles::operator::ForceOperator;
+use pericles::operator::surface::SurfaceBody;
+use pericles::space::PointCloud;
+use pericles::space::surface::Surface;
+
+use super::Sets;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::surface::{SurfaceDeck, VertexAreas};
+
+impl Deck {
+    pub(super) fn surface_points(
+        &self,
+        deck: &SurfaceDeck,
+    ) -> Result<(Surface, PointCloud), DeckError> {
+        let surface = deck
+            .shape
+            .surface()
+            .map_err(|error| self.at("body", error.into()))?;
+        let areas = match deck.areas {
+            VertexAreas::Rule(rule) => surface.vertex_areas(rule),
+            VertexAreas::Same(area) => vec![area; surface.len()],
+        };
+        let cloud = PointCloud::of_surface(&surface, areas)
+            .map_err(|error| self.at("body.areas", error))?;
+        Ok((surface, cloud))
+    }
+
+    pub(super) fn surface_operator(
+        &self,
+        deck: &SurfaceDeck,
+        surface: &Surface,
+        cloud: &Arc<PointCloud>,
+        sets: &Sets,
+        cache: &dyn Cache,
+    ) -> Result<Box<dyn ForceOperator>, DeckError> {
+        let pairs = geodesic_pairs_cached(surface, deck.material.horizon, deck.method, cache)
+            .map_err(|error| match error {
+                PericlesError::HorizonTooSmall { .. } => self.at("material.horizon", error),
+                _ => self.at("geodesics", error),
+            })?;
+        let no_fail = self.union_of(sets, &deck.no_fail)?;
+        let stiffness = self.stiffness_of(&deck.inclusions, cloud, sets)?;
+        SurfaceBody {
+            surface,
+            cloud,
+            pairs: &pairs,
+            material: &deck.material,
+            stiffness: &stiffness,
+            no_fail: &no_fail,
+        }
+        .operator()
+        .map_err(|error| self.at("material", error))
+    }
+
+    /// Refuses what only bodies with a volume have.
+    pub(super) fn refuse_body_forces(&self) -> Result<(), DeckError> {
+        use crate::conditions::LoadAmplitude;
+        use crate::reader::Path;
+        for (k, load) in self.loads.iter().enumerate() {
+            let key = match load.amplitude {
+                LoadAmplitude::BodyForce(_) => "body_force",
+                LoadAmplitude::Traction { area: Some(_), .. } => "area",
+                LoadAmplitude::Traction { area: None, .. } => continue,
+            };
+            let fault = Fault::Misplaced {
+                key: key.into(),
+                table: "a [[load]] of a surface".into(),
+                allowed:
+                    "a surface is loaded by a `traction`, which acts on the area of each vertex"
+                        .into(),
+            };
+            return Err(self.at_path(&Path::from("load").index(k).key(key), fault));
+        }
+        Ok(())
+    }
+}

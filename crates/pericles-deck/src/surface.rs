@@ -1,0 +1,363 @@
+//! Bodies that are surfaces: their shape, material and distances.
+
+use pericles::family::geodesic::GeodesicMethod;
+use pericles::material::{
+    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PowerMaterial, StressState,
+    SurfaceBond,
+};
+use pericles::operator::{BondForm, DamageMeasure};
+use pericles::space::surface::{AreaRule, Surface, SurfaceError};
+use pericles::space::{Grid, Shape};
+
+use crate::body::Body;
+use crate::material::{self, Inclusion, Material};
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::set::SetNames;
+
+/// A surface with its material, in place of a body on a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceDeck {
+    /// The surface.
+    pub shape: SurfaceShape,
+    /// The areas of its vertices.
+    pub areas: VertexAreas,
+    /// Its material.
+    pub material: PowerMaterial,
+    /// Sets whose bonds never break.
+    pub no_fail: Vec<String>,
+    /// Parts that are stiffer or softer, later ones before earlier ones.
+    pub inclusions: Vec<Inclusion>,
+    /// How distances along the surface are found.
+    pub method: GeodesicMethod,
+}
+
+/// Surfaces that are made by formula.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SurfaceShape {
+    /// A sphere from an icosahedron whose edges are halved `level` times.
+    Icosphere {
+        /// Halvings.
+        level: u32,
+        /// m.
+        radius: f64,
+    },
+    /// A sphere of meridians and parallels.
+    UvSphere {
+        /// Meridians.
+        segments: u32,
+        /// Parallels and one more.
+        rings: u32,
+        /// m.
+        radius: f64,
+    },
+    /// An icosphere stretched along the axes.
+    Ellipsoid {
+        /// Halvings.
+        level: u32,
+        /// m.
+        half_axes: [f64; 3],
+    },
+    /// A torus about the z axis.
+    Torus {
+        /// Radius of the middle line, m.
+        major: f64,
+        /// Radius of the tube, m.
+        minor: f64,
+        /// Vertices along the middle line.
+        around: u32,
+        /// Vertices around the tube.
+        across: u32,
+    },
+    /// A cylinder about the z axis with half spheres at its ends.
+    Capsule {
+        /// m.
+        radius: f64,
+        /// Length of the cylinder, m.
+        length: f64,
+        /// Vertices around it.
+        segments: u32,
+    },
+}
+
+/// The area that a vertex stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VertexAreas {
+    /// Shared out from the triangles.
+    Rule(AreaRule),
+    /// The same number for every vertex, m²: not the surface's, but what some papers compute with.
+    Same(f64),
+}
+
+/// A word of `body.shape` that is a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SurfaceKind {
+    Icosphere,
+    UvSphere,
+    Ellipsoid,
+    Torus,
+    Capsule,
+}
+
+impl SurfaceShape {
+    /// The surface, its vertices numbered along a space-filling curve.
+    ///
+    /// # Errors
+    /// What [`Surface`]'s makers refuse.
+    pub fn surface(&self) -> Result<Surface, SurfaceError> {
+        let surface = match *self {
+            Self::Icosphere { level, radius } => Surface::icosphere(level, radius),
+            Self::UvSphere {
+                segments,
+                rings,
+                radius,
+            } => Surface::uv_sphere(segments, rings, radius),
+            Self::Ellipsoid { level, half_axes } => Surface::ellipsoid(level, half_axes),
+            Self::Torus {
+                major,
+                minor,
+                around,
+                across,
+            } => Surface::torus(major, minor, around, across),
+            Self::Capsule {
+                radius,
+                length,
+                segments,
+            } => Surface::capsule(radius, length, segments),
+        }?;
+        Ok(surface.renumbered())
+    }
+}
+
+/// The shape of `[body]`, with the mean distance of its vertices.
+pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShape, f64)> {
+    let length = |key| {
+        table
+            .required(key)
+            .and_then(|item| item.positive(Quantity::Length))
+    };
+    let number = |key| table.required(key).and_then(|item| small_count(&item));
+    let shape = match kind {
+        SurfaceKind::Icosphere => {
+            let (level, radius) = (number("level"), length("radius"));
+            SurfaceShape::Icosphere {
+                level: level?,
+                radius: radius?,
+            }
+        }
+        SurfaceKind::UvSphere => {
+            let (segments, rings, radius) = (number("segments"), number("rings"), length("radius"));
+            SurfaceShape::UvSphere {
+                segments: segments?,
+                rings: rings?,
+                radius: radius?,
+            }
+        }
+        SurfaceKind::Ellipsoid => {
+            let level = number("level");
+            let half_axes = table.required("half_axes").and_then(|item| {
+                let axes = item.components(Some(3), &Quantity::Length.expected())?;
+                let lengths: Vec<Option<f64>> = axes
+                    .iter()
+                    .map(|axis| axis.positive(Quantity::Length))
+                    .collect();
+                let lengths: Option<Vec<f64>> = lengths.into_iter().collect();
+                lengths?.try_into().ok()
+            });
+            SurfaceShape::Ellipsoid {
+                level: level?,
+                half_axes: half_axes?,
+            }
+        }
+        SurfaceKind::Torus => {
+            let (major, minor) = (length("major_radius"), length("minor_radius"));
+            let (around, across) = (number("around"), number("across"));
+            SurfaceShape::Torus {
+                major: major?,
+                minor: minor?,
+                around: around?,
+                across: across?,
+            }
+        }
+        SurfaceKind::Capsule => {
+            let (radius, segments) = (length("radius"), number("segments"));
+            let length = length("length");
+            SurfaceShape::Capsule {
+                radius: radius?,
+                length: length?,
+                segments: segments?,
+            }
+        }
+    };
+    let surface = table.accept(shape.surface().map_err(Into::into))?;
+    Some((shape, (surface.area() / surface.len() as f64).sqrt()))
+}
+
+/// A whole number from 1 to a hundred thousand.
+fn small_count(item: &Item<'_>) -> Option<u32> {
+    const MOST: u64 = 100_000;
+    let count = item.count()?;
+    if count <= MOST {
+        Some(count as u32)
+    } else {
+        item.out_of_range("a whole number from 1 to 100000");
+        None
+    }
+}
+
+pub(crate) fn areas(table: &Table<'_>) -> Option<VertexAreas> {
+    const RULES: [(&str, VertexAreas); 2] = [
+        ("barycentric", VertexAreas::Rule(AreaRule::Barycentric)),
+        ("mixed-voronoi", VertexAreas::Rule(AreaRule::MixedVoronoi)),
+    ];
+    match table.optional("areas") {
+        None => {
+            table.record("areas", RULES[0].0);
+            Some(RULES[0].1)
+        }
+        Some(item) => match item.word() {
+            Some(word) if !word.contains(|c: char| c.is_ascii_digit()) => {
+                item.choice("rule for areas", &RULES)
+            }
+            _ => item.positive(Quantity::Area).map(VertexAreas::Same),
+        },
+    }
+}
+
+/// `[geodesics]`.
+pub(crate) fn method(table: Table<'_>) -> Option<GeodesicMethod> {
+    let method = match table.optional("method") {
+        None => {
+            let method = GeodesicMethod::default();
+            table.record("method", method.to_string());
+            Some(method)
+        }
+        Some(item) => item.text().and_then(|text| {
+            let method = text.parse().ok();
+            if method.is_none() {
+                item.out_of_range(GeodesicMethod::NAMES);
+            }
+            method
+        }),
+    };
+    table.finish();
+    method
+}
+
+/// `[material]` of a surface.
+pub(crate) fn material(
+    table: Table<'_>,
+    spacing: Option<f64>,
+    sets: &SetNames,
+) -> Option<(PowerMaterial, Vec<String>, Vec<Inclusion>)> {
+    table.choice_or_first("model", "model", &[("power", ())]);
+    table.maybe("name", |item| item.text());
+    let positive = |key, quantity| table.required(key).and_then(|item| item.positive(quantity));
+    let density = positive("density", Quantity::SurfaceDensity);
+    let kappa = table.or("kappa", 1.0, |item| item.positive(Quantity::Number));
+    let alpha = table.required("alpha").and_then(|item| {
+        item.within(Quantity::Number, "a number above 0 and below 1", |alpha| {
+            alpha > 0.0 && alpha < 1.0
+        })
+    });
+    let p = table
+        .required("p")
+        .and_then(|item| item.within(Quantity::Number, "a number of at least 2", |p| p >= 2.0));
+    let horizon = table.required("horizon").and_then(|item| {
+        item.within(
+            Quantity::Length,
+            "a length larger than the mean distance of vertices (usual: 3 times that)",
+            |horizon| horizon > 0.0 && spacing.is_none_or(|spacing| horizon > spacing),
+        )
+    });
+    let bond = table.choice_or_first(
+        "bond",
+        "bond",
+        &[
+            ("displacement", SurfaceBond::Displacement),
+            ("chord", SurfaceBond::Chord),
+        ],
+    );
+    let self_cell = table.optional("self_cell").map_or_else(
+        || {
+            table.record("self_cell", false);
+            Some(false)
+        },
+        |item| {
+            let wanted = item.boolean()?;
+            if wanted && (p.is_some_and(|p| p != 2.0) || bond == Some(SurfaceBond::Chord)) {
+                item.out_of_range(
+                    "false, unless p = 2 and bond = \"displacement\": the term is a Laplacian",
+                );
+                return None;
+            }
+            Some(wanted)
+        },
+    );
+    let critical_stretch = table
+        .maybe("critical_stretch", |item| item.positive(Quantity::Number))
+        .map(|given| given.unwrap_or(f64::INFINITY));
+    let no_fail = table
+        .optional("no_fail")
+        .map_or(Some(Vec::new()), |item| sets.references(&item));
+    let inclusions: Vec<Option<Inclusion>> = table
+        .tables("inclusion")
+        .into_iter()
+        .map(|table| material::inclusion(table, sets))
+        .collect();
+    table.finish();
+    Some((
+        PowerMaterial {
+            density: density?,
+            kappa: kappa?,
+            alpha: alpha?,
+            p: p?,
+            horizon: horizon?,
+            bond: bond?,
+            self_cell: self_cell?,
+            critical_stretch: critical_stretch?,
+        },
+        no_fail?,
+        inclusions.into_iter().collect::<Option<_>>()?,
+    ))
+}
+
+/// What stands in the place of a grid in the deck of a surface.
+pub(crate) fn no_grid() -> Body {
+    Body {
+        grid: Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![1.0; 3],
+            },
+            spacing: 1.0,
+            section: 1.0,
+            holes: Vec::new(),
+        },
+        finer: Vec::new(),
+        state: StressState::Spatial,
+    }
+}
+
+/// What stands in the place of a material on a grid in the deck of a surface.
+pub(crate) fn no_bonds() -> Material {
+    Material {
+        name: None,
+        bonds: BondMaterial {
+            law: pericles::material::PairLaw::Linear,
+            density: 1.0,
+            modulus: Modulus {
+                value: ElasticModulus::Young(1.0),
+                calibration: Calibration::Continuum,
+            },
+            horizon: 1.0,
+            influence: Default::default(),
+            volume_correction: pericles::family::VolumeCorrection::None,
+            fracture: Fracture::Unbreakable,
+        },
+        no_fail: Vec::new(),
+        inclusions: Vec::new(),
+        damage: DamageMeasure::default(),
+        form: BondForm::List,
+    }
+}

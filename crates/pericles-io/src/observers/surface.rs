@@ -1,0 +1,90 @@
+//! The course of a surface over time.
+
+use std::path::PathBuf;
+
+use pericles::observe::{EnergyBound, ObserveError, Observer, Snapshot, SurfaceMeasure};
+use pericles::{Archive, Result, Saved, Values};
+
+use super::table::{AXES, ObserverTable, step_and_time, whole};
+use crate::csv::{Cell, Column};
+
+const KEY: &str = "observer/surface/bound";
+
+/// Surface stretch, margin of the energy bound, concentration of elastic energy: `surface.csv`.
+///
+/// Columns: step, time, stretch S/S₀ − 1, margin √E(0) + ∫‖b‖/√(2ρ) − √E(t), localisation (largest energy density over the mean), share of the energy in the
+/// top 2 % of vertices, zones of concentrated energy, area and centre of the largest, inverted triangles, edges stretched beyond twice their length.
+pub struct SurfaceCourse {
+    table: ObserverTable,
+    measure: SurfaceMeasure,
+    bound: EnergyBound,
+}
+
+impl SurfaceCourse {
+    /// The course of a surface.
+    pub fn new(path: impl Into<PathBuf>, measure: SurfaceMeasure) -> Self {
+        let mut columns = step_and_time();
+        columns.push(Column::real("stretch", ""));
+        columns.push(Column::real("bound_margin", "J^0.5"));
+        columns.push(Column::real("localisation", ""));
+        columns.push(Column::real("top_share", ""));
+        columns.push(Column::integer("zones"));
+        columns.push(Column::real("zone_area", "m2"));
+        for axis in AXES {
+            columns.push(Column::real(format!("zone_{axis}"), "m"));
+        }
+        columns.push(Column::integer("inverted_triangles"));
+        columns.push(Column::integer("overstretched_edges"));
+        Self {
+            table: ObserverTable::new(path.into(), "observer/surface", columns),
+            measure,
+            bound: EnergyBound::default(),
+        }
+    }
+}
+
+impl Observer for SurfaceCourse {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        let state = snapshot.state();
+        let reading = self.measure.read(snapshot);
+        let margin = self.bound.margin(snapshot);
+        let (area, centre) = reading
+            .zones
+            .first()
+            .map_or((0.0, [f64::NAN; 3]), |zone| (zone.area, zone.centre));
+        let mut row = vec![
+            whole(state.step),
+            state.t.into(),
+            reading.stretch.into(),
+            margin.into(),
+            reading.localisation.into(),
+            reading.top_share.into(),
+            whole(reading.zones.len() as u64),
+            area.into(),
+        ];
+        row.extend(centre.map(Cell::Real));
+        row.push(whole(reading.inverted_triangles as u64));
+        row.push(whole(reading.overstretched_edges as u64));
+        Ok(self.table.append(&row)?)
+    }
+}
+
+impl Saved for SurfaceCourse {
+    fn save(&self, archive: &mut Archive) {
+        self.table.save(archive);
+        let (t, size) = self.bound.last.unwrap_or((f64::NAN, f64::NAN));
+        archive.put(KEY, Values::F64(vec![self.bound.impulse, t, size]));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.table.restore(archive)?;
+        let mut values = [0.0; 3];
+        archive.f64_into(KEY, &mut values)?;
+        let [impulse, t, size] = values;
+        self.bound = EnergyBound {
+            impulse,
+            last: t.is_finite().then_some((t, size)),
+        };
+        Ok(())
+    }
+}
