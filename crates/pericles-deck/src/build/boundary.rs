@@ -36,7 +36,7 @@ impl Deck {
         if self.boundaries.is_empty() {
             return Ok(Vec::new());
         }
-        let no_fail = self.no_fail(sets)?;
+        let no_fail = self.union_of(sets, &self.material.no_fail)?;
         let mut ends = Vec::new();
         let mut sides: Vec<Side> = Vec::new();
         for (k, boundary) in self.boundaries.iter().enumerate() {
