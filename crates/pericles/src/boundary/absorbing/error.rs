@@ -184,7 +184,7 @@ pub enum AbsorbingError {
     /// Sums of exponentials that miss the tolerance.
     #[error(
         "no sum of exponentials is as close to the exact history as {tolerance:e}: the best of {fits} fits misses it by {residual:e}; a tolerance of at least \
-         that, or history = \"exact\""
+         that, a smaller step, or history = \"blocked\", which is exact"
     )]
     Fit {
         /// The tolerance asked for.
