@@ -91,7 +91,12 @@ impl Facts {
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
             instruction_set: operator.instruction_set().name(),
-            warnings: model.warnings.iter().map(|w| w.line()).collect(),
+            warnings: model
+                .warnings
+                .iter()
+                .chain(&deck.judge_waves(model))
+                .map(|w| w.line())
+                .collect(),
         }
     }
 }

@@ -41,6 +41,23 @@ pub enum Caution {
         /// The step that is surely stable, s.
         limit: f64,
     },
+    /// Waves that the grid does not carry.
+    #[error(
+        "{:.0} % of the energy of this {what} is in waves shorter than {length:.3e} m or faster than a period of {period:.3e} s, which the grid delays by more than {:.0} %",
+        100.0 * share, 100.0 * tolerance
+    )]
+    ShortWaves {
+        /// What sends them out.
+        what: &'static str,
+        /// Their share of the energy.
+        share: f64,
+        /// The deviation of their speed, relative.
+        tolerance: f64,
+        /// The shortest period that the grid carries, s.
+        period: f64,
+        /// The shortest wave that it carries, m.
+        length: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -68,6 +85,9 @@ impl Subject for Caution {
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
             Self::Surface(_) => "usual: 3 to 6 median edges",
+            Self::ShortWaves { .. } => {
+                "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -82,6 +102,7 @@ impl Subject for Caution {
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::ShortWaves { .. } => "short waves",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }

@@ -642,3 +642,57 @@ fn expressions_that_cannot_move_a_body_are_refused() {
             .contains("takes no function of time")
     );
 }
+
+#[test]
+fn waves_that_the_grid_distorts_are_warned_of() {
+    let bar = |rest: &str| {
+        let text = format!(
+            r#"
+[body]
+shape = "bar"
+length = 10.0
+spacing = 0.02
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+[sets]
+right = {{ layer = {{ side = "+x", cells = 3 }} }}
+[time]
+end = 5.0
+{rest}"#
+        );
+        let deck = parse(&text);
+        let model = deck.build().unwrap();
+        let warnings = deck.judge_waves(&model);
+        warnings.iter().map(|w| w.line()).collect::<Vec<_>>()
+    };
+    let initial = |field: &str, width: f64| {
+        bar(&format!(
+            "[[initial]]\n{field} = {{ expression = \"exp(-((x-5)/{width})^2)\" }}"
+        ))
+    };
+    // wide and narrow humps
+    for field in ["displacement", "velocity"] {
+        assert!(initial(field, 0.5).is_empty());
+        let narrow = initial(field, 0.03);
+        assert_eq!(narrow.len(), 1, "{narrow:?}");
+        assert!(
+            narrow[0].contains("% of the energy of this initial"),
+            "{narrow:?}"
+        );
+    }
+    let pulse = |what: &str, duration: f64| {
+        bar(&format!(
+            "{what}\nset = \"right\"\nfunction = {{ kind = \"pulse\", duration = {duration} }}"
+        ))
+    };
+    for what in [
+        "[[load]]\nbody_force = 1",
+        "[[prescribe]]\nvelocity = 1",
+        "[[prescribe]]\ndisplacement = 1",
+    ] {
+        assert!(pulse(what, 2.0).is_empty(), "{what}");
+        assert_eq!(pulse(what, 0.05).len(), 1, "{what}");
+    }
+}

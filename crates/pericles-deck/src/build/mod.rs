@@ -2,6 +2,7 @@
 
 mod area;
 mod conditions;
+mod content;
 mod fields;
 mod graded;
 mod scheme;

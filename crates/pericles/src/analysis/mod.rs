@@ -12,6 +12,7 @@
 //!   velocities; [`verlet_frequency`] for the time-discrete curve.
 //! * [`stability`] – smallest ω²/|k|² and highest frequency over the whole zone, hence the stable step.
 //! * [`long_wave_speeds`], [`polar_speeds`] – anisotropy.
+//! * [`Carried`], [`time_content`], [`space_content`] – what of a load or an initial field a lattice carries undistorted.
 //! * [`tuning`] – coefficients per class of bonds that reduce dispersion.
 //! * [`spectrum`] – frequencies measured in a time-domain run.
 //!
@@ -30,6 +31,7 @@
 //! ```
 
 mod branches;
+mod content;
 mod contour;
 mod lattice;
 mod modes;
@@ -38,6 +40,7 @@ pub mod tuning;
 mod zone;
 
 pub use branches::{BranchPoint, ContourPoint, PolarSpeeds, long_wave_speeds, polar_speeds, trace};
+pub use content::{Carried, space_content, time_content};
 pub use contour::{Contour, Segment};
 pub use lattice::{BondLattice, LatticeBond, Vector};
 pub use modes::{Mode, SquareMatrix, verlet_frequency};
