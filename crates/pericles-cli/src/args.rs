@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use pericles::family::geodesic::GeodesicMethod;
 use pericles_io::DiskCache;
 
 use crate::exit::Exit;
@@ -18,6 +19,7 @@ Examples:
   pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
+  pericles geodesics 'icosphere(4)' --horizon 0.5     how far distances along edges are off
   pericles bench block-46 --threads 1                 how fast the operators are here
   pericles reproduce --list                           studies of papers
   pericles reproduce fracture/branching";
@@ -65,6 +67,14 @@ Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the f
   classes.csv       α of every class of bonds
   spectrum_*, peaks what --measure found")]
     Dispersion(DispersionArgs),
+    /// Compare ways to find distances along a surface
+    #[command(after_help = "\
+A surface is a file (.obj, .ply, .stl, .off, .msh, .vtu, .vtp) or a shape:
+  icosphere(LEVEL)  icosphere(LEVEL,RADIUS)  uv-sphere(SEGMENTS,RINGS,RADIUS)  ellipsoid(LEVEL,A,B,C)
+  torus(MAJOR,MINOR,AROUND,ACROSS)  capsule(RADIUS,LENGTH,SEGMENTS)
+Errors are relative to exact distances on the triangles, over all pairs of vertices that are truly within the
+horizon; \"lost\" are those that a method places beyond it. Times are on the wall clock.")]
+    Geodesics(GeodesicsArgs),
     /// Time whole steps on fixed bodies and set them against what the machine can do
     #[command(after_help = "\
 Times are medians over rounds, on the wall clock: quote ratios, not seconds, of a machine that others use too.
@@ -146,6 +156,37 @@ fn direction(text: &str) -> Result<Direction, String> {
     } else {
         Err(allowed.into())
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GeodesicsArgs {
+    /// A file or a shape such as icosphere(3)
+    pub(crate) surface: String,
+    /// The horizon, m
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) horizon: f64,
+    /// The methods, with commas between them: edge, edge-diagonals, steiner(1) to steiner(32), exact
+    #[arg(
+        long,
+        value_name = "METHODS",
+        value_delimiter = ',',
+        default_value = "exact,edge,edge-diagonals,steiner(2),steiner(3)"
+    )]
+    pub(crate) methods: Vec<GeodesicMethod>,
+    /// Allow edges with one triangle
+    #[arg(long)]
+    pub(crate) open: bool,
+    /// Allow parts that do not hang together
+    #[arg(long)]
+    pub(crate) several: bool,
+    /// Turn over triangles that run the wrong way
+    #[arg(long)]
+    pub(crate) flip: bool,
+    /// Write the results as JSON to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
 }
 
 #[derive(Debug, Args)]

@@ -5,9 +5,10 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use miette::{Diagnostic, MietteHandler, ReportHandler};
+use pericles::space::surface::SurfaceError;
 use pericles::{PericlesError, SimulationError};
 use pericles_deck::DeckError;
-use pericles_io::IoError;
+use pericles_io::{IoError, MeshError};
 
 use crate::console;
 use crate::exit::Exit;
@@ -78,6 +79,26 @@ pub(crate) enum CliError {
         #[help]
         hint: String,
     },
+    /// A file that gives no surface.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A surface that cannot be used.
+    #[error("{name}: {source}")]
+    Surface {
+        /// The file or shape.
+        name: String,
+        /// Why.
+        source: SurfaceError,
+    },
+    /// A word that is neither a shape nor a file.
+    #[error("\"{given}\" is no shape")]
+    UnknownShape {
+        /// The word.
+        given: String,
+        /// What is allowed.
+        #[help]
+        allowed: &'static str,
+    },
     /// A step of the library outside of a run.
     #[error(transparent)]
     Library(#[from] PericlesError),
@@ -114,6 +135,8 @@ impl CliError {
             Self::Deck(_) | Self::Checkpoint { .. } | Self::NoRun { .. } | Self::Library(_) => {
                 Exit::Input
             }
+            Self::Mesh(_) | Self::Surface { .. } => Exit::Input,
+            Self::UnknownShape { .. } => Exit::Usage,
             Self::Io(error) if error.is_output_problem() => Exit::Output,
             Self::Io(IoError::Shape { .. } | IoError::Unsuitable { .. }) => Exit::Internal,
             Self::Io(_) => Exit::Input,

@@ -1,6 +1,6 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `reproduce` on the studies inside the program, `bench` on fixed bodies. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
@@ -12,6 +12,7 @@ mod console;
 mod dispersion;
 mod error;
 mod exit;
+mod geodesics;
 mod machine;
 mod prepare;
 mod progress;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Resume(args) => run::resume(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Dispersion(args) => dispersion::dispersion(&args),
+        Command::Geodesics(args) => geodesics::geodesics(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
     };
     let exit = outcome.unwrap_or_else(|error| {

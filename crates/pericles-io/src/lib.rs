@@ -6,6 +6,7 @@
 //! | `.vtu` and `.pvd` | ParaView and other viewers | [`VtuFile`], [`PvdSeries`] |
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
+//! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
 //! | cached results | all runs of a user | [`DiskCache`] |
 //! | all of these but checkpoints | a simulation, state by state | [`observers`] |
@@ -42,6 +43,7 @@ mod checkpoint;
 mod csv;
 mod error;
 mod folder;
+mod mesh;
 pub mod observers;
 mod picture;
 mod vtk;
@@ -52,5 +54,6 @@ pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
 pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
+pub use mesh::{MeshError, Place, SURFACE_ENDINGS, read_surface};
 pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -360,24 +360,31 @@ impl GridLayout {
             }
             let first = self.row_start[*row] as usize;
             let end = run.end.min(self.row_start[*row + 1] as usize);
-            let column = |point: usize| match &self.columns {
-                None => point - first,
-                Some(columns) => columns[point] as usize,
-            };
             while point < end {
-                let from = column(point);
-                let place = from / LANES;
-                let mut bits = 0;
-                let mut last = from;
-                while point < end {
-                    let here = column(point);
-                    if here / LANES != place {
-                        break;
+                let (from, last, bits);
+                match &self.columns {
+                    None => {
+                        from = point - first;
+                        let behind = (from / LANES + 1) * LANES;
+                        let to = behind.min(end - first);
+                        bits = 0xFF << (from % LANES) & 0xFF >> (behind - to);
+                        last = to - 1;
+                        point = first + to;
                     }
-                    bits |= 1 << (here % LANES);
-                    last = here;
-                    point += 1;
+                    Some(columns) => {
+                        from = columns[point] as usize;
+                        let inside = columns[point..end]
+                            .iter()
+                            .take_while(|&&column| column as usize / LANES == from / LANES);
+                        let (lanes, count) = inside.fold((0, 0), |(lanes, count), &column| {
+                            (lanes | 1 << (column as usize % LANES), count + 1)
+                        });
+                        bits = lanes;
+                        last = columns[point + count - 1] as usize;
+                        point += count;
+                    }
                 }
+                let place = from / LANES;
                 let chunk = self.chunk_at[*row * (self.stride / LANES) + place] as usize;
                 visit(*row, [from as u32, last as u32 + 1], chunk, bits);
             }

@@ -13,6 +13,7 @@ mod figure_3;
 mod figure_4;
 mod figure_5;
 mod figure_6;
+mod geodesics;
 mod modes;
 
 use pericles::observe::SurfaceMeasure;
@@ -26,7 +27,8 @@ use crate::error::CliError;
 const PAPER: &str = "Coclite et al. 2022";
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 6] = [
+pub(super) const STUDIES: [Study; 7] = [
+    geodesics::STUDY,
     figure_2::STUDY,
     figure_3::STUDY,
     figure_4::STUDY,

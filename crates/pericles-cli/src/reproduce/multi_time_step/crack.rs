@@ -27,8 +27,8 @@ const END: f64 = 15e-6;
 
 fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let mut rows = pull()?;
-    rows.extend(before_failure()?);
     let ratios: &[u32] = if context.full { &[2, 4, 8] } else { &[4] };
+    rows.extend(before_failure(ratios)?);
     for &ratio in ratios {
         rows.extend(failure(ratio)?);
     }
@@ -74,10 +74,10 @@ fn at(method: Method, end: f64, ratio: u32, changes: &[String]) -> Result<Simula
 }
 
 /// Until the first bonds have broken the runs are the same.
-fn before_failure() -> Result<Vec<Row>, CliError> {
+fn before_failure(ratios: &[u32]) -> Result<Vec<Row>, CliError> {
     let mut rows = Vec::new();
     for (end, most, distance) in [(7e-6, 0.0, Some(3e-4)), (9e-6, 6.0, None)] {
-        for ratio in [2, 4] {
+        for &ratio in ratios {
             let fine = at(Method::Uniform(4), end, ratio, &[])?;
             let two = at(Method::Two(4, ratio), end, 1, &[])?;
             let at = format!("{:.0} µs, M = {ratio}", end * 1e6);

@@ -96,16 +96,17 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         }
         rows.extend(long);
     }
-    for (method, changes) in [
+    let backward = ["time.predictor=backward-difference".to_owned()];
+    let mut damped = vec![
         (Method::Uniform(4), &[][..]),
-        (Method::Uniform(3), &[]),
         (Method::Two(4, 4), &[]),
-        (
-            Method::Two(4, 4),
-            &["time.predictor=backward-difference".to_owned()],
-        ),
         (Method::Two(3, 4), &[]),
-    ] {
+    ];
+    if context.full {
+        damped.push((Method::Uniform(3), &[]));
+        damped.push((Method::Two(4, 4), &backward[..]));
+    }
+    for (method, changes) in damped {
         let what = match changes {
             [] => String::new(),
             _ => ", backward differences".into(),

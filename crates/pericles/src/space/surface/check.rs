@@ -1,11 +1,8 @@
 //! Is a surface a closed manifold, well enough cut into triangles?
 
-use std::collections::HashMap;
-use std::fmt;
-
 use super::half_edges::{origins, sorted_by_edge};
+use super::weld::same_places;
 use super::{HalfEdges, Surface, SurfaceError};
-use crate::space::Point;
 
 /// The smallest area of a triangle, as a part of the square of the surface's largest side.
 const SMALLEST_AREA: f64 = 1e-12;
@@ -72,46 +69,6 @@ pub struct SurfaceReport {
     pub volume: f64,
 }
 
-/// Something about the horizon on a surface that a user should know.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum SurfaceCaution {
-    /// The horizon is short.
-    ShortHorizon {
-        /// Horizon over median edge.
-        ratio: f64,
-    },
-    /// The horizon is long.
-    LongHorizon {
-        /// Horizon over median edge.
-        ratio: f64,
-    },
-    /// There are few bonds.
-    FewNeighbours {
-        /// Neighbours of a vertex, on average.
-        mean: f64,
-    },
-}
-
-impl fmt::Display for SurfaceCaution {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::ShortHorizon { ratio } => write!(
-                f,
-                "the horizon is {ratio:.2} median edges; below 2 the directions of bonds are those of the mesh"
-            ),
-            Self::LongHorizon { ratio } => write!(
-                f,
-                "the horizon is {ratio:.1} median edges; above 15 time and memory grow with its square and little is gained"
-            ),
-            Self::FewNeighbours { mean } => write!(
-                f,
-                "vertices have {mean:.1} neighbours on average; with fewer than 12 the sums are coarse"
-            ),
-        }
-    }
-}
-
 impl Surface {
     /// Checks the surface and says what it is like. In this order: no triangle without area, no two vertices in one place, no vertex without triangle;
     /// two triangles to every edge; neighbouring triangles run their edge in opposite directions; one fan of triangles to every vertex; one part; outside
@@ -156,24 +113,6 @@ impl Surface {
             volume,
         };
         Ok((self, report))
-    }
-
-    /// What should be known about a horizon (m) that gives vertices this many neighbours on average.
-    pub fn cautions(&self, horizon: f64, mean_neighbours: f64) -> Vec<SurfaceCaution> {
-        let ratio = horizon / self.median_edge();
-        let mut cautions = Vec::new();
-        if ratio < 2.0 {
-            cautions.push(SurfaceCaution::ShortHorizon { ratio });
-        }
-        if ratio > 15.0 {
-            cautions.push(SurfaceCaution::LongHorizon { ratio });
-        }
-        if mean_neighbours < 12.0 {
-            cautions.push(SurfaceCaution::FewNeighbours {
-                mean: mean_neighbours,
-            });
-        }
-        cautions
     }
 
     fn largest_side(&self) -> f64 {
@@ -405,37 +344,4 @@ fn parts(half_edges: &HalfEdges) -> Vec<u32> {
         count += 1;
     }
     part
-}
-
-/// For each point the first one that lies within `tolerance` of it, itself if there is none before it.
-///
-/// Points are sorted into cubes of side `tolerance`, of which 27 are searched.
-pub(super) fn same_places(positions: &[Point], tolerance: f64) -> Vec<u32> {
-    let side = tolerance.max(f64::MIN_POSITIVE);
-    let cell = |x: &Point| x.map(|x| (x / side).floor());
-    let key = |cell: [f64; 3]| cell.map(|c| (c + 0.0).to_bits());
-    let mut cells: HashMap<[u64; 3], Vec<u32>> = HashMap::with_capacity(positions.len());
-    let mut first = Vec::with_capacity(positions.len());
-    for (number, x) in positions.iter().enumerate() {
-        let at = cell(x);
-        let mut found = number as u32;
-        for k in 0..27 {
-            let near = [
-                at[0] + f64::from(k % 3 - 1),
-                at[1] + f64::from(k / 3 % 3 - 1),
-                at[2] + f64::from(k / 9 - 1),
-            ];
-            for &other in cells.get(&key(near)).into_iter().flatten() {
-                let apart = super::norm(super::difference(*x, positions[other as usize]));
-                if apart <= tolerance {
-                    found = found.min(other);
-                }
-            }
-        }
-        if found == number as u32 {
-            cells.entry(key(at)).or_default().push(found);
-        }
-        first.push(found);
-    }
-    first
 }

@@ -14,14 +14,17 @@
 //! # Ok::<(), pericles::space::surface::SurfaceError>(())
 //! ```
 
+mod caution;
 mod check;
 mod error;
 mod half_edges;
 mod measure;
 mod order;
 mod shapes;
+mod weld;
 
-pub use check::{Component, SurfaceCaution, SurfaceChecks, SurfaceReport};
+pub use caution::SurfaceCaution;
+pub use check::{Component, SurfaceChecks, SurfaceReport};
 pub use error::SurfaceError;
 pub use half_edges::HalfEdges;
 pub use measure::{AreaRule, Cotangents};

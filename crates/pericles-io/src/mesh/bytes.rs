@@ -1,0 +1,123 @@
+//! Numbers of a binary file, with their places.
+
+use super::error::Fault;
+
+/// A binary file read number by number.
+pub(super) struct Bytes<'a> {
+    data: &'a [u8],
+    at: usize,
+    little: bool,
+}
+
+/// Types of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    pub(super) fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+impl<'a> Bytes<'a> {
+    pub(super) fn new(data: &'a [u8], at: usize, little: bool) -> Self {
+        Self { data, at, little }
+    }
+
+    pub(super) fn position(&self) -> usize {
+        self.at
+    }
+
+    pub(super) fn fault(&self, reason: impl Into<String>) -> Fault {
+        Fault::at_byte(self.at, reason)
+    }
+
+    /// The next bytes.
+    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+        let left = self.data.len().saturating_sub(self.at);
+        if count > left {
+            return Err(self.fault(format!(
+                "the file ends: {count} more byte(s) are needed, {left} are left"
+            )));
+        }
+        let taken = &self.data[self.at..self.at + count];
+        self.at += count;
+        Ok(taken)
+    }
+
+    /// Checks that there can be so many things of at least so many bytes.
+    pub(super) fn room(&self, count: u64, bytes_each: usize, what: &str) -> Result<usize, Fault> {
+        let left = self.data.len().saturating_sub(self.at);
+        let room = (left / bytes_each.max(1)) as u64;
+        if count > room {
+            return Err(self.fault(format!(
+                "{count} {what} are announced, but the {left} bytes left hold {room} at most"
+            )));
+        }
+        Ok(count as usize)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        if !self.little {
+            array.reverse();
+        }
+        Ok(array)
+    }
+
+    pub(super) fn real(&mut self, scalar: Scalar) -> Result<f64, Fault> {
+        Ok(match scalar {
+            Scalar::F32 => f64::from(f32::from_le_bytes(self.array()?)),
+            Scalar::F64 => f64::from_le_bytes(self.array()?),
+            _ => self.integer(scalar)? as f64,
+        })
+    }
+
+    pub(super) fn integer(&mut self, scalar: Scalar) -> Result<i64, Fault> {
+        Ok(match scalar {
+            Scalar::I8 => i8::from_le_bytes(self.array()?).into(),
+            Scalar::U8 => u8::from_le_bytes(self.array()?).into(),
+            Scalar::I16 => i16::from_le_bytes(self.array()?).into(),
+            Scalar::U16 => u16::from_le_bytes(self.array()?).into(),
+            Scalar::I32 => i32::from_le_bytes(self.array()?).into(),
+            Scalar::U32 => u32::from_le_bytes(self.array()?).into(),
+            Scalar::I64 => i64::from_le_bytes(self.array()?),
+            Scalar::U64 => {
+                let number = u64::from_le_bytes(self.array()?);
+                i64::try_from(number)
+                    .map_err(|_| self.fault(format!("{number} is too large a number")))?
+            }
+            Scalar::F32 | Scalar::F64 => {
+                return Err(self.fault("real numbers stand where whole numbers must"));
+            }
+        })
+    }
+}
+
+/// The number of a vertex, if it is one.
+pub(super) fn vertex_number(number: i64) -> Option<u32> {
+    u32::try_from(number)
+        .ok()
+        .filter(|&number| number < u32::MAX)
+}
+
+pub(super) fn no_vertex(number: i64) -> String {
+    format!("{number} is no number of a vertex; they run from 0 to at most 4294967294")
+}

@@ -1,0 +1,56 @@
+//! Wavefront OBJ: lines `v x y z` and `f a b c …`, a corner being `vertex`, `vertex/texture` or `vertex/texture/normal`. Everything else is left out.
+
+use super::Mesh;
+use super::bytes::vertex_number;
+use super::error::Fault;
+use super::words::Words;
+
+pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
+    let mut mesh = Mesh::default();
+    let mut words = Words::new(content, Some(b'#'));
+    while let Some(key) = words.next() {
+        match key {
+            "v" => mesh.positions.push(words.point()?),
+            "f" => {
+                let line = words.line();
+                let corners = words
+                    .rest_of_line()
+                    .take_while(|word| !word.starts_with('#'))
+                    .map(|word| corner(word, mesh.positions.len(), line))
+                    .collect::<Result<Vec<u32>, Fault>>()?;
+                if corners.len() < 3 {
+                    let reason = format!(
+                        "a face of {} corner(s); at least 3 are needed",
+                        corners.len()
+                    );
+                    return Err(Fault::at_line(line, reason));
+                }
+                mesh.polygon(&corners);
+                continue;
+            }
+            _ => {}
+        }
+        words.skip_line();
+    }
+    Ok(mesh)
+}
+
+/// Vertices are numbered from 1 on; negative numbers count back from the last vertex so far.
+fn corner(word: &str, vertices: usize, line: usize) -> Result<u32, Fault> {
+    let number: Option<i64> = word
+        .split('/')
+        .next()
+        .and_then(|vertex| vertex.parse().ok());
+    number
+        .and_then(|number| match number {
+            0 => None,
+            1.. => vertex_number(number - 1),
+            _ => vertex_number(number.checked_add(vertices as i64)?),
+        })
+        .ok_or_else(|| {
+            Fault::at_line(
+                line,
+                format!("{word:?} is no corner; allowed: numbers of vertices from 1 on, or back from -1 to -{vertices}"),
+            )
+        })
+}

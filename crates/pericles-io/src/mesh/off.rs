@@ -1,0 +1,37 @@
+//! OFF: the word OFF, the numbers of vertices, faces and edges, coordinates, and for each face its number of corners and the corners, from 0.
+
+use super::Mesh;
+use super::error::Fault;
+use super::words::Words;
+
+pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
+    let mut words = Words::new(content, Some(b'#'));
+    let head = words.word("the word OFF")?;
+    // Colours, normals and textures follow the coordinates of a vertex on its line.
+    if !matches!(head, "OFF" | "COFF" | "NOFF" | "CNOFF" | "STOFF") {
+        return Err(words.fault(format!("the file begins with {head:?}, not with OFF")));
+    }
+    let vertices = words.count("vertices", 3)?;
+    let faces = words.count("faces", 4)?;
+    let _edges: u64 = words.number("a number of edges")?;
+    let mut mesh = Mesh::default();
+    mesh.positions.reserve(vertices);
+    for _ in 0..vertices {
+        mesh.positions.push(words.point()?);
+        words.skip_line();
+    }
+    for _ in 0..faces {
+        let corners = words.count("corners", 1)?;
+        if corners < 3 {
+            return Err(words.fault(format!(
+                "a face of {corners} corner(s); at least 3 are needed"
+            )));
+        }
+        let corners = (0..corners)
+            .map(|_| words.number("a number of a vertex"))
+            .collect::<Result<Vec<u32>, Fault>>()?;
+        mesh.polygon(&corners);
+        words.skip_line();
+    }
+    Ok(mesh)
+}

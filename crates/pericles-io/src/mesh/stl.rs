@@ -1,0 +1,89 @@
+//! STL: triangles with their corners' coordinates, as text (`solid … facet … vertex x y z`) or binary (80 bytes, a count, 50 bytes each).
+
+use super::Mesh;
+use super::bytes::{Bytes, Scalar};
+use super::error::Fault;
+use super::words::Words;
+
+/// Bytes before the count, and of a triangle: normal, three corners, two bytes.
+const HEADER: usize = 80;
+const TRIANGLE: usize = 50;
+
+/// Bytes that are looked at to tell a text.
+const GLANCE: usize = 1024;
+
+pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
+    // Some binary files begin with "solid" as well; soon there are bytes that no text has.
+    let begin = &content[..content.len().min(GLANCE)];
+    let is_text = begin.iter().all(|byte| byte.is_ascii() && *byte != 0);
+    if content.starts_with(b"solid") && is_text {
+        text(content)
+    } else {
+        binary(content)
+    }
+}
+
+fn text(content: &[u8]) -> Result<Mesh, Fault> {
+    let mut words = Words::new(content, None);
+    let mut mesh = Mesh::default();
+    let mut corners = Vec::new();
+    words.next();
+    // The name of the solid, which may hold any word.
+    words.skip_line();
+    let mut ended = false;
+    while let Some(word) = words.next() {
+        match word {
+            "vertex" => {
+                corners.push(mesh.positions.len() as u32);
+                mesh.positions.push(words.point()?);
+            }
+            "endfacet" => {
+                if corners.len() != 3 {
+                    return Err(words.fault(format!(
+                        "a facet of {} vertices; it must have 3",
+                        corners.len()
+                    )));
+                }
+                mesh.polygon(&corners);
+                corners.clear();
+            }
+            "solid" => {
+                words.skip_line();
+                ended = false;
+            }
+            "endsolid" => {
+                words.skip_line();
+                ended = true;
+            }
+            _ => {}
+        }
+    }
+    if !ended || !corners.is_empty() {
+        return Err(words.fault("the file ends where endsolid should follow"));
+    }
+    Ok(mesh)
+}
+
+fn binary(content: &[u8]) -> Result<Mesh, Fault> {
+    let mut bytes = Bytes::new(content, 0, true);
+    bytes.take(HEADER)?;
+    let count = bytes.integer(Scalar::U32)? as u64;
+    let count = bytes.room(count, TRIANGLE, "triangles")?;
+    let mut mesh = Mesh::default();
+    for triangle in 0..count as u32 {
+        bytes.take(12)?;
+        for _ in 0..3 {
+            let mut corner = [0.0; 3];
+            for x in &mut corner {
+                *x = bytes.real(Scalar::F32)?;
+            }
+            mesh.positions.push(corner);
+        }
+        bytes.take(2)?;
+        let first = triangle
+            .checked_mul(3)
+            .ok_or_else(|| bytes.fault("too many triangles; at most 1431655765 are possible"))?;
+        mesh.polygon(&[first, first + 1, first + 2]);
+    }
+    Ok(mesh)
+}

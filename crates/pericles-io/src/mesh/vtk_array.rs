@@ -1,0 +1,224 @@
+//! Arrays of VTK XML files: as text, in base64, or appended; packed in blocks or not.
+
+use std::borrow::Cow;
+use std::io::Read;
+use std::str::FromStr;
+
+use flate2::read::ZlibDecoder;
+
+use super::bytes::{Bytes, Scalar};
+use super::error::Fault;
+use super::words::Words;
+
+/// Deflate makes at most 1032 bytes of one.
+const MOST_PACKED: u64 = 1032;
+
+/// How binary arrays are written in a file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Encoding {
+    pub(super) little: bool,
+    /// Type of the numbers before the data.
+    pub(super) header: Scalar,
+    pub(super) packed: bool,
+}
+
+/// Where the numbers of an array are.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Source<'a> {
+    Text(&'a [u8]),
+    Base64(&'a [u8]),
+    Raw(&'a [u8]),
+}
+
+/// The numbers of an array.
+pub(super) enum Numbers {
+    Real(Vec<f64>),
+    Whole(Vec<i64>),
+}
+
+impl Numbers {
+    pub(super) fn real(self) -> Vec<f64> {
+        match self {
+            Self::Real(numbers) => numbers,
+            Self::Whole(numbers) => numbers.into_iter().map(|number| number as f64).collect(),
+        }
+    }
+
+    pub(super) fn whole(self, what: &str) -> Result<Vec<i64>, Fault> {
+        match self {
+            Self::Whole(numbers) => Ok(numbers),
+            Self::Real(_) => Err(Fault::of_file(format!(
+                "{what} are real numbers; they must be whole ones"
+            ))),
+        }
+    }
+}
+
+/// Reads an array.
+pub(super) fn read(
+    source: Source<'_>,
+    scalar: Scalar,
+    encoding: Encoding,
+    what: &str,
+) -> Result<Numbers, Fault> {
+    let real = matches!(scalar, Scalar::F32 | Scalar::F64);
+    if let Source::Text(text) = source {
+        return Ok(if real {
+            Numbers::Real(words(text, what)?)
+        } else {
+            Numbers::Whole(words(text, what)?)
+        });
+    }
+    let data = match encoding.packed {
+        true => unpacked(source, encoding),
+        false => plain(source, encoding),
+    };
+    let data = data.map_err(|fault| Fault::of_file(format!("{what}: {}", fault.reason)))?;
+    let count = data.len() / scalar.bytes();
+    let mut bytes = Bytes::new(&data, 0, encoding.little);
+    if real {
+        Ok(Numbers::Real(
+            (0..count)
+                .map(|_| bytes.real(scalar))
+                .collect::<Result<_, _>>()?,
+        ))
+    } else {
+        Ok(Numbers::Whole(
+            (0..count)
+                .map(|_| bytes.integer(scalar))
+                .collect::<Result<_, _>>()?,
+        ))
+    }
+}
+
+/// All words of a text as numbers.
+fn words<T: FromStr>(text: &[u8], what: &str) -> Result<Vec<T>, Fault> {
+    let mut words = Words::new(text, None);
+    let mut numbers = Vec::new();
+    while let Some(word) = words.next() {
+        let number = word.parse();
+        numbers.push(
+            number.map_err(|_| {
+                Fault::of_file(format!("{what}: {word:?} is no number of its type"))
+            })?,
+        );
+    }
+    Ok(numbers)
+}
+
+/// The bytes of a source from its beginning, in base64 at most so many characters.
+fn begun(source: Source<'_>, characters: usize) -> Result<Cow<'_, [u8]>, Fault> {
+    match source {
+        Source::Base64(text) => decoded(&text[..characters.min(text.len())]).map(Cow::Owned),
+        Source::Raw(data) | Source::Text(data) => Ok(Cow::Borrowed(data)),
+    }
+}
+
+/// The number of bytes, then the bytes.
+fn plain(source: Source<'_>, encoding: Encoding) -> Result<Vec<u8>, Fault> {
+    let data = begun(source, usize::MAX)?;
+    let mut bytes = Bytes::new(&data, 0, encoding.little);
+    let length = bytes.integer(encoding.header)? as u64;
+    let length = bytes.room(length, 1, "bytes")?;
+    Ok(bytes.take(length)?.to_vec())
+}
+
+/// The number of blocks, the bytes in a block, those in the last one if it is not full, the packed bytes of every block; then the blocks.
+fn unpacked(source: Source<'_>, encoding: Encoding) -> Result<Vec<u8>, Fault> {
+    let size = encoding.header.bytes();
+    // In base64 the table is a group of its own: its length must be known before the rest can be decoded.
+    let head = begun(source, group(size))?;
+    let mut head = Bytes::new(&head, 0, encoding.little);
+    let blocks = head.integer(encoding.header)? as u64;
+    let length = match source {
+        Source::Base64(data) | Source::Raw(data) | Source::Text(data) => data.len(),
+    };
+    // The table has three numbers more than there are blocks.
+    if blocks > (length / size) as u64 {
+        return Err(head.fault(format!(
+            "{blocks} blocks are announced, but only {length} bytes follow"
+        )));
+    }
+    let blocks = blocks as usize;
+    let table_bytes = (3 + blocks) * size;
+    let (table, data) = match source {
+        Source::Base64(text) => {
+            let (table, data) = text.split_at(group(table_bytes).min(text.len()));
+            (Cow::Owned(decoded(table)?), Cow::Owned(decoded(data)?))
+        }
+        Source::Raw(data) | Source::Text(data) => {
+            let (table, data) = data.split_at(table_bytes.min(data.len()));
+            (Cow::Borrowed(table), Cow::Borrowed(data))
+        }
+    };
+    let mut table = Bytes::new(&table, size, encoding.little);
+    let full = table.integer(encoding.header)? as u64;
+    let last = table.integer(encoding.header)? as u64;
+    let mut packed = Bytes::new(&data, 0, encoding.little);
+    let mut all = Vec::new();
+    for block in 0..blocks {
+        let length = table.integer(encoding.header)? as u64;
+        let length = packed.room(length, 1, "packed bytes")?;
+        let expected = if block + 1 == blocks && last > 0 {
+            last
+        } else {
+            full
+        };
+        if expected > MOST_PACKED * (length as u64 + 1) {
+            return Err(packed.fault(format!("{expected} bytes cannot be packed into {length}")));
+        }
+        let before = all.len();
+        ZlibDecoder::new(packed.take(length)?)
+            .take(expected + 1)
+            .read_to_end(&mut all)
+            .map_err(|error| packed.fault(format!("packed data are damaged ({error})")))?;
+        if (all.len() - before) as u64 != expected {
+            return Err(packed.fault(format!(
+                "a block has {} bytes instead of {expected}",
+                all.len() - before
+            )));
+        }
+    }
+    Ok(all)
+}
+
+/// Characters that so many bytes take in base64.
+fn group(bytes: usize) -> usize {
+    bytes.div_ceil(3) * 4
+}
+
+/// The bytes of a text in base64 (RFC 4648), up to the first group that is not full.
+fn decoded(text: &[u8]) -> Result<Vec<u8>, Fault> {
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let mut group = 0u32;
+    let mut digits = 0;
+    for &character in text {
+        let digit = match character {
+            b'A'..=b'Z' => character - b'A',
+            b'a'..=b'z' => character - b'a' + 26,
+            b'0'..=b'9' => character - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            // The end of a group, or of the data.
+            b'=' | b'<' => break,
+            character if character.is_ascii_whitespace() => continue,
+            character => {
+                return Err(Fault::of_file(format!(
+                    "{:?} is no digit of base64",
+                    char::from(character)
+                )));
+            }
+        };
+        group = group << 6 | u32::from(digit);
+        digits += 1;
+        if digits == 4 {
+            bytes.extend_from_slice(&group.to_be_bytes()[1..]);
+            (group, digits) = (0, 0);
+        }
+    }
+    if digits > 1 {
+        group <<= 6 * (4 - digits);
+        bytes.extend_from_slice(&group.to_be_bytes()[1..digits]);
+    }
+    Ok(bytes)
+}
