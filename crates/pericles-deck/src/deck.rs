@@ -5,6 +5,7 @@ use std::path::Path as FilePath;
 use serde_json::Value as Json;
 
 use crate::body::{self, Body, SurfaceRead};
+use crate::boundary::{self, BoundaryCondition};
 use crate::conditions::{self, Initial, Load, Prescribe, Probe};
 use crate::crack::{self, PreCrack};
 use crate::document;
@@ -40,6 +41,8 @@ pub struct Deck {
     pub prescribe: Vec<Prescribe>,
     /// `[[load]]`
     pub loads: Vec<Load>,
+    /// `[[boundary]]`
+    pub boundaries: Vec<BoundaryCondition>,
     /// `[[probe]]`
     pub probes: Vec<Probe>,
     /// `[time]`
@@ -132,6 +135,7 @@ impl Deck {
         let loads = each(&root, "load", |table| {
             conditions::load(table, frame.dimension, &names)
         });
+        let boundaries = each(&root, "boundary", boundary::read);
         let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
         let time = root
             .required("time")
@@ -153,6 +157,7 @@ impl Deck {
             initial: initial?,
             prescribe: prescribe?,
             loads: loads?,
+            boundaries: boundaries?,
             probes: probes?,
             time: time?,
             output: output?,

@@ -121,6 +121,12 @@
 //! function = { kind = "ramp", duration = "1 us" }
 //! from = "0 s"                           # optional, as `until`: when the load acts
 //!
+//! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet"
+//! kind = "absorbing"                     # the bar goes on for ever beyond this end, as its outermost points are; exact
+//! side = "-x"                            # or +x
+//! history = "blocked"                    # default; or direct: slow, for comparison; or exponentials: not exact, but little memory, with
+//! # tolerance = 1e-9                     # of a displacement beyond the end, relative
+//!
 //! [[probe]]                              # displacement and velocity in the history
 //! name = "middle"
 //! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
@@ -202,6 +208,7 @@
 //! of which only one may be given: `material.m=4` replaces `horizon`. Errors point into the override.
 
 mod body;
+mod boundary;
 mod build;
 mod caution;
 mod component;
@@ -232,6 +239,7 @@ mod units;
 mod vocabulary;
 
 pub use body::Body;
+pub use boundary::{BoundaryCondition, HistoryForm};
 pub use build::{Model, Sets};
 pub use caution::Caution;
 pub use component::{Component, VectorField};

@@ -553,6 +553,118 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
     assert!(two > 0.98 * plain, "{two} {plain}");
 }
 
+/// A bar that goes on for ever at both ends.
+const BAR: &str = r#"
+[body]
+shape = "bar"
+length = "100 mm"
+spacing = "1 mm"
+[material]
+model = "linear"
+density = "7850 kg/m3"
+youngs_modulus = "210 GPa"
+horizon_ratio = 3
+volume_correction = "none"
+[sets]
+middle = { box = { min = "50 mm", max = "52 mm" } }
+[[initial]]
+set = "middle"
+velocity = "1 m/s"
+[[boundary]]
+kind = "absorbing"
+side = "-x"
+[[boundary]]
+kind = "absorbing"
+side = "+x"
+[time]
+end = "100 us"
+"#;
+
+#[test]
+fn waves_leave_through_absorbing_ends() {
+    let model = build(BAR);
+    assert_eq!(model.system.boundaries().count(), 2);
+    let mut run = model.simulation();
+    run.run(|_| pericles::Control::Continue).unwrap();
+    let energies = run.snapshot().energies();
+    // The shortest waves of a jump hardly travel; what left is booked.
+    assert!(energies.work < -0.8 * energies.initial, "{energies:?}");
+    assert!(
+        energies.balance().abs() < 1e-12 * energies.initial,
+        "{energies:?}"
+    );
+}
+
+#[test]
+fn histories_by_exponentials_keep_their_tolerance() {
+    let displacement = |text: &str| {
+        let mut run = build(text).simulation();
+        run.run(|_| pericles::Control::Continue).unwrap();
+        run.state().u.clone()
+    };
+    let text = BAR.replace("[time]", "[time]\ndt = \"60 ns\"");
+    let exact = displacement(&text);
+    let history = "side = \"+x\"\nhistory = \"exponentials\"\ntolerance = 1e-6";
+    let fitted = displacement(&text.replace("side = \"+x\"", history));
+    let largest = exact.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
+    let pairs = exact.iter().zip(&fitted);
+    let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs())) / largest;
+    assert!(error < 1e-5 && error > 0.0, "{error:e}");
+}
+
+#[test]
+fn ends_that_cannot_be_continued_are_refused() {
+    let cases: [(&str, &str, (usize, usize), &str); 7] = [
+        (
+            "side = \"+x\"",
+            "side = \"-x\"",
+            (20, 1),
+            "two absorbing ends at -x",
+        ),
+        (
+            "[time]",
+            "[time]\nscheme = \"rk4\"",
+            (24, 10),
+            "made for velocity-verlet, not for rk4",
+        ),
+        ("[time]", "[time]\ndt = \"1 us\"", (24, 6), "is unstable"),
+        (
+            "set = \"middle\"\n",
+            "",
+            (16, 1),
+            "the initial field reaches the end -x: point 0 has 1e0",
+        ),
+        (
+            "[[initial]]",
+            "[sets.left]\nlayer = { side = \"-x\", cells = 2 }\n[[material.inclusion]]\nset = \"left\"\nstiffness = 2\n[[initial]]",
+            (22, 1),
+            "the outer layer at -x is not homogeneous: the bond from point",
+        ),
+        (
+            "[[initial]]",
+            "[[load]]\nset = \"all\"\nbody_force = 1\n[[initial]]",
+            (20, 1),
+            "a load acts on point 0",
+        ),
+        (
+            "volume_correction = \"none\"",
+            "critical_stretch = 0.01",
+            (17, 1),
+            "its 3 outermost points must be in `no_fail`",
+        ),
+    ];
+    for (replace, by, (line, column), says) in cases {
+        assert_eq!(BAR.matches(replace).count(), 1, "{replace}");
+        let error = refusal(&BAR.replace(replace, by));
+        let message = error.to_string();
+        assert!(
+            message.contains(&format!("deck.toml:{line}:{column}:")),
+            "{message}"
+        );
+        assert!(message.contains(says), "{message}");
+    }
+}
+
 /// A bar of ten cells whose ends are driven and loaded by expressions.
 const EXPRESSIONS: &str = r#"
 [body]

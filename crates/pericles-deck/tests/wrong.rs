@@ -113,6 +113,12 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nadaptive = { after = 2 }", (37, 14), "after", &["unknown key `after` in [time.adaptive]", "`threshold`"]),
     wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nfine = \"top\"\ninterpolant = \"hermit\"", (38, 15), "\"hermit\"", &["did you mean `hermite`?"]),
     wrong("[sets.top]", "[[material.inclusion]]\nset = \"top\"\nstiffness = 0\n[sets.top]", (17, 13), "0", &["a positive number"]),
+    // Boundaries.
+    wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] lacks `side`"]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"long\"\n[time]", (36, 11), "\"long\"", &["unknown history `long`", "\"blocked\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\ntolerance = 1e-9\n[time]", (36, 1), "tolerance", &["no place", "\"exponentials\""]),
     // Smaller cells.
     wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks `ratio`"]),
     wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks one of", "`ball`"]),

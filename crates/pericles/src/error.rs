@@ -1,5 +1,7 @@
 //! The one error type of the library.
 
+use crate::boundary::absorbing::AbsorbingError;
+
 /// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -310,6 +312,9 @@ pub enum PericlesError {
         /// What stands in the way.
         cause: &'static str,
     },
+    /// No absorbing end can be made.
+    #[error("absorbing end: {0}")]
+    Absorbing(#[from] AbsorbingError),
     /// The inner iteration of a step that does not end.
     #[error(
         "at t = {t:e} s the inner iteration did not converge: after {iterations} evaluations the velocity still changes by {change:e} (allowed {tolerance:e}); \

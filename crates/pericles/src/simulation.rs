@@ -1,6 +1,7 @@
 //! The loop over time, written once.
 
 use crate::archive::{Archive, Saved};
+use crate::boundary::absorbing::AbsorbingError;
 use crate::error::PericlesError;
 use crate::observe::{ObserveError, Observer, Schedule, Snapshot, StartEnergy};
 use crate::system::System;
@@ -155,6 +156,7 @@ impl Simulation {
         &mut self,
         mut control: impl FnMut(&Self) -> Control,
     ) -> Result<Outcome, SimulationError> {
+        self.check_boundaries()?;
         if self.state.step == 0 {
             self.show()?;
         }
@@ -173,6 +175,20 @@ impl Simulation {
             }
         }
         Ok(Outcome::Finished)
+    }
+
+    /// Boundaries with memory are made for a scheme and a number of steps.
+    fn check_boundaries(&self) -> Result<(), PericlesError> {
+        let (scheme, steps) = (self.integrator.name(), self.steps);
+        for boundary in self.system.boundaries() {
+            if let Some(needed) = boundary.scheme().filter(|needed| *needed != scheme) {
+                return Err(AbsorbingError::Scheme { scheme, needed }.into());
+            }
+            if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
+                return Err(AbsorbingError::TooManySteps { steps, made_for }.into());
+            }
+        }
+        Ok(())
     }
 
     fn show(&mut self) -> Result<(), SimulationError> {

@@ -156,6 +156,11 @@ impl System {
         !self.boundaries.is_empty()
     }
 
+    /// The boundaries.
+    pub fn boundaries(&self) -> impl Iterator<Item = &dyn Boundary> {
+        self.boundaries.iter().map(|boundary| &**boundary)
+    }
+
     /// Number of points.
     pub fn points(&self) -> usize {
         self.cloud.len()
@@ -217,6 +222,7 @@ impl System {
     pub fn accept_and_accelerate(&mut self, accepted: Accepted<'_>, v: &[f64], out: &mut [f64]) {
         self.accept_on(accepted, &On::All, out);
         self.book_step(accepted, out);
+        self.accept_boundaries(accepted);
         self.finish(accepted.t, accepted.u, v, &On::All, out);
     }
 
@@ -231,6 +237,7 @@ impl System {
         };
         self.accept_on(whole, &On::All, out);
         self.book(Path::Cubic { u, v }, t, dt, out);
+        self.accept_boundaries(whole);
         self.finish(t, u[1], v[1], &On::All, out);
     }
 
@@ -310,10 +317,24 @@ impl System {
         self.book(path, accepted.t, accepted.dt, acceleration);
     }
 
+    /// Lets boundaries take an accepted state, and books what they did.
+    fn accept_boundaries(&mut self, accepted: Accepted<'_>) {
+        for boundary in &mut self.boundaries {
+            let exchange = boundary.accept(accepted);
+            self.ledger.book(exchange.work, exchange.impulse);
+        }
+    }
+
     /// Notes the reactions of the initial state.
     pub fn start(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
         self.free_acceleration(t, u, &On::All, out);
         self.book(Path::MeanVelocity(v), t, 0.0, out);
+        self.accept_boundaries(Accepted {
+            t,
+            u,
+            mean_velocity: v,
+            dt: 0.0,
+        });
         self.finish(t, u, v, &On::All, out);
     }
 

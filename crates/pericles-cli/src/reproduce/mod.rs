@@ -6,6 +6,7 @@
 //!
 //! A new study is one file with a `STUDY`, listed in its topic's `STUDIES`; a new topic is listed in [`TOPICS`].
 
+mod absorbing_boundaries;
 mod dispersion;
 mod fracture;
 mod manifolds;
@@ -39,7 +40,8 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 4] = [
+const TOPICS: [&[Study]; 5] = [
+    &absorbing_boundaries::STUDIES,
     &dispersion::STUDIES,
     &fracture::STUDIES,
     &manifolds::STUDIES,

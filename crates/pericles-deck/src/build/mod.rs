@@ -1,6 +1,7 @@
 //! From a deck to a model that can be run.
 
 mod area;
+mod boundary;
 mod conditions;
 mod content;
 mod fields;
@@ -136,8 +137,11 @@ impl Deck {
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
-        let steps = self.steps(&system, &state, &*integrator, &mut warnings)?;
+        let ends = self.ends(&system, &state, &sets, &*integrator)?;
+        let exterior = boundary::exterior_frequency(&ends);
+        let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
+        self.add_ends(&mut system, ends, &steps, cache)?;
         Ok(Model {
             cloud,
             surface,

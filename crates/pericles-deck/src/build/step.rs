@@ -19,16 +19,19 @@ pub(super) struct Steps {
 }
 
 impl Deck {
-    /// Finds the step, or judges the one that is given.
+    /// Finds the step, or judges the one that is given; `exterior` is the highest frequency of what lies beyond the body, 1/s.
     pub(super) fn steps(
         &self,
         system: &System,
         state: &State,
         integrator: &dyn Integrator,
+        exterior: f64,
         warnings: &mut Vec<Warning>,
     ) -> Result<Steps, DeckError> {
         let end = self.time.end;
-        let frequency = integrator.limiting_frequency(system, &state.u);
+        let frequency = integrator
+            .limiting_frequency(system, &state.u)
+            .map(|frequency| frequency.at_least(exterior));
         let limit = integrator.stability_limit();
         match self.time.step {
             TimeStep::Auto { safety } => {

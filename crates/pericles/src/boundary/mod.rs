@@ -1,5 +1,6 @@
-//! Loads, prescribed motion, and the seam for other boundaries.
+//! Loads, prescribed motion, and boundaries with memory.
 
+pub mod absorbing;
 mod function;
 mod load;
 mod motion;
@@ -11,12 +12,41 @@ pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use table::TimeTable;
 
 use crate::archive::Saved;
+use crate::operator::Accepted;
+
+/// What a boundary gave the body over a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Exchange {
+    /// Work, J.
+    pub work: f64,
+    /// Impulse, N s.
+    pub impulse: [f64; 3],
+}
 
 /// A boundary that acts on the state around force evaluations: ghost points, absorbing ends, damping layers.
 pub trait Boundary: Saved + Send + Sync {
     /// Called before the force is evaluated at time t, with the displacement and velocity of that stage.
-    fn before_force(&mut self, t: f64, u: &mut [f64], v: &mut [f64]);
+    fn before_force(&mut self, t: f64, u: &mut [f64], v: &mut [f64]) {
+        let _ = (t, u, v);
+    }
+
+    /// Called once for the initial state and for every accepted one, before [`Boundary::after_stage`] is called for it: here memory goes on. Returns what the
+    /// boundary did to the body over the step that ended, which has length 0 at the start.
+    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+        let _ = accepted;
+        Exchange::default()
+    }
 
     /// Called after the accelerations of a stage are known; may change them.
     fn after_stage(&mut self, t: f64, u: &[f64], v: &[f64], acceleration: &mut [f64]);
+
+    /// The only scheme it works with, by its name in decks; none if any.
+    fn scheme(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Steps that it is made for; none if any number.
+    fn steps(&self) -> Option<u64> {
+        None
+    }
 }

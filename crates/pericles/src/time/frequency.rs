@@ -30,6 +30,16 @@ impl HighestFrequency {
             }
     }
 
+    /// The same where something else swings as fast as `omega`, 1/s.
+    #[must_use]
+    pub fn at_least(self, omega: f64) -> Self {
+        Self {
+            estimate: self.estimate.max(omega),
+            bound: self.bound.max(omega),
+            ..self
+        }
+    }
+
     /// The same for time steps that are `ratio` times smaller.
     pub(super) fn over(self, ratio: f64) -> Self {
         Self {

@@ -8,7 +8,7 @@ use rustfft::{Fft, FftPlanner};
 
 /// Transforms of a line of real numbers of fixed length, forth and back.
 #[derive(Clone)]
-pub(super) struct LineTransform {
+pub(crate) struct LineTransform {
     forward: Arc<dyn RealToComplex<f64>>,
     inverse: Arc<dyn ComplexToReal<f64>>,
 }

@@ -60,6 +60,7 @@ mod wanted;
 pub use comparison::CostComparison;
 pub use convolution_force::ConvolutionForce;
 pub use cost::Route;
+pub(crate) use fourier::LineTransform;
 pub use toeplitz::{Ends, Toeplitz};
 
 use crate::error::{PericlesError, Result};

@@ -1,0 +1,134 @@
+//! The end of a bar that lets waves leave.
+
+use super::history::History;
+use super::{AbsorbingError, OuterLayer};
+use crate::archive::{Archive, Saved, Values};
+use crate::boundary::{Boundary, Exchange};
+use crate::error::Result;
+use crate::operator::Accepted;
+
+/// Weight of the initial displacement in the history: velocity Verlet starts with half a kick, the trapezoidal rule with half a weight.
+const FIRST: f64 = 0.5;
+
+/// An absorbing end: K ghosts beyond the body, whose displacements follow from the history of the body's K outermost points, and the bonds that tie them
+/// to the body.
+///
+/// At each accepted state the ghosts are taken from the history, which knows the steps before only (the ghosts of a step do not depend on the
+/// body's displacement in it: kernels start with the first lag), their bonds' forces found, and the state is added to the history. The forces are then part of the acceleration; their
+/// work is booked as that of an outer force, so that the energy account closes: what waves carry away is negative work.
+pub struct AbsorbingEnd {
+    layer: OuterLayer,
+    history: Box<dyn History>,
+    /// Whether the initial displacement has been taken.
+    started: bool,
+    own: Vec<f64>,
+    ghosts: Vec<f64>,
+    /// Accelerations by the ghosts' bonds.
+    pull: Vec<f64>,
+    /// Those of the step before.
+    pull_before: Vec<f64>,
+}
+
+impl AbsorbingEnd {
+    /// The scheme that the ends are made for.
+    pub const SCHEME: &str = "velocity-verlet";
+
+    /// An end whose history gives the ghosts of the layer.
+    ///
+    /// # Errors
+    /// A step that is unstable for the exterior.
+    pub fn new(
+        layer: OuterLayer,
+        history: Box<dyn History>,
+        dt: f64,
+    ) -> std::result::Result<Self, AbsorbingError> {
+        layer.stencil.check_step(dt)?;
+        let reach = layer.points.len();
+        Ok(Self {
+            layer,
+            history,
+            started: false,
+            own: vec![0.0; reach],
+            ghosts: vec![0.0; reach],
+            pull: vec![0.0; reach],
+            pull_before: vec![0.0; reach],
+        })
+    }
+
+    /// The outer layer.
+    pub fn layer(&self) -> &OuterLayer {
+        &self.layer
+    }
+
+    /// The history.
+    pub fn history(&self) -> &dyn History {
+        &*self.history
+    }
+
+    /// Takes the ghosts of the present from the history, and the present into it.
+    fn advance(&mut self) {
+        self.history.ghosts_into(&mut self.ghosts);
+        std::mem::swap(&mut self.pull, &mut self.pull_before);
+        let weights = self.layer.stencil.weights();
+        for (p, pull) in self.pull.iter_mut().enumerate() {
+            // Outer point p + 1 spacings from ghost 0 reaches ghosts 0 … K − p − 1.
+            let bonds = weights[p..].iter().zip(&self.ghosts);
+            *pull = bonds.map(|(a, ghost)| a * (ghost - self.own[p])).sum();
+        }
+        if !self.started {
+            self.own.iter_mut().for_each(|u| *u *= FIRST);
+            self.started = true;
+        }
+        self.history.push(&self.own, &self.ghosts);
+    }
+
+    fn name(&self) -> String {
+        format!("absorbing/{}", self.layer.side.name())
+    }
+}
+
+impl Boundary for AbsorbingEnd {
+    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+        for (own, &i) in self.own.iter_mut().zip(&self.layer.points) {
+            *own = accepted.u[i];
+        }
+        self.advance();
+        let mut exchange = Exchange::default();
+        for (p, &i) in self.layer.points.iter().enumerate() {
+            let mean = 0.5 * self.layer.mass * (self.pull[p] + self.pull_before[p]);
+            exchange.work += mean * accepted.mean_velocity[i] * accepted.dt;
+            exchange.impulse[0] += mean * accepted.dt;
+        }
+        exchange
+    }
+
+    fn after_stage(&mut self, _t: f64, _u: &[f64], _v: &[f64], acceleration: &mut [f64]) {
+        for (pull, &i) in self.pull.iter().zip(&self.layer.points) {
+            acceleration[i] += pull;
+        }
+    }
+
+    fn scheme(&self) -> Option<&'static str> {
+        Some(Self::SCHEME)
+    }
+
+    fn steps(&self) -> Option<u64> {
+        self.history.steps()
+    }
+}
+
+impl Saved for AbsorbingEnd {
+    fn save(&self, archive: &mut Archive) {
+        let name = self.name();
+        archive.put(format!("{name}/pull"), Values::F64(self.pull.clone()));
+        self.history.save(&name, archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let name = self.name();
+        archive.f64_into(&format!("{name}/pull"), &mut self.pull)?;
+        self.history.restore(&name, archive)?;
+        self.started = true;
+        Ok(())
+    }
+}

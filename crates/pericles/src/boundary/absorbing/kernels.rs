@@ -1,0 +1,121 @@
+//! Which kernel acts on which site's history.
+
+/// The kernels of one end: ghost −n, n = 0 … K − 1, is u_{−n} = Σ (kernel * site).
+#[derive(Debug, Clone, PartialEq)]
+pub struct GhostKernels {
+    form: KernelForm,
+    reach: usize,
+    series: Vec<Vec<f64>>,
+}
+
+/// How ghosts follow from histories.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum KernelForm {
+    /// u_{−n} = Σ_m h_m * u_{m−n}: K kernels, which act on ghosts as well.
+    Shift,
+    /// u_{−n} = Σ_m F_n^m * u_m: K² kernels.
+    Full,
+}
+
+impl GhostKernels {
+    /// From h_1 … h_K, with the coefficient of w^j in place j.
+    pub fn shift(series: Vec<Vec<f64>>) -> Self {
+        Self {
+            form: KernelForm::Shift,
+            reach: series.len(),
+            series,
+        }
+    }
+
+    /// From F_n^m, n = 0 … K − 1, m = 1 … K, m running faster.
+    pub fn full(reach: usize, series: Vec<Vec<f64>>) -> Self {
+        debug_assert_eq!(series.len(), reach * reach);
+        Self {
+            form: KernelForm::Full,
+            reach,
+            series,
+        }
+    }
+
+    /// K.
+    pub fn reach(&self) -> usize {
+        self.reach
+    }
+
+    /// The kernels.
+    pub fn series(&self) -> &[Vec<f64>] {
+        &self.series
+    }
+
+    /// Steps that the kernels reach back.
+    pub fn steps(&self) -> usize {
+        self.series.first().map_or(0, |series| series.len() - 1)
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.series
+            .iter()
+            .map(|series| size_of_val(&series[..]))
+            .sum()
+    }
+
+    /// Sites whose history is kept.
+    pub fn inputs(&self) -> usize {
+        match self.form {
+            KernelForm::Shift => 2 * self.reach - 1,
+            KernelForm::Full => self.reach,
+        }
+    }
+
+    /// The pairs (site's place among the inputs, kernel) that make ghost −n.
+    pub fn terms(&self, n: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let (form, reach) = (self.form, self.reach);
+        (0..reach).map(move |m| match form {
+            // Site m + 1 − n; the first kept is 2 − K.
+            KernelForm::Shift => (m + reach - 1 - n, m),
+            KernelForm::Full => (m, n * reach + m),
+        })
+    }
+
+    /// The displacements of the kept sites at one time from those of the body's outer points 1 … K and of the ghosts 0 … −(K − 1).
+    pub fn gather(&self, own: &[f64], ghosts: &[f64], inputs: &mut [f64]) {
+        match self.form {
+            KernelForm::Full => inputs.copy_from_slice(own),
+            KernelForm::Shift => {
+                let (beyond, body) = inputs.split_at_mut(self.reach - 1);
+                body.copy_from_slice(own);
+                for (n, input) in beyond.iter_mut().rev().enumerate() {
+                    *input = ghosts[n];
+                }
+            }
+        }
+    }
+
+    /// The K² kernels F_n^m: F_{n+1}^m = F_n^1 * h_m + F_n^{m+1} (n counted away from the body), by products of `steps` coefficients. Slow; for tests and
+    /// reports.
+    pub fn expanded(&self) -> Self {
+        if self.form == KernelForm::Full {
+            return self.clone();
+        }
+        let (reach, h) = (self.reach, &self.series);
+        let mut full: Vec<Vec<f64>> = h.clone();
+        for n in 1..reach {
+            for m in 0..reach {
+                let last = (n - 1) * reach;
+                let mut series = match m + 1 < reach {
+                    true => full[last + m + 1].clone(),
+                    false => vec![0.0; h[0].len()],
+                };
+                let first = full[last].clone();
+                for (j, x) in first.iter().enumerate() {
+                    for (sum, y) in series[j..].iter_mut().zip(&h[m]) {
+                        *sum += x * y;
+                    }
+                }
+                full.push(series);
+            }
+        }
+        Self::full(reach, full)
+    }
+}

@@ -1,0 +1,61 @@
+//! Exact absorbing ends of bars: the body goes on for ever, and only the body is computed.
+//!
+//! A homogeneous linear lattice u_n'' = Σ a_k (u_{n+k} − 2 u_n + u_{n−k}) beyond the end of a bar, at rest at the start, answers to the body's K outermost points 1 … K
+//! only. Its first K sites, the ghosts 0, −1 … −(K − 1), follow from their history,
+//!
+//! ```text
+//! u_{−n}^j = Σ_m Σ_{α ≥ 1} F_n^m[α] u_m^{j−α}          (u^0 with half its weight)
+//! ```
+//!
+//! and with the ghosts' bonds the body moves as in the infinite lattice.
+//!
+//! | kernels | of | equal to |
+//! |---|---|---|
+//! | [`factor_kernels`] | the lattice stepped by velocity Verlet | the run on a large body with the same step, to round-off |
+//! | [`semi_discrete_kernels`] | the lattice in continuous time, trapezoidal rule | the exact solution, to second order in dt |
+//! | [`green_functions_closed`], [`trapezoidal_kernels`] | the same from the paper's closed chain | historical: unstable for long runs |
+//!
+//! | history | cost of N steps | memory |
+//! |---|---|---|
+//! | [`DirectHistory`](history::DirectHistory) | K² N² | K N |
+//! | [`BlockedHistory`](history::BlockedHistory) | K N log² N + K² N log N | 7 K N numbers |
+//! | [`ExponentialHistory`](history::ExponentialHistory) | K p N, within a tolerance ([`ExponentialKernels`]) | K p numbers for p exponentials |
+//!
+//! **Kernels.** With the delay w of one step the factor 1 − Σ h_m z^m of the lattice's symbol whose zeros lie outside the unit circle gives u_{−n} = Σ_m h_m * u_{m−n}: K kernels instead
+//! of K², found as power series ([`factor_kernels`]); F follows by F_{n+1}^m = F_n^1 * h_m + F_n^{m+1}.
+//!
+//! **What must hold.** The outermost K points are linear, undamaged, of one material, without loads, prescribed motion or initial field ([`OuterLayer`] checks it against the body's own bonds);
+//! the rest of the body is free: heterogeneous, nonlinear, breaking, loaded.
+//!
+//! Reference: Ji, Pang, Zhang, Yang, Perdikaris, *Exact artificial boundary conditions of 1D semi-discretized peridynamics* (equations 19–34), for the
+//! semi-discrete lattice; the discrete kernels, their factorisation and the fast histories are ours.
+
+mod blocks;
+mod cached;
+mod contour;
+mod end;
+mod error;
+mod factor;
+mod fit;
+mod green;
+mod historical;
+pub mod history;
+mod kernels;
+mod layer;
+mod rational;
+mod roots;
+mod semi_discrete;
+mod stencil;
+
+pub use cached::cached_kernels;
+pub use contour::contour_kernels;
+pub use end::AbsorbingEnd;
+pub use error::AbsorbingError;
+pub use factor::factor_kernels;
+pub use fit::ExponentialKernels;
+pub use green::green_functions;
+pub use historical::green_functions_closed;
+pub use kernels::GhostKernels;
+pub use layer::{OuterLayer, Side};
+pub use semi_discrete::{semi_discrete_kernels, trapezoidal_kernels};
+pub use stencil::LatticeStencil;
