@@ -6,10 +6,10 @@ use std::sync::Arc;
 use pericles::Simulation;
 use pericles::observe::{CrackTracker, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, Model, Precision};
+use pericles_deck::{Deck, ExactReference, Model, Precision};
 use pericles_io::OutputFolder;
 use pericles_io::observers::{
-    Cracks, FieldSeries, History, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
+    Cracks, Errors, FieldSeries, History, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
 use serde::Serialize;
 
@@ -122,7 +122,7 @@ pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
 /// Sub-folders that cannot be made.
 pub(crate) fn simulation(
     deck: &Deck,
-    model: Model,
+    mut model: Model,
     folder: &OutputFolder,
 ) -> Result<Simulation, CliError> {
     let (cloud, output) = (model.cloud.clone(), &deck.output);
@@ -131,6 +131,7 @@ pub(crate) fn simulation(
     let reactions = (!model.system.motions().is_empty())
         .then(|| Reactions::new(folder.file("reactions.csv"), model.system.motions()));
     let (probes, cracks) = (model.probes.clone(), model.cracks.clone());
+    let exact = model.exact.take();
     let surface = model.surface.clone();
     let mut simulation = model.simulation();
 
@@ -146,6 +147,10 @@ pub(crate) fn simulation(
     if !probes.is_empty() {
         let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
         simulation.observe(output.history, Box::new(probes));
+    }
+    if let Some(ExactReference { solution, points }) = exact {
+        let errors = Errors::new(folder.file("errors.csv"), solution, points);
+        simulation.observe(output.history, Box::new(errors));
     }
     if can_break && !cracks.is_empty() {
         let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);

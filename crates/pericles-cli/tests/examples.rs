@@ -173,3 +173,27 @@ fn peak(t: &[f64], y: &[f64]) -> f64 {
     // Steps are equal.
     t[k] + 0.5 * (t[k + 1] - t[k]) * (before - after) / (before + after)
 }
+
+#[test]
+fn the_spectral_pulse_is_exact() {
+    let (_place, out) = check("wave", "spectral");
+    let errors = table(&out, "errors.csv");
+    assert!(*errors.column("error_so_far").unwrap().last().unwrap() < 1e-13);
+}
+
+#[test]
+fn gauss_nodes_by_the_midpoint_rule_keep_their_energy() {
+    let (_place, out) = check("wave", "gauss-midpoint");
+    let history = table(&out, "history.csv");
+    let balance = history.column("balance").unwrap();
+    let energy = history.column("elastic_energy").unwrap()[0];
+    assert!(balance.iter().all(|b| b.abs() < 1e-12 * energy));
+}
+
+#[test]
+fn waves_in_the_periodic_plate() {
+    let (_place, out) = check("wave", "plate");
+    // Loads are booked along the cubic through both ends of a step.
+    let report = report(&out);
+    assert!(report["audit"]["balance_over_work"].as_f64().unwrap().abs() < 1e-3);
+}

@@ -17,6 +17,20 @@ pub struct Body {
     pub finer: Vec<Finer>,
     /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
     pub state: StressState,
+    /// Whether opposite faces are one.
+    pub periodic: bool,
+    /// Where the points of a cell are.
+    pub quadrature: Quadrature,
+}
+
+/// Where the points of a cell are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Quadrature {
+    /// One in its middle.
+    #[default]
+    Midpoint,
+    /// The two Gauss nodes of a bar's cell.
+    Gauss,
 }
 
 /// What other tables need of a body, as far as it could be read.
@@ -107,8 +121,9 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .into_iter()
         .map(|part| finer(part, read.frame))
         .collect();
+    let rules = rules(&table, kind, holes.is_empty() && finer.is_empty());
     table.finish();
-    read.body = assemble(&read, outline, section, holes, finer);
+    read.body = assemble(&read, outline, section, holes, finer, rules);
     read
 }
 
@@ -155,7 +170,9 @@ fn assemble(
     section: Option<f64>,
     holes: Vec<Option<Region>>,
     finer: Vec<Option<Finer>>,
+    rules: Option<(bool, Quadrature)>,
 ) -> Option<Body> {
+    let (periodic, quadrature) = rules?;
     let outline = outline?;
     let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
     holes.extend(outline.bore);
@@ -168,7 +185,32 @@ fn assemble(
         },
         finer: finer.into_iter().collect::<Option<_>>()?,
         state: read.state?,
+        periodic,
+        quadrature,
     })
+}
+
+/// Periodicity and the place of points in their cells.
+fn rules(table: &Table<'_>, kind: Kind, whole: bool) -> Option<(bool, Quadrature)> {
+    const BOX: &str = "only a bar, plate or block without holes has opposite faces that can be one";
+    const BAR: &str = "only the cells of a bar without holes, and with two ends, have Gauss nodes";
+    let periodic = if matches!(kind, Kind::Bar | Kind::Plate | Kind::Block) && whole {
+        table.or("periodic", false, |item| item.boolean())
+    } else {
+        table.forbid("periodic", BOX);
+        Some(false)
+    };
+    let quadrature = if kind == Kind::Bar && whole && periodic != Some(true) {
+        let rules = [
+            ("midpoint", Quadrature::Midpoint),
+            ("gauss", Quadrature::Gauss),
+        ];
+        table.choice_or_first("quadrature", "quadrature", &rules)
+    } else {
+        table.forbid("quadrature", BAR);
+        Some(Quadrature::Midpoint)
+    };
+    Some((periodic?, quadrature?))
 }
 
 /// A shape and, for tubes and rings, the region left out in its middle.

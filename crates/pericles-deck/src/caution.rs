@@ -41,6 +41,18 @@ pub enum Caution {
         /// The step that is surely stable, s.
         limit: f64,
     },
+    /// A period that waves cross within the run.
+    #[error(
+        "the period of {period:e} m is short for this run: at its end the waves of the next period are about {estimate:.1e} of the pulse within {window:e} m of its middle"
+    )]
+    ShortPeriod {
+        /// The period, m.
+        period: f64,
+        /// Their size over the amplitude.
+        estimate: f64,
+        /// Where, m.
+        window: f64,
+    },
     /// Waves that the grid does not carry.
     #[error(
         "{:.0} % of the energy of this {what} is in waves shorter than {length:.3e} m or faster than a period of {period:.3e} s, which the grid delays by more than {:.0} %",
@@ -85,6 +97,9 @@ impl Subject for Caution {
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
             Self::Surface(_) => "usual: 3 to 6 median edges",
+            Self::ShortPeriod { .. } => {
+                "a longer body, a shorter run or a smaller exact.window brings it down"
+            }
             Self::ShortWaves { .. } => {
                 "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
             }
@@ -102,6 +117,7 @@ impl Subject for Caution {
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",

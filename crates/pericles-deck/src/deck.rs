@@ -10,6 +10,7 @@ use crate::conditions::{self, Initial, Load, Prescribe, Probe};
 use crate::crack::{self, PreCrack};
 use crate::document;
 use crate::error::DeckError;
+use crate::exact::{self, Exact};
 use crate::material::{self, Material};
 use crate::output::{self, Checkpoint, Output};
 use crate::overrides;
@@ -45,6 +46,8 @@ pub struct Deck {
     pub boundaries: Vec<BoundaryCondition>,
     /// `[[probe]]`
     pub probes: Vec<Probe>,
+    /// `[exact]`
+    pub exact: Option<Exact>,
     /// `[time]`
     pub time: Time,
     /// `[output]`
@@ -137,6 +140,9 @@ impl Deck {
         });
         let boundaries = each(&root, "boundary", boundary::read);
         let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
+        let exact = root.maybe("exact", |item| {
+            exact::read(item.table()?, frame.dimension, material.as_ref())
+        });
         let time = root
             .required("time")
             .and_then(|item| time::read(item.table()?, &names));
@@ -159,6 +165,7 @@ impl Deck {
             loads: loads?,
             boundaries: boundaries?,
             probes: probes?,
+            exact: exact?,
             time: time?,
             output: output?,
             checkpoint: checkpoint?,

@@ -184,6 +184,12 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
+    /// An exact solution of another problem.
+    #[error("this exact solution does not belong to this deck: {reason}")]
+    NoExactSolution {
+        /// Why.
+        reason: &'static str,
+    },
     /// The library refuses the value.
     #[error(transparent)]
     Model(#[from] PericlesError),
@@ -231,6 +237,7 @@ impl Subject for Fault {
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
+            Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::Model(_) => return None,
         })
     }
@@ -259,6 +266,7 @@ impl Subject for Fault {
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } => "no points here",
             Self::UnknownArea { .. } => "which area?",
+            Self::NoExactSolution { .. } => "of another problem",
             Self::Model(_) => "refused",
         }
     }

@@ -59,6 +59,8 @@
 //! plane = "strain"                       # 2D only, and needed there: stress | strain
 //! thickness = "1 mm"                     # 2D only; default 1 m
 //! # area = "1 mm2"                       # 1D only; default 1 m²
+//! # periodic = true                       # bar, plate, block without holes: opposite faces are one; default false
+//! # quadrature = "midpoint"               # default; or gauss: a bar with two Gauss nodes in every cell of `spacing`
 //! [[body.hole]]                          # a region without material; any number
 //! ball = { centre = ["20 mm", "20 mm"], radius = "5 mm" }
 //! # [[body.refine]]                      # a region with smaller cells and a smaller horizon; any number, later ones before earlier ones. Bonds are then
@@ -69,11 +71,11 @@
 //!
 //! [material]
 //! name = "soda-lime glass"               # for people; optional
-//! model = "bond-stretch"                 # default; or linear
+//! model = "bond-stretch"                 # default; or linear, green-strain (force by the Green strain of bonds), literal57 (bars: a softening law as printed by Coclite et al. 2020)
 //! density = "2440 kg/m3"                 # [rho]
 //! youngs_modulus = "72 GPa"              # [E], or bulk_modulus [K], or shear_modulus [G]: exactly one
 //! poisson_ratio = 0.25                   # [nu] optional; checked against the only one that bonds can have
-//! horizon = "0.75 mm"                    # or horizon_ratio [m] = 3, in spacings: exactly one
+//! horizon = "0.75 mm"                    # or horizon_ratio [m] = 3, in spacings: exactly one; "infinite" for a Gaussian: seven of its lengths
 //! volume_correction = "extended"         # default; or linear, none
 //! modulus = "continuum"                  # default; or lattice: bond constant from the grid's own sums; or unmodified: that of the constant function
 //! influence = { function = "constant", acts_on = "stretch" }   # the defaults; acts_on = stretch | displacement
@@ -88,7 +90,8 @@
 //! fracture_energy = "135 J/m2"           # [Gc, G0], or critical_stretch [s0]; neither: bonds never break
 //! no_fail = ["top", "left"]              # sets whose bonds never break; default none
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
-//! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only
+//! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only; linear unbreakable bodies also
+//!                                         # convolution (grids of any shape and gauss bars; periodic ones, too) and spectral (periodic: the continuum's own forces)
 //! [[material.inclusion]]                 # a part of other stiffness; any number, later ones before earlier ones
 //! set = "left"
 //! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's
@@ -131,11 +134,22 @@
 //! name = "middle"
 //! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
 //!
+//! # [exact]                                # a bar whose solution is known: the distance from it goes to errors.csv, as often as the history; optional
+//! # solution = "nonlocal-pulse"            # u = amplitude exp(−((x − centre)/width)²) at rest, on the line with a Gaussian micromodulus; or
+//! # width = "1 m"                          #   local-pulse (the same on the local string), stretched-bar (strain, length: held at 0, free at length),
+//! # amplitude = "1 m"                      #   bar-mode (amplitude, length)
+//! # centre = 0                             # default
+//! # window = "3 m"                         # default all: only points so near to the centre count
+//! # start = true                           # default false: the body starts as the solution, whatever [[initial]] says of the displacement
+//!
 //! [time]
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
 //! safety = 0.95                          # default; only with "auto"
-//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, newmark, discrete-gradient, rk3-mts, rk4-mts, respa
+//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, newmark, discrete-gradient, implicit-midpoint, trapezoidal, trigonometric
+//! # implicit-midpoint, trapezoidal, trigonometric: stable for any dt, which must be given
+//! # trigonometric: functions = "fastest" (default) | "chebyshev" | "fourier" | "lanczos" | "eigenvectors"; loads = "gauss" (default, order 4) | "midpoint";
+//! #   regularisation = 0 (default; 1/s², never needed)
 //! # rk3, rk3-mts: alpha = 0.75
 //! # dormand-prince: tolerance = 1e-6, of its own sub-steps within dt, which must be given
 //! # newmark: beta = 0.25, gamma = 0.5; tolerance = 1e-7 (change of the velocity, m/s), norm = "l2" (default) | "area-weighted" | "max", iterations = 50;
@@ -218,6 +232,7 @@ mod crack;
 mod deck;
 mod document;
 mod error;
+mod exact;
 mod expression;
 mod fault;
 mod finding;
@@ -238,15 +253,16 @@ mod time;
 mod units;
 mod vocabulary;
 
-pub use body::Body;
+pub use body::{Body, Quadrature};
 pub use boundary::{BoundaryCondition, HistoryForm};
-pub use build::{Model, Sets};
+pub use build::{ExactReference, Model, Sets};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
 pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
+pub use exact::{Exact, KnownSolution, Pulse};
 pub use expression::Expression;
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};

@@ -1,6 +1,7 @@
 //! `[material]`: constants, horizon, influence function and breaking.
 
 use pericles::family::VolumeCorrection;
+use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
@@ -9,7 +10,7 @@ use pericles::operator::{BondForm, DamageMeasure};
 use crate::body::BodyRead;
 use crate::influence::{Setting, influence};
 use crate::quantity::Quantity;
-use crate::reader::Table;
+use crate::reader::{Item, Table};
 use crate::set::SetNames;
 use crate::vocabulary::{HORIZONS, MODULI, STRENGTHS};
 
@@ -48,13 +49,16 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         &[
             ("bond-stretch", PairLaw::BondStretch),
             ("linear", PairLaw::Linear),
+            ("green-strain", PairLaw::GreenStrain),
+            ("literal57", PairLaw::Literal57),
         ],
     );
     let density = table
         .required("density")
         .and_then(|item| item.positive(Quantity::Density));
     let modulus = modulus(&table, body.state);
-    let horizon = horizon(&table, body.frame.spacing);
+    let extent = horizon(&table, body.frame.spacing);
+    let horizon = extent.as_ref().and_then(Extent::length);
     let volume_correction = table.choice_or_first(
         "volume_correction",
         "volume correction",
@@ -75,6 +79,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             correction: volume_correction,
         },
     );
+    let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
     let fracture = fracture(&table);
     let no_fail = table
         .optional("no_fail")
@@ -92,6 +97,8 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             ("fastest", BondForm::Fastest),
             ("grid", BondForm::Grid),
             ("list", BondForm::List),
+            ("convolution", BondForm::Convolution),
+            ("spectral", BondForm::Spectral),
         ],
     );
     table.finish();
@@ -162,13 +169,63 @@ fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
     }
 }
 
-/// The horizon in metres, given as a length or as a multiple of the spacing.
-fn horizon(table: &Table<'_>, spacing: Option<f64>) -> Option<f64> {
+/// A horizon as written.
+enum Extent<'a> {
+    /// m
+    Finite(f64),
+    /// As far as the influence function goes.
+    Infinite(Item<'a>),
+}
+
+impl Extent<'_> {
+    fn length(&self) -> Option<f64> {
+        match self {
+            Self::Finite(horizon) => Some(*horizon),
+            Self::Infinite(_) => None,
+        }
+    }
+
+    /// The horizon in metres, for a function that is known.
+    fn with(self, influence: Option<&Influence>, dimension: Option<usize>) -> Option<f64> {
+        /// Lengths of a Gaussian beyond which it is below 1e-21 of its height.
+        const ALL: f64 = 7.0;
+        let item = match self {
+            Self::Finite(horizon) => return Some(horizon),
+            Self::Infinite(item) => item,
+        };
+        match influence.map(|influence| (&influence.function, influence)) {
+            Some((
+                InfluenceFunction::Gaussian {
+                    length,
+                    cutoff: None,
+                },
+                influence,
+            )) => {
+                let horizon = ALL * length;
+                item.accept(influence.check(dimension?, horizon))?;
+                item.record(horizon);
+                Some(horizon)
+            }
+            _ => {
+                item.out_of_range(
+                    "\"infinite\" needs a function that decays: influence = { function = \"gaussian\", length = … } without a cutoff",
+                );
+                None
+            }
+        }
+    }
+}
+
+/// The horizon, given as a length or as a multiple of the spacing.
+fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
     let (kind, item) = table.exactly_one(HORIZONS)?;
-    match kind {
+    if kind == "horizon" && item.word() == Some("infinite") {
+        return Some(Extent::Infinite(item));
+    }
+    let length = match kind {
         "horizon" => item.within(
             Quantity::Length,
-            "a length of at least one spacing (usual: 3 spacings)",
+            "a length of at least one spacing (usual: 3 spacings), or \"infinite\"",
             // Horizons are mostly whole multiples of the spacing, up to round-off.
             |horizon| horizon > 0.0 && spacing.is_none_or(|dx| horizon >= dx * (1.0 - 1e-9)),
         ),
@@ -177,10 +234,11 @@ fn horizon(table: &Table<'_>, spacing: Option<f64>) -> Option<f64> {
                 Quantity::Number,
                 "a number of at least 1 (usual: 3)",
                 |ratio| ratio >= 1.0,
-            )?;
-            Some(ratio * spacing?)
+            );
+            ratio.zip(spacing).map(|(ratio, dx)| ratio * dx)
         }
-    }
+    };
+    length.map(Extent::Finite)
 }
 
 fn fracture(table: &Table<'_>) -> Option<Fracture> {

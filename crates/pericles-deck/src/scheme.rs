@@ -1,6 +1,9 @@
 //! The scheme of `[time]` and its parameters.
 
-use pericles::time::{Follow, Interpolant, NewmarkOptions, Predictor};
+use pericles::time::{
+    Follow, FunctionMethod, ImplicitRule, Interpolant, LoadRule, NewmarkOptions, Predictor,
+    TrigonometricOptions,
+};
 
 use crate::newmark;
 use crate::quantity::Quantity;
@@ -42,6 +45,10 @@ pub enum Scheme {
         /// How the two talk.
         interface: Interface,
     },
+    /// The implicit midpoint or the trapezoidal rule.
+    Implicit(ImplicitRule),
+    /// The exact flow of the linear part.
+    Trigonometric(TrigonometricOptions),
     /// Newmark's method.
     Newmark(NewmarkOptions),
     /// Discrete gradients, which conserve energy.
@@ -54,6 +61,16 @@ pub enum Scheme {
         /// Where and how fine.
         fine: FineStep,
     },
+}
+
+impl Scheme {
+    /// Whether it has two time steps, and takes the force apart by points.
+    pub fn has_two_steps(&self) -> bool {
+        matches!(
+            self,
+            Self::MultiTimeStep3 { .. } | Self::MultiTimeStep4 { .. } | Self::Respa { .. }
+        )
+    }
 }
 
 /// The smaller of two time steps.
@@ -92,6 +109,8 @@ enum Kind {
     Rk3Mts,
     Rk4Mts,
     Respa,
+    Implicit(ImplicitRule),
+    Trigonometric,
     Newmark,
     DiscreteGradient,
 }
@@ -108,6 +127,15 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             ("rk3-mts", Kind::Rk3Mts),
             ("rk4-mts", Kind::Rk4Mts),
             ("respa", Kind::Respa),
+            (
+                ImplicitRule::Midpoint.name(),
+                Kind::Implicit(ImplicitRule::Midpoint),
+            ),
+            (
+                ImplicitRule::Trapezoidal.name(),
+                Kind::Implicit(ImplicitRule::Trapezoidal),
+            ),
+            ("trigonometric", Kind::Trigonometric),
             ("newmark", Kind::Newmark),
             ("discrete-gradient", Kind::DiscreteGradient),
         ],
@@ -122,6 +150,9 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             "adaptive",
             "predictor",
             "interpolant",
+            "functions",
+            "loads",
+            "regularisation",
         ]
         .into_iter()
         .chain(newmark::KEYS)
@@ -178,11 +209,23 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         }
         Some(None)
     };
+    let exact = if kind == Kind::Trigonometric {
+        trigonometric(table).map(Some)
+    } else {
+        for key in ["functions", "loads", "regularisation"] {
+            table.forbid(key, "it belongs to scheme = \"trigonometric\"");
+        }
+        Some(None)
+    };
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
+    if let Some(options) = exact? {
+        return Some(Scheme::Trigonometric(options));
+    }
     if let Some(options) = newmark? {
         return Some(Scheme::Newmark(options));
     }
     Some(match (kind, fine, interface) {
+        (Kind::Implicit(rule), ..) => Scheme::Implicit(rule),
         (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
             alpha,
             fine,
@@ -218,6 +261,31 @@ fn tolerance(table: &Table<'_>) -> Option<f64> {
             "a number above 0 and below 1",
             |tolerance| tolerance > 0.0 && tolerance < 1.0,
         )
+    })
+}
+
+fn trigonometric(table: &Table<'_>) -> Option<TrigonometricOptions> {
+    let functions = table.choice_or_first(
+        "functions",
+        "way of computing functions",
+        &FunctionMethod::ALL.map(|method| (method.name(), method)),
+    );
+    let load_rule = table.choice_or_first(
+        "loads",
+        "rule for loads",
+        &[("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)],
+    );
+    let regularisation = table.or("regularisation", 0.0, |item| {
+        item.within(
+            Quantity::Number,
+            "zero (the default, and always right) or a positive number, in 1/s²",
+            |value| value >= 0.0,
+        )
+    });
+    Some(TrigonometricOptions {
+        functions: functions?,
+        load_rule: load_rule?,
+        regularisation: regularisation?,
     })
 }
 

@@ -9,7 +9,7 @@ use pericles::operator::{BondForm, DamageMeasure};
 use pericles::space::surface::{AreaRule, Surface, SurfaceError};
 use pericles::space::{Grid, Shape};
 
-use crate::body::Body;
+use crate::body::{Body, Quadrature};
 use crate::material::{self, Inclusion, Material};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -336,6 +336,8 @@ pub(crate) fn no_grid() -> Body {
         },
         finer: Vec::new(),
         state: StressState::Spatial,
+        periodic: false,
+        quadrature: Quadrature::Midpoint,
     }
 }
 

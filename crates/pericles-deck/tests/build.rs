@@ -553,6 +553,87 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
     assert!(two > 0.98 * plain, "{two} {plain}");
 }
 
+/// A pulse on a ring of Gaussian bonds.
+const RING: &str = r#"
+[body]
+shape = "bar"
+length = 20
+origin = -10
+spacing = 0.1
+periodic = true
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon = "infinite"
+influence = { function = "gaussian", length = 1, acts_on = "displacement" }
+[exact]
+solution = "nonlocal-pulse"
+width = 1
+amplitude = 1
+[time]
+end = 3
+dt = 1
+scheme = "trigonometric"
+"#;
+
+#[test]
+fn forms_of_linear_bodies() {
+    let with = |change: &[(&str, &str)]| {
+        let mut text = RING.to_owned();
+        for (from, to) in change {
+            assert!(text.contains(from));
+            text = text.replace(from, to);
+        }
+        build(&text)
+    };
+    let form = |change: &[(&str, &str)]| with(change).form.name();
+    assert_eq!(form(&[]), "convolution");
+    assert_eq!(
+        form(&[("density", "bonds = \"spectral\"\ndensity")]),
+        "spectral"
+    );
+    // Seventy neighbours on either side: by transforms.
+    assert_eq!(form(&[("periodic = true", "")]), "convolution");
+    let list = [
+        ("periodic = true", ""),
+        ("density", "bonds = \"list\"\ndensity"),
+    ];
+    assert_eq!(form(&list), "list");
+    // Schemes with two steps take the force apart by points.
+    let two = [
+        ("periodic = true", ""),
+        ("dt = 1\n", "dt = 0.5\nratio = 2\nfine = \"all\"\n"),
+        ("\"trigonometric\"", "\"respa\""),
+    ];
+    assert_eq!(form(&two), "grid");
+    let gauss = with(&[("periodic = true", "quadrature = \"gauss\"")]);
+    assert_eq!((gauss.form.name(), gauss.cloud.len()), ("convolution", 400));
+    assert_eq!(gauss.integrator.name(), "trigonometric");
+    // Seven lengths.
+    assert_eq!(parse(RING).material.bonds.horizon, 7.0);
+}
+
+#[test]
+fn a_short_period_is_warned_of() {
+    let warned = build(&RING.replace("length = 20\norigin = -10", "length = 10\norigin = -5"));
+    let [warning] = &warned.warnings[..] else {
+        panic!("{:?}", warned.warnings)
+    };
+    assert!(
+        warning.to_string().contains("the period of 1e1 m is short"),
+        "{warning}"
+    );
+    assert_eq!(
+        (warning.location().line(), warning.location().column()),
+        (7, 12)
+    );
+    let window = build(&RING.replace("amplitude = 1", "amplitude = 1\nwindow = 3"));
+    assert!(window.warnings.is_empty());
+    let reference = window.exact.unwrap();
+    assert_eq!(reference.points.len(), 60);
+}
+
 /// A bar that goes on for ever at both ends.
 const BAR: &str = r#"
 [body]

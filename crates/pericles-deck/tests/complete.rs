@@ -48,8 +48,14 @@ fn every_entry_arrives() {
         holes: vec![ball, corner],
     };
     let state = StressState::PlaneStrain;
-    let finer = vec![];
-    assert_eq!(deck.body, Body { grid, finer, state });
+    let body = Body {
+        grid,
+        finer: vec![],
+        state,
+        periodic: false,
+        quadrature: Quadrature::Midpoint,
+    };
+    assert_eq!(deck.body, body);
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {
@@ -252,7 +258,7 @@ fn defaults_are_filled_in_and_recorded() {
     assert_eq!(deck.checkpoint, Checkpoint::Wall(600.0));
     assert_eq!(deck.source(), LEAST);
     let expected = json!({
-        "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0 },
+        "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "periodic": false, "quadrature": "midpoint" },
         "material": {
             "model": "bond-stretch", "density": 7850.0, "youngs_modulus": 210e9, "modulus": "continuum",
             "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended",

@@ -77,7 +77,7 @@ const fn wrong(
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
     // Keys.
-    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole` and `refine`"]),
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "also called `dx`"]),
@@ -172,6 +172,57 @@ const WRONG: &[Wrong] = &[
     wrong("shape = \"plate\"", "shape = \"plate\"\nshape = \"bar\"", (5, 1), "shape", &["duplicate key"]),
 ];
 
+/// A right deck of a wave on a ring.
+const WAVE: &str = r#"[body]
+shape = "bar"
+length = 20
+origin = -10
+spacing = 0.1
+periodic = true
+
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon = "infinite"
+influence = { function = "gaussian", length = 1, acts_on = "displacement" }
+bonds = "spectral"
+
+[exact]
+solution = "nonlocal-pulse"
+width = 1
+amplitude = 1
+window = 3
+
+[time]
+end = 3
+dt = 0.5
+scheme = "trigonometric"
+"#;
+
+#[rustfmt::skip]
+const WRONG_WAVES: &[Wrong] = &[
+    wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" does not fit this body", "body.periodic = true"]),
+    wrong("bonds = \"spectral\"", "bonds = \"list\"", (14, 9), "\"list\"", &["periodic faces", "\"convolution\""]),
+    wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["belongs to model = \"linear\""]),
+    wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["couple all plane waves"]),
+    wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` has no place in [body]", "with two ends"]),
+    wrong("shape = \"bar\"\nlength = 20\norigin = -10", "shape = \"plate\"\nsize = [20, 20]\nplane = \"strain\"\nquadrature = \"gauss\"", (5, 1), "quadrature", &["only the cells of a bar"]),
+    wrong("periodic = true", "periodic = true\nhole = [{ box = { max = 0 } }]", (6, 1), "periodic", &["`periodic` has no place in [body]", "without holes"]),
+    wrong("influence = { function = \"gaussian\", length = 1, acts_on = \"displacement\" }", "influence = { function = \"conical\", acts_on = \"displacement\" }", (12, 11), "\"infinite\"", &["a function that decays"]),
+    wrong("length = 1, acts_on", "length = 1, cutoff = 2, acts_on", (12, 11), "\"infinite\"", &["without a cutoff"]),
+    wrong("horizon = \"infinite\"", "horizon = 3", (17, 12), "\"nonlocal-pulse\"", &["does not belong to this deck", "horizon = \"infinite\""]),
+    wrong("dt = 0.5\n", "dt = \"auto\"\n", (24, 6), "\"auto\"", &["no stable step of its own", "give dt"]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nregularisation = -1", (26, 18), "-1", &["zero (the default"]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"implicit-midpoint\"\nfunctions = \"chebyshev\"", (26, 1), "functions", &["belongs to scheme = \"trigonometric\""]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nfunctions = \"fast\"", (26, 13), "\"fast\"", &["did you mean `fastest`?"]),
+    wrong("dt = 0.5\nscheme = \"trigonometric\"", "dt = 1.5\nscheme = \"velocity-verlet\"", (24, 6), "1.5", &["the time step 1.5e0 s is unstable", "allow_unstable"]),
+    wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (14, 9), "\"convolution\"", &["pre-cracks cut single bonds"]),
+    wrong("bonds = \"spectral\"\n", "[[material.inclusion]]\nset = \"all\"\nstiffness = 2\n", (8, 1), "[material]", &["parts of other stiffness"]),
+    wrong("window = 3", "window = 0", (20, 10), "0", &["a positive number"]),
+    wrong("solution = \"nonlocal-pulse\"", "solution = \"pulse\"", (17, 12), "\"pulse\"", &["unknown exact solution `pulse`", "\"local-pulse\""]),
+];
+
 /// A right deck of a surface.
 const SURFACE: &str = r#"[body]
 shape = "icosphere"
@@ -247,13 +298,23 @@ fn the_right_deck_is_right() {
 
 #[test]
 fn every_wrong_deck_is_explained() {
-    explained(RIGHT, WRONG);
+    explained(RIGHT, WRONG, &|text| {
+        Deck::parse(text, "plate.toml", &[]).map(|_| ())
+    });
+}
+
+#[test]
+fn every_wrong_wave_is_explained() {
+    let build = |text: &str| Deck::parse(text, "plate.toml", &[])?.build().map(|_| ());
+    build(WAVE).unwrap_or_else(|error| panic!("{error}"));
+    explained(WAVE, WRONG_WAVES, &build);
 }
 
 #[test]
 fn every_wrong_deck_of_a_surface_is_explained() {
-    Deck::parse(SURFACE, "plate.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
-    explained(SURFACE, WRONG_SURFACES);
+    let read = |text: &str| Deck::parse(text, "plate.toml", &[]).map(|_| ());
+    read(SURFACE).unwrap_or_else(|error| panic!("{error}"));
+    explained(SURFACE, WRONG_SURFACES, &read);
 }
 
 #[test]
@@ -268,7 +329,8 @@ fn what_surfaces_do_not_have_is_refused_when_they_are_built() {
     }
 }
 
-fn explained(right: &str, wrong: &[Wrong]) {
+/// Wants every wrong deck to be refused where and as its case says.
+fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(), DeckError>) {
     for case in wrong {
         assert_eq!(
             right.matches(case.replace).count(),
@@ -276,7 +338,9 @@ fn explained(right: &str, wrong: &[Wrong]) {
             "`{}` must be unique",
             case.replace
         );
-        let error = refusal(&right.replace(case.replace, case.by));
+        let Err(error) = read(&right.replace(case.replace, case.by)) else {
+            panic!("`{}` is wrong", case.by)
+        };
         let message = error.to_string();
         let found = error.problems().iter().any(|problem| {
             let at = problem.location();

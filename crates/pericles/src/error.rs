@@ -187,6 +187,17 @@ pub enum PericlesError {
         /// Why, and what is allowed.
         reason: String,
     },
+    /// A body that cannot repeat.
+    #[error("only a full box of cells can be periodic: a bar, plate or block without holes")]
+    NotPeriodic,
+    /// A form of bonds that does not fit the body.
+    #[error("bonds = \"{form}\" does not fit this body: {reason}")]
+    FormNotUsable {
+        /// The form, as in decks.
+        form: &'static str,
+        /// Why, and what fits.
+        reason: &'static str,
+    },
     /// The grid form for a body whose bonds are not all alike.
     #[error(
         "parts of other stiffness cannot be kept as one stencil: bonds = \"list\" or \"fastest\" can"

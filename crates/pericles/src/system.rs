@@ -156,6 +156,11 @@ impl System {
         !self.boundaries.is_empty()
     }
 
+    /// Whether any prescribed motion ends before the run may.
+    pub fn releases_points(&self) -> bool {
+        self.motions.iter().any(|motion| motion.until.is_some())
+    }
+
     /// The boundaries.
     pub fn boundaries(&self) -> impl Iterator<Item = &dyn Boundary> {
         self.boundaries.iter().map(|boundary| &**boundary)
@@ -352,9 +357,19 @@ impl System {
         self.divide_by_density(&On::All, out);
     }
 
+    /// The mass of every unknown, kg, component-major.
+    pub fn masses(&self) -> Vec<f64> {
+        let n = self.points();
+        let mass = |entry: usize| self.density.at(entry % n) * self.cloud.volumes()[entry % n];
+        (0..self.dimension() * n).map(mass).collect()
+    }
+
     /// K d / ρ at displacement u, with prescribed entries held: the operator of the linearised free vibration.
     pub fn vibration_into(&self, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        self.operator.tangent_into(0.0, u, direction, out);
+        match self.operator.as_linear() {
+            Some(linear) => linear.apply_into(direction, out),
+            None => self.operator.tangent_into(0.0, u, direction, out),
+        }
         self.divide_by_density(&On::All, out);
         out.par_chunks_mut(BLOCK)
             .for_each(|chunk| chunk.iter_mut().for_each(|x| *x = -*x));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
-    BondConstants, BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, LinearBond,
-    Modulus, PairForce, PairLaw, StressState,
+    BondConstants, BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, GreenBond,
+    LinearBond, LiteralBond, Modulus, PairForce, PairLaw, StressState,
 };
 use pericles::operator::{BondForce, DamageMeasure, ForceOperator, InstructionSet, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
@@ -136,6 +136,10 @@ fn build(
         (PairLaw::BondStretch, 1) => operator::<BondStretch, 1>(cloud, material, state),
         (PairLaw::BondStretch, 2) => operator::<BondStretch, 2>(cloud, material, state),
         (PairLaw::BondStretch, _) => operator::<BondStretch, 3>(cloud, material, state),
+        (PairLaw::GreenStrain, 1) => operator::<GreenBond, 1>(cloud, material, state),
+        (PairLaw::GreenStrain, 2) => operator::<GreenBond, 2>(cloud, material, state),
+        (PairLaw::GreenStrain, _) => operator::<GreenBond, 3>(cloud, material, state),
+        (PairLaw::Literal57, _) => operator::<LiteralBond, 1>(cloud, material, state),
     }
 }
 
@@ -182,7 +186,7 @@ fn rotation(dimension: usize) -> [[f64; 3]; 3] {
 
 /// Calls `check` for every law × state × influence × correction × body.
 fn for_each_case(check: impl Fn(&str, &Arc<PointCloud>, &BondMaterial, StressState)) {
-    for law in [PairLaw::Linear, PairLaw::BondStretch] {
+    for law in [PairLaw::Linear, PairLaw::BondStretch, PairLaw::GreenStrain] {
         for state in STATES {
             for jitter in [0.0, 0.003] {
                 let cloud = body(state.dimension(), jitter);
@@ -213,7 +217,7 @@ fn rigid_motions_cause_no_force() {
         };
         let shifted = force(&*operator, &affine(cloud, unit, [0.5, -0.25, 0.125]));
         assert!(largest(&shifted) <= 1e-9 * strain, "{name}: translation");
-        if material.law == PairLaw::BondStretch {
+        if material.law != PairLaw::Linear {
             let rotated = force(&*operator, &affine(cloud, rotation(dimension), [0.0; 3]));
             assert!(largest(&rotated) <= 1e-9 * strain, "{name}: rotation");
         } else {
@@ -241,7 +245,7 @@ fn momentum_is_conserved() {
         let place = |c: usize, i: usize| {
             let moved = match material.law {
                 PairLaw::Linear => 0.0,
-                PairLaw::BondStretch => u[c * n + i],
+                _ => u[c * n + i],
             };
             cloud.point(i)[c] + moved
         };

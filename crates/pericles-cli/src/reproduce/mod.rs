@@ -11,6 +11,7 @@ mod dispersion;
 mod fracture;
 mod manifolds;
 mod multi_time_step;
+mod nonlocal_wave;
 mod row;
 mod table;
 
@@ -40,12 +41,13 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 5] = [
+const TOPICS: [&[Study]; 6] = [
     &absorbing_boundaries::STUDIES,
     &dispersion::STUDIES,
     &fracture::STUDIES,
     &manifolds::STUDIES,
     &multi_time_step::STUDIES,
+    &nonlocal_wave::STUDIES,
 ];
 
 fn studies() -> impl Iterator<Item = &'static Study> {

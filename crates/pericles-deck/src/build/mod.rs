@@ -4,11 +4,14 @@ mod area;
 mod boundary;
 mod conditions;
 mod content;
+mod exact;
 mod fields;
 mod graded;
 mod scheme;
 mod step;
 mod surface;
+
+pub use exact::ExactReference;
 
 use std::sync::Arc;
 
@@ -17,11 +20,12 @@ use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
 use pericles::space::surface::Surface;
-use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet};
+use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet, Shape, gauss_bar};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use self::graded::Grids;
+use crate::body::Quadrature;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -65,6 +69,8 @@ pub struct Model {
     pub steps: u64,
     /// Where the motion is read.
     pub probes: Vec<PointProbe>,
+    /// A known solution to compare with.
+    pub exact: Option<ExactReference>,
     /// What is odd.
     pub warnings: Vec<Warning>,
 }
@@ -132,7 +138,13 @@ impl Deck {
         let density = PointScalar::Uniform(density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
-        let state = self.initial_state(&cloud, &sets)?;
+        let mut state = self.initial_state(&cloud, &sets)?;
+        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
+        if let (Some(exact), Some(true)) = (&exact, self.exact.map(|exact| exact.start)) {
+            exact
+                .solution
+                .displacement_into(0.0, cloud.axis(0), &mut state.u);
+        }
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
@@ -157,6 +169,7 @@ impl Deck {
             dt: steps.dt,
             steps: steps.count,
             probes,
+            exact,
             warnings,
         })
     }
@@ -241,10 +254,18 @@ impl Deck {
             grid: self.body.grid.clone(),
             finer: self.body.finer.clone(),
         };
-        let points = if graded.finer.is_empty() {
-            graded.grid.points().map(GradedCloud::of_one_grid)
-        } else {
-            graded.points()
+        let grid = &graded.grid;
+        let points = match (&grid.shape, self.body.quadrature) {
+            (Shape::Box { origin, size }, Quadrature::Gauss) => {
+                gauss_bar(origin[0], size[0], grid.spacing, grid.section)
+                    .map(GradedCloud::of_one_grid)
+            }
+            _ if self.body.periodic => grid
+                .points()
+                .and_then(PointCloud::with_periodic_faces)
+                .map(GradedCloud::of_one_grid),
+            _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
+            _ => graded.points(),
         };
         points.map_err(|error| {
             let place = match &error {
@@ -357,7 +378,13 @@ impl Deck {
         let assembled = if grids.ratios.len() > 1 {
             self.graded_bonds(&body, grids)?
         } else {
-            body.operator(self.material.form)
+            let form = match self.material.form {
+                BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
+                    body.fastest_bonds()
+                }
+                form => form,
+            };
+            body.operator(form)
                 .map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();
@@ -398,6 +425,9 @@ impl Deck {
     fn at_material(&self, error: PericlesError) -> DeckError {
         let path = match &error {
             PericlesError::BadInfluence { .. } => "material.influence",
+            PericlesError::BadConvolution { .. }
+            | PericlesError::FormNotUsable { .. }
+            | PericlesError::OneStencil => "material.bonds",
             PericlesError::HorizonTooSmall { .. } => self.horizon_key(),
             _ => "material",
         };

@@ -1,8 +1,9 @@
 //! The integrator of a model.
 
 use pericles::time::{
-    AdaptiveRungeKutta, DiscreteGradient, Fine, Integrator, MultiTimeStep, MultiTimeStepOptions,
-    Newmark, Predictor, Respa, RungeKutta, Tableau, VelocityVerlet,
+    AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
+    MultiTimeStepOptions, Newmark, Predictor, Respa, RungeKutta, Tableau, Trigonometric,
+    VelocityVerlet,
 };
 use pericles::{PericlesError, System};
 
@@ -43,6 +44,12 @@ impl Deck {
             Scheme::MultiTimeStep4 { fine, interface } => {
                 self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
             }
+            Scheme::Implicit(rule) => {
+                Box::new(Implicit::new(*rule, system).map_err(|error| self.at_scheme(error))?)
+            }
+            Scheme::Trigonometric(options) => Box::new(
+                Trigonometric::new(*options, system).map_err(|error| self.at_scheme(error))?,
+            ),
             Scheme::Newmark(options) => {
                 Box::new(Newmark::new(*options, system).map_err(|error| self.at_scheme(error))?)
             }

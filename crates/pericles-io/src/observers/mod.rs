@@ -49,6 +49,7 @@
 //! ```
 
 mod cracks;
+mod errors;
 mod fields;
 mod history;
 mod pictures;
@@ -58,6 +59,7 @@ mod surface;
 mod table;
 
 pub use cracks::Cracks;
+pub use errors::Errors;
 pub use fields::FieldSeries;
 pub use history::History;
 pub use pictures::{PictureOf, Pictures};

@@ -15,6 +15,7 @@
 //! * [`Carried`], [`time_content`], [`space_content`] – what of a load or an initial field a lattice carries undistorted.
 //! * [`tuning`] – coefficients per class of bonds that reduce dispersion.
 //! * [`spectrum`] – frequencies measured in a time-domain run.
+//! * [`exact`] – solutions in one dimension, to measure errors against.
 //!
 //! SI units; wave vectors in rad/m with missing components zero. An evaluation of M costs one sine for every pair ±ξ of bonds.
 //!
@@ -33,6 +34,7 @@
 mod branches;
 mod content;
 mod contour;
+pub mod exact;
 mod lattice;
 mod modes;
 pub mod spectrum;

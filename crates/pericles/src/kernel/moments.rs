@@ -40,6 +40,35 @@ impl Influence {
     }
 }
 
+impl Influence {
+    /// Limits of pieces of 0 … horizon on which α is smooth on the scale of the piece: quadratures with many nodes are exact there.
+    pub fn smooth_pieces(&self, horizon: f64) -> Vec<f64> {
+        match &self.function {
+            InfluenceFunction::Gaussian { length, cutoff } => {
+                // Beyond seven lengths nothing is left.
+                let end = cutoff.unwrap_or(horizon).min(horizon).min(7.0 * length);
+                equal_pieces(end, (end / length).ceil().max(1.0) as usize)
+            }
+            InfluenceFunction::Tabulated { table } => {
+                let mut breaks = vec![0.0];
+                let inside = table.iter().map(|(r, _)| *r);
+                breaks.extend(inside.filter(|r| *r > 0.0 && *r < horizon));
+                breaks.push(horizon);
+                breaks
+            }
+            InfluenceFunction::Cosines { .. } => {
+                equal_pieces(horizon, self.cosine_waves(horizon).ceil() as usize)
+            }
+            InfluenceFunction::Power { .. } => {
+                // Towards a root or pole at zero in powers of two.
+                let halvings = (0..=40).rev().map(|k| horizon * 0.5f64.powi(k));
+                std::iter::once(0.0).chain(halvings).collect()
+            }
+            _ => vec![0.0, horizon],
+        }
+    }
+}
+
 /// ∫₀^horizon of the polygon through a table times r^q.
 fn polygon(table: &[(f64, f64)], q: f64, horizon: f64) -> f64 {
     let mut breaks = vec![0.0];

@@ -32,7 +32,9 @@ impl BondMaterial {
         for z in range(dimension > 2) {
             for y in range(dimension > 1) {
                 for x in range(true) {
-                    let r = f64::from(x * x + y * y + z * z).sqrt() * spacing;
+                    // Whole numbers, but squares of large ones only fit a double.
+                    let square = [x, y, z].map(|c| f64::from(c) * f64::from(c));
+                    let r = square.iter().sum::<f64>().sqrt() * spacing;
                     if r > 0.0 && r <= reach {
                         let xi = [x, y, z].map(|c| f64::from(c) * spacing);
                         visit([x, y, z], xi, r);

@@ -9,6 +9,10 @@ pub enum PairLaw {
     Linear,
     /// [`BondStretch`].
     BondStretch,
+    /// [`GreenBond`](super::GreenBond).
+    GreenStrain,
+    /// [`LiteralBond`](super::LiteralBond), for bars.
+    Literal57,
 }
 
 /// The pair force of a bond with reference vector ξ, relative displacement η and unit stiffness k = c α(|ξ|).
@@ -129,6 +133,7 @@ impl PairForce for LinearBond {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::{GreenBond, LiteralBond};
     use proptest::prelude::*;
 
     /// The definition, without the cancellation-free forms.
@@ -168,6 +173,8 @@ mod tests {
         ) {
             check_gradients::<BondStretch>(xi, eta, d);
             check_gradients::<LinearBond>(xi, eta, d);
+            check_gradients::<GreenBond>(xi, eta, d);
+            check_gradients::<LiteralBond>(xi, eta, d);
             let (force, expected) = (BondStretch::force(xi, eta), naive(xi, eta));
             for c in 0..3 {
                 prop_assert!((force[c] - expected[c]).abs() < 1e-14);
@@ -178,6 +185,28 @@ mod tests {
             prop_assert!(measure > BondStretch::threshold(stretch - 1e-9) * square);
             prop_assert!(measure < BondStretch::threshold(stretch + 1e-9) * square);
         }
+    }
+
+    #[test]
+    fn all_laws_of_a_bar_have_one_linearisation() {
+        // And the bond-stretch law is linear there while bonds do not cross.
+        let (xi, d) = ([-0.4], [0.3]);
+        let linear = LinearBond::force(xi, d)[0];
+        for tangent in [
+            BondStretch::tangent(xi, [0.0], d),
+            GreenBond::tangent(xi, [0.0], d),
+            LiteralBond::tangent(xi, [0.0], d),
+            BondStretch::force(xi, d),
+        ] {
+            assert!(
+                (tangent[0] / linear - 1.0).abs() < 1e-14,
+                "{tangent:?} {linear}"
+            );
+        }
+        // The cubic of equation 58.
+        let (x, e) = (0.4, 0.17);
+        let cubic = (2.0 * x * x * e + 3.0 * x * e * e + e * e * e) / (2.0 * x * x * x);
+        assert!((GreenBond::force([x], [e])[0] / cubic - 1.0).abs() < 1e-14);
     }
 
     #[test]

@@ -16,10 +16,12 @@
 mod constants;
 mod lattice;
 mod law;
+mod polynomial;
 mod power;
 
 pub use constants::{
     BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
 pub use law::{BondStretch, LinearBond, PairForce, PairLaw};
+pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};

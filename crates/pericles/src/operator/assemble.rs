@@ -2,10 +2,16 @@
 
 use std::sync::Arc;
 
-use super::{BondForce, Breaking, DamageMeasure, ForceOperator, GridForce, GridLaw};
+use super::{
+    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, ForceOperator,
+    GaussForce, GridForce, GridLaw, SpectralCubicForce, SpectralForce,
+};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
-use crate::material::{BondConstants, BondMaterial, BondStretch, LinearBond, PairLaw};
+use crate::material::{
+    BondConstants, BondMaterial, BondStretch, GreenBond, LinearBond, LiteralBond, PairForce,
+    PairLaw,
+};
 use crate::space::PointCloud;
 
 /// How bonds are kept.
@@ -18,6 +24,10 @@ pub enum BondForm {
     Grid,
     /// A list of every point's bonds ([`BondForce`]).
     List,
+    /// Transforms of a linear body's kernel ([`ConvolutionForce`], or [`GaussForce`] on Gauss nodes).
+    Convolution,
+    /// Plane waves of a linear periodic body ([`SpectralForce`]).
+    Spectral,
 }
 
 impl BondForm {
@@ -27,6 +37,8 @@ impl BondForm {
             Self::Fastest => "fastest",
             Self::Grid => "grid",
             Self::List => "list",
+            Self::Convolution => "convolution",
+            Self::Spectral => "spectral",
         }
     }
 }
@@ -66,6 +78,14 @@ const SPARSE: usize = 8;
 impl BondBody<'_> {
     /// The form that is fastest for this body.
     pub fn fastest_form(&self) -> BondForm {
+        if self.convolution_is_fastest() {
+            return BondForm::Convolution;
+        }
+        self.fastest_bonds()
+    }
+
+    /// The faster of grid and list, for schemes that take the force apart by points.
+    pub fn fastest_bonds(&self) -> BondForm {
         match self.cloud.lattice() {
             Some(lattice) if self.stiffness.is_empty() => {
                 let [x, y, z] = lattice.shape;
@@ -80,10 +100,74 @@ impl BondBody<'_> {
         }
     }
 
+    /// Periodic bodies have no other form that follows all their bonds; otherwise it is a matter of cost.
+    fn convolution_is_fastest(&self) -> bool {
+        /// What a bond of the list costs over one of the grid, about.
+        const GRID_GAIN: f64 = 5.0;
+        let material = self.material;
+        if self.cloud.is_periodic() {
+            return true;
+        }
+        let possible = material.law == PairLaw::Linear
+            && !self.constants.critical_stretch.is_finite()
+            && self.cracks.is_empty()
+            && self.stiffness.is_empty();
+        if !possible {
+            return false;
+        }
+        if GaussForce::fits(self.cloud) {
+            return true;
+        }
+        let costs = CostComparison::new(self.cloud, material.horizon, material.volume_correction);
+        costs.is_ok_and(|costs| GRID_GAIN * costs.convolution < costs.bond_list)
+    }
+
+    fn transformed<const D: usize>(&self, form: BondForm) -> Result<Box<dyn ForceOperator>> {
+        let refuse = |reason| {
+            Err(PericlesError::FormNotUsable {
+                form: form.name(),
+                reason,
+            })
+        };
+        if !self.stiffness.is_empty() {
+            return refuse(
+                "parts of other stiffness are no convolution; use \"list\", or leave the inclusions out",
+            );
+        }
+        if !self.cracks.is_empty() {
+            return refuse(
+                "pre-cracks cut single bonds, which it cannot; use \"list\" or \"grid\"",
+            );
+        }
+        let (cloud, periodic) = (self.cloud.clone(), self.cloud.is_periodic());
+        Ok(match form {
+            BondForm::Spectral if !periodic => {
+                return refuse(
+                    "Fourier series need a body whose opposite faces are one: set body.periodic = true, or use \"convolution\"",
+                );
+            }
+            BondForm::Spectral => Box::new(SpectralForce::<D>::new(
+                cloud,
+                self.material,
+                self.constants,
+            )?),
+            _ if GaussForce::fits(&cloud) => {
+                Box::new(GaussForce::new(cloud, self.material, self.constants)?)
+            }
+            _ => Box::new(ConvolutionForce::<D>::new(
+                cloud,
+                self.material,
+                self.constants,
+                &[],
+                [periodic; D],
+            )?),
+        })
+    }
+
     /// The operator.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack, [`BondForm::Grid`] without a lattice.
+    /// A horizon that reaches no neighbour, an unusable crack, [`BondForm::Grid`] without a lattice; a form that does not fit.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         match (self.material.law, self.cloud.dimension()) {
             (PairLaw::Linear, 1) => self.operator_of::<LinearBond, 1>(form),
@@ -92,11 +176,65 @@ impl BondBody<'_> {
             (PairLaw::BondStretch, 1) => self.operator_of::<BondStretch, 1>(form),
             (PairLaw::BondStretch, 2) => self.operator_of::<BondStretch, 2>(form),
             (PairLaw::BondStretch, 3) => self.operator_of::<BondStretch, 3>(form),
+            (PairLaw::GreenStrain, 1) if form == BondForm::Spectral => self.cubic(),
+            (PairLaw::GreenStrain, 1) => self.listed::<GreenBond, 1>(form),
+            (PairLaw::GreenStrain, 2) => self.listed::<GreenBond, 2>(form),
+            (PairLaw::GreenStrain, 3) => self.listed::<GreenBond, 3>(form),
+            (PairLaw::Literal57, 1) => self.listed::<LiteralBond, 1>(form),
+            (PairLaw::Literal57, dimension) => Err(PericlesError::WrongDimension {
+                what: "the law of equation 57 as printed",
+                needed: "1",
+                dimension,
+            }),
             (_, dimension) => Err(PericlesError::WrongDimension {
                 what: "a bond-based material",
                 needed: "1, 2 or 3",
                 dimension,
             }),
+        }
+    }
+
+    fn cubic(&self) -> Result<AssembledBonds> {
+        if !self.stiffness.is_empty() || !self.cracks.is_empty() {
+            return Err(PericlesError::FormNotUsable {
+                form: BondForm::Spectral.name(),
+                reason: "parts of other stiffness and pre-cracks have no Fourier series; use \"list\"",
+            });
+        }
+        let force = SpectralCubicForce::new(self.cloud.clone(), self.material, self.constants)?;
+        Ok(AssembledBonds {
+            operator: Box::new(force),
+            cuts: Vec::new(),
+            form: BondForm::Spectral,
+        })
+    }
+
+    /// Laws that only the list computes.
+    fn listed<L: PairForce, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+        let refuse = |form: BondForm, reason| {
+            Err(PericlesError::FormNotUsable {
+                form: form.name(),
+                reason,
+            })
+        };
+        if self.cloud.is_periodic() {
+            return refuse(
+                form,
+                "bonds through periodic faces are followed for the linear law only; use model = \"linear\"",
+            );
+        }
+        match form {
+            BondForm::Fastest | BondForm::List => {
+                let (list, cuts) = self.list::<L, D>()?;
+                Ok(AssembledBonds {
+                    operator: Box::new(list),
+                    cuts,
+                    form: BondForm::List,
+                })
+            }
+            BondForm::Grid | BondForm::Convolution | BondForm::Spectral => {
+                refuse(form, "this law is kept as a list: \"list\" or \"fastest\"")
+            }
         }
     }
 
@@ -106,6 +244,15 @@ impl BondBody<'_> {
             chosen => chosen,
         };
         let (operator, cuts): (Box<dyn ForceOperator>, _) = match form {
+            BondForm::Convolution | BondForm::Spectral => {
+                (self.transformed::<D>(form)?, Vec::new())
+            }
+            BondForm::Grid | BondForm::List if self.cloud.is_periodic() => {
+                return Err(PericlesError::FormNotUsable {
+                    form: form.name(),
+                    reason: "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",
+                });
+            }
             BondForm::List => {
                 let (list, cuts) = self.list::<L, D>()?;
                 (Box::new(list), cuts)
@@ -143,7 +290,7 @@ impl BondBody<'_> {
     ///
     /// # Errors
     /// A horizon that reaches no neighbour, an unusable crack.
-    pub fn list<L: GridLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+    pub fn list<L: PairForce, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self

@@ -14,6 +14,7 @@
 mod assemble;
 mod bond_force;
 mod bond_kernels;
+pub mod function;
 mod graded;
 mod grid_block;
 mod grid_breaking;
@@ -30,6 +31,7 @@ pub mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;
 pub mod linear;
+mod linearisation;
 mod stencil;
 pub mod surface;
 mod zoned;
@@ -42,7 +44,11 @@ pub use graded::{EndLaw, GradedBody};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
 pub use lanes::InstructionSet;
-pub use linear::{ConvolutionForce, CostComparison, Ends, Route, Toeplitz};
+pub use linear::{
+    ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralCubicForce, SpectralForce,
+    Symbol, Toeplitz,
+};
+pub use linearisation::Linearisation;
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;
@@ -116,6 +122,8 @@ pub struct Accepted<'a> {
 }
 
 /// The internal force density of a body.
+///
+/// Operators whose bonds never break leave out what concerns breaking.
 pub trait ForceOperator: Saved + Send + Sync {
     /// Number of points.
     fn points(&self) -> usize;
@@ -143,22 +151,32 @@ pub trait ForceOperator: Saved + Send + Sync {
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]);
 
     /// The same decision alone, for schemes that do not end on an evaluation: the bond acted until now and dissipates its whole energy.
-    fn advance_history(&mut self, t: f64, u: &[f64], on: On<'_>);
+    fn advance_history(&mut self, t: f64, u: &[f64], on: On<'_>) {
+        let _ = (t, u, on);
+    }
 
     /// The derivative of the force density at `u` in the given direction, for Newton–Krylov methods and frequency estimates.
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]);
 
     /// Energy dissipated by breaking so far, J.
-    fn dissipated(&self) -> f64;
+    fn dissipated(&self) -> f64 {
+        0.0
+    }
 
     /// Bonds broken so far, each counted once.
-    fn broken_bonds(&self) -> u64;
+    fn broken_bonds(&self) -> u64 {
+        0
+    }
 
     /// Whether anything in the body can break.
-    fn can_break(&self) -> bool;
+    fn can_break(&self) -> bool {
+        false
+    }
 
     /// Damage of each point, 0 … 1.
-    fn damage_into(&self, out: &mut [f64]);
+    fn damage_into(&self, out: &mut [f64]) {
+        out.fill(0.0);
+    }
 
     /// Family entries that the loops run over: each bond counts twice.
     fn directed_bonds(&self) -> u64;
@@ -187,4 +205,9 @@ pub trait ForceOperator: Saved + Send + Sync {
 pub trait LinearOperator: Send + Sync {
     /// `out` = force density at `u`.
     fn apply_into(&self, u: &[f64], out: &mut [f64]);
+
+    /// The operator as one whose eigenvectors are known, if it is one.
+    fn as_diagonal(&self) -> Option<&dyn function::Diagonal> {
+        None
+    }
 }

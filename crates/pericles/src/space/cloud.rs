@@ -45,6 +45,7 @@ pub struct PointCloud {
     section: f64,
     spacing: f64,
     lattice: Option<Lattice>,
+    periodic: bool,
     /// The user's numbers of the points; empty if they are the points' own.
     user_numbers: Vec<u32>,
 }
@@ -96,8 +97,28 @@ impl PointCloud {
             section,
             spacing,
             lattice: None,
+            periodic: false,
             user_numbers: Vec::new(),
         })
+    }
+
+    /// The same points with opposite faces of their box as one: what leaves at one side comes in at the other.
+    ///
+    /// # Errors
+    /// Points that are no full box of cells.
+    pub fn with_periodic_faces(self) -> Result<Self> {
+        match &self.lattice {
+            Some(lattice) if lattice.shape.iter().product::<usize>() == self.len() => Ok(Self {
+                periodic: true,
+                ..self
+            }),
+            _ => Err(PericlesError::NotPeriodic),
+        }
+    }
+
+    /// Whether opposite faces are one.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic
     }
 
     /// The vertices of a surface in 3D, with their areas (m²) where other bodies have volumes: densities are then per area.

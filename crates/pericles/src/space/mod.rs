@@ -10,12 +10,14 @@
 mod cloud;
 mod graded;
 mod grid;
+mod quadrature;
 mod region;
 pub mod surface;
 
 pub use cloud::{Lattice, PointCloud, PointSet};
 pub use graded::{Finer, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
+pub use quadrature::gauss_bar;
 pub use region::{Face, Region};
 
 /// A point or vector in space; components beyond the body's dimension are zero.

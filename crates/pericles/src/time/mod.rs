@@ -3,6 +3,7 @@
 mod embedded;
 mod fine_region;
 mod frequency;
+mod implicit;
 mod interface;
 mod multi_time_step;
 mod newmark;
@@ -11,6 +12,7 @@ mod refinement_report;
 mod respa;
 mod runge_kutta;
 mod tableau;
+mod trigonometric;
 mod verlet;
 mod zone;
 mod zones;
@@ -18,6 +20,7 @@ mod zones;
 pub use embedded::AdaptiveRungeKutta;
 pub use fine_region::{Fine, Follow};
 pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
+pub use implicit::{Implicit, ImplicitRule};
 pub use interface::{Interpolant, Predictor};
 pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};
 pub use newmark::{
@@ -27,6 +30,7 @@ pub use refinement_report::RefinementReport;
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
+pub use trigonometric::{FunctionMethod, LoadRule, Trigonometric, TrigonometricOptions};
 pub use verlet::VelocityVerlet;
 
 use crate::archive::{Archive, Saved, Values};

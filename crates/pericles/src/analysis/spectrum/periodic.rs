@@ -208,27 +208,9 @@ impl ForceOperator for PeriodicForce {
         self.add_force(accepted.t, accepted.u, on, out);
     }
 
-    fn advance_history(&mut self, _t: f64, _u: &[f64], _on: On<'_>) {}
-
     fn tangent_into(&self, t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.add_force(t, direction, On::All, out);
-    }
-
-    fn dissipated(&self) -> f64 {
-        0.0
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        0
-    }
-
-    fn can_break(&self) -> bool {
-        false
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        out.fill(0.0);
     }
 
     fn directed_bonds(&self) -> u64 {

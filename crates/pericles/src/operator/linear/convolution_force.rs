@@ -330,26 +330,8 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
         self.add(accepted.u, &on, out);
     }
 
-    fn advance_history(&mut self, _t: f64, _u: &[f64], _on: On<'_>) {}
-
     fn tangent_into(&self, _t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {
         self.apply_into(direction, out);
-    }
-
-    fn dissipated(&self) -> f64 {
-        0.0
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        0
-    }
-
-    fn can_break(&self) -> bool {
-        false
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        out.fill(0.0);
     }
 
     /// The bonds the convolution stands for; no loop runs over them.

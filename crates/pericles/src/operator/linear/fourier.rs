@@ -174,6 +174,18 @@ impl AxisTransform {
             }
         }
     }
+
+    /// Transforms one line of the axis' length.
+    pub fn apply_to_one(
+        &self,
+        line: &mut [Complex<f64>],
+        back: bool,
+        scratch: &mut [Complex<f64>],
+    ) {
+        if let Some(plans) = &self.plans {
+            plans[usize::from(back)].process_with_scratch(line, scratch);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 //! |---|---|---|
 //! | [`Toeplitz`] | y_i = Σ_r w_r (u_{i+r} + u_{i−r} − 2 u_i), and with different coefficients up and down | banded loop, overlap-save, one transform |
 //! | [`ConvolutionForce`] | f_a = Σ_b [ K_ab * (χ u_b) − (K_ab * χ) u_b ], K = c α κ V ξ⊗ξ/‖ξ‖³ | transforms over the padded box; whole bars use `Toeplitz` |
+//! | [`GaussForce`] | the bar's force with two Gauss nodes in every cell | four `Toeplitz` lines |
+//! | [`SpectralForce`] | f = Σ_k −M(k) û exp(ik·x) on periodic boxes, M the continuum's [`Symbol`] | transforms |
 //!
 //! χ is one on the points of the body and zero elsewhere, so holes and boundaries are exact: bonds to absent points are absent. Single bonds cannot be
 //! absent: pre-cracks and breaking need the bond list. Arrays are component-major (see [`crate::space::PointCloud`]), displacements in m, force
@@ -50,8 +52,10 @@ mod comparison;
 mod convolution_force;
 mod cost;
 mod fourier;
+mod gauss_force;
 mod lattice_bonds;
 pub(super) mod pool;
+mod spectral;
 mod tensor_kernel;
 mod tensor_spectra;
 mod toeplitz;
@@ -61,6 +65,8 @@ pub use comparison::CostComparison;
 pub use convolution_force::ConvolutionForce;
 pub use cost::Route;
 pub(crate) use fourier::LineTransform;
+pub use gauss_force::GaussForce;
+pub use spectral::{SpectralCubicForce, SpectralForce, Symbol};
 pub use toeplitz::{Ends, Toeplitz};
 
 use crate::error::{PericlesError, Result};

@@ -1,0 +1,141 @@
+//! Figure 2: what the schemes do to the energy.
+
+use pericles::System;
+use pericles::time::State;
+use pericles_io::{Axis, Curve, LineChart};
+
+use super::super::row::Row;
+use super::super::{Context, Study};
+use super::PAPER;
+use super::line::{MT, Method, UNIT, integrator, march, nodes, pulse, system};
+use crate::error::CliError;
+
+/// The study.
+pub(super) const STUDY: Study = Study {
+    id: "nonlocal-wave/energy",
+    paper: PAPER,
+    title: "Energies over T = 30",
+    run,
+};
+
+/// The paper's E_n = ½ V·V + ½ U·AU less that at the start, and the energy that the scheme itself conserves, relative, over time.
+struct Course {
+    t: Vec<f64>,
+    paper: Vec<f64>,
+    kept: f64,
+    physical_at_start: f64,
+}
+
+fn course(method: Method, h: f64) -> Result<Course, CliError> {
+    let cloud = nodes(method, h)?;
+    let mut system = system(&cloud, &UNIT.material())?;
+    let mut scheme = integrator(method, h, &system)?;
+    let mut state = pulse(&cloud, 1.0);
+    scheme.start(&mut system, &mut state);
+    let physical = |system: &System, state: &State| {
+        system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u)
+    };
+    // For ρ = 1 the paper's sum lacks the volume of a node only.
+    let volume = cloud.volumes()[0];
+    let before = physical(&system, &state);
+    let correction = |scheme: &dyn pericles::time::Integrator, system: &System, state: &State| {
+        physical(system, state) + scheme.energy_correction(system, state, h)
+    };
+    let kept_before = correction(&*scheme, &system, &state);
+    let steps = (30.0 / h).round() as usize;
+    let mut course = Course {
+        t: Vec::new(),
+        paper: Vec::new(),
+        kept: 0.0,
+        physical_at_start: before,
+    };
+    march(
+        &mut system,
+        &mut *scheme,
+        &mut state,
+        h,
+        steps,
+        |system, state| {
+            course.t.push(state.t);
+            course
+                .paper
+                .push((physical(system, state) - before) / volume);
+        },
+    )?;
+    course.kept = correction(&*scheme, &system, &state) / kept_before - 1.0;
+    Ok(course)
+}
+
+/// The entry of largest magnitude.
+fn farthest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |m: f64, x| if x.abs() > m.abs() { *x } else { m })
+}
+
+fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+    let mut rows = Vec::new();
+    let mut drawn = Vec::new();
+    for (name, method, h, expected) in [
+        ("MSV, h = 0.1", Method::Msv, 0.1, -1.666e-2_f64),
+        ("MT with A + h^2.4, h = 0.1", MT, 0.1, 2.041e-2),
+        ("MSV, h = 0.05", Method::Msv, 0.05, -8.36e-3),
+        ("MT with A + h^2.4, h = 0.05", MT, 0.05, 6.82e-3),
+    ] {
+        let course = course(method, h)?;
+        let row = Row::new(
+            format!("{name}: E_n − E₀"),
+            "",
+            Some(farthest(&course.paper)),
+        );
+        let printed = if h == 0.1 { 1e-2 } else { 1e-3 };
+        rows.push(row.printed(printed * expected.signum()).within_share(expected, 1e-3).note(match (method, h == 0.1) {
+            (Method::Msv, true) => "printed: orders of magnitude of both schemes",
+            (_, true) => "the regularised scheme conserves the energy of the regularised equation; E_n is that of the plain one",
+            _ => "",
+        }));
+        if method == Method::Msv {
+            let row = Row::new(
+                format!("{name}: drift of the energy that Verlet conserves"),
+                "",
+                Some(course.kept),
+            );
+            rows.push(row.within(0.0, 1e-12).note("½ V·V + ½ U·AU − τ²/8 |AU|²"));
+        }
+        if h == 0.1 {
+            drawn.push((name, course));
+        }
+    }
+    for (name, method) in [
+        ("MT", Method::Mt(None)),
+        ("GT", Method::Gt(None)),
+        ("MMI", Method::Mmi),
+    ] {
+        let course = course(method, 0.1)?;
+        let row = Row::new(
+            format!("{name} without regularisation: drift"),
+            "",
+            Some(course.kept),
+        );
+        rows.push(row.within(0.0, 1e-12));
+        if method == Method::Mt(None) {
+            // (E U² L²/l²) √π [√2/L − 1/√(L²/2 + l²/4)]
+            let closed = std::f64::consts::PI.sqrt() * (2.0f64.sqrt() - 1.0 / 0.75f64.sqrt());
+            let row = Row::new("energy at the start", "", Some(course.physical_at_start));
+            rows.push(
+                row.within_share(closed, 1e-10)
+                    .note("closed form for the line, 0.459975"),
+            );
+            drawn.push(("MT without regularisation", course));
+        }
+    }
+    if let Some(path) = context.figure("energy.png") {
+        let mut chart = LineChart::new(Axis::new("time", ""), Axis::new("E_n − E₀", ""))
+            .title("Energy, h = τ = 0.1");
+        for (name, course) in &drawn {
+            chart = chart.curve(Curve::line(*name, &course.t, &course.paper));
+        }
+        chart.write(path)?;
+    }
+    Ok(rows)
+}

@@ -1,0 +1,52 @@
+//! The linearisation of a force about a displacement.
+
+use super::{ForceOperator, LinearOperator, On};
+use crate::parallel::ordered_sum;
+
+/// d ↦ f′(u₀) d, the force density's derivative at u₀; about the reference state of any bond-based law it is the linear law's operator.
+///
+/// The force itself is f(u₀) + f′(u₀)(u − u₀) but for an error of second order in the relative displacements, which [`Linearisation::model_error`] measures.
+pub struct Linearisation<'a> {
+    operator: &'a dyn ForceOperator,
+    about: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl<'a> Linearisation<'a> {
+    /// Of a force about the displacement `about`, m.
+    pub fn new(operator: &'a dyn ForceOperator, about: Vec<f64>) -> Self {
+        let mut force = vec![0.0; about.len()];
+        operator.add_force(0.0, &about, On::All, &mut force);
+        Self {
+            operator,
+            about,
+            force,
+        }
+    }
+
+    /// ‖f(u) − f(u₀) − f′(u₀)(u − u₀)‖ over ‖f(u) − f(u₀)‖, Euclidean norms; zero where the force does not change at all.
+    pub fn model_error(&self, u: &[f64]) -> f64 {
+        let step: Vec<f64> = u
+            .iter()
+            .zip(&self.about)
+            .map(|(u, about)| u - about)
+            .collect();
+        let (mut linear, mut force) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+        self.apply_into(&step, &mut linear);
+        self.operator.add_force(0.0, u, On::All, &mut force);
+        let change = |k: usize| force[k] - self.force[k];
+        let miss = ordered_sum(u.len(), |k| (change(k) - linear[k]).powi(2));
+        let size = ordered_sum(u.len(), |k| change(k).powi(2));
+        if size > 0.0 {
+            (miss / size).sqrt()
+        } else {
+            0.0
+        }
+    }
+}
+
+impl LinearOperator for Linearisation<'_> {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        self.operator.tangent_into(0.0, &self.about, u, out);
+    }
+}
