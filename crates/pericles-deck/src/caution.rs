@@ -1,6 +1,7 @@
 //! What is odd about a deck though a run may be meant.
 
 use miette::Severity;
+use pericles::space::surface::SurfaceCaution;
 
 use crate::finding::Subject;
 
@@ -11,6 +12,9 @@ pub enum Caution {
     /// A pre-crack without effect.
     #[error("this crack cuts no bond")]
     CrackCutsNothing,
+    /// A horizon that does not go well with the mesh of a surface.
+    #[error("{0}")]
+    Surface(SurfaceCaution),
     /// A probe away from the body.
     #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
     ProbeOutside {
@@ -92,6 +96,7 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::Surface(_) => "usual: 3 to 6 median edges",
             Self::ShortPeriod { .. } => {
                 "a longer body, a shorter run or a smaller exact.window brings it down"
             }
@@ -109,6 +114,7 @@ impl Subject for Caution {
     fn label(&self) -> &'static str {
         match self {
             Self::CrackCutsNothing => "no effect",
+            Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
             Self::ShortPeriod { .. } => "short period",

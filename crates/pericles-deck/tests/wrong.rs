@@ -256,7 +256,7 @@ scheme = "newmark"
 const WRONG_SURFACES: &[Wrong] = &[
     wrong("\"icosphere\"", "\"icosfere\"", (2, 9), "\"icosfere\"", &["unknown shape", "did you mean `icosphere`?", "torus"]),
     wrong("radius = 1\n", "radius = 0\n", (4, 10), "0", &["a positive number"]),
-    wrong("level = 2", "level = 30", (1, 1), "[body]", &["vertices"]),
+    wrong("level = 2", "level = 30", (1, 1), "[body]", &["level of the icosphere"]),
     wrong("radius = 1\n", "radius = 1\nspacing = 1\n", (5, 1), "spacing", &["unknown key `spacing`", "`areas`"]),
     wrong("radius = 1\n", "radius = 1\nareas = \"barycentre\"\n", (5, 9), "\"barycentre\"", &["did you mean `barycentric`?"]),
     wrong("\"edge\"", "\"edges\"", (7, 10), "\"edges\"", &["exact, edge, edge-diagonals, steiner(1)"]),
@@ -270,7 +270,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("horizon = 0.8", "horizon = 0.8\nbond = \"rod\"", (15, 8), "\"rod\"", &["\"displacement\"", "\"chord\""]),
     wrong("horizon = 0.8", "horizon = 0.8\nyoungs_modulus = 1", (15, 1), "youngs_modulus", &["unknown key"]),
     wrong("\"1 kg/m2\"", "\"1 kg/m3\"", (11, 11), "\"1 kg/m3\"", &["a mass per area"]),
-    wrong("radius = 0.1, seed", "radius = -1, seed", (17, 31), "-1", &["a positive number"]),
+    wrong("radius = 0.1, seed", "radius = -1, seed", (17, 30), "-1", &["a positive number"]),
     wrong("seed = 3", "seed = 3, generator = \"mt19937\"", (17, 57), "\"mt19937\"", &["splitmix64"]),
     wrong("[[load]]", "[[crack]]\nsection = 1\n[[load]]", (19, 3), "crack", &["no pre-cracks"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nbeta = 0.6", (27, 8), "0.6", &["from 0 to 0.5"]),

@@ -132,7 +132,7 @@ impl Deck {
             cracks,
             density,
         } = match &self.surface {
-            Some(deck) => self.assemble_surface(deck, cache)?,
+            Some(deck) => self.assemble_surface(deck, cache, &mut warnings)?,
             None => self.assemble_grid(&mut warnings)?,
         };
         let density = PointScalar::Uniform(density);
@@ -217,12 +217,17 @@ impl Deck {
         &self,
         deck: &SurfaceDeck,
         cache: &dyn Cache,
+        warnings: &mut Vec<Warning>,
     ) -> Result<Assembled, DeckError> {
         let (surface, cloud) = self.surface_points(deck)?;
         let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         self.refuse_body_forces()?;
         let operator = self.surface_operator(deck, &surface, &cloud, &sets, cache)?;
+        let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
+        for caution in surface.cautions(deck.material.horizon, neighbours) {
+            warnings.push(self.finding(&"material.horizon".into(), Caution::Surface(caution)));
+        }
         Ok(Assembled {
             surface: Some(Arc::new(surface)),
             sets,

@@ -120,11 +120,9 @@ fn check_count(numbers: &Numbers<'_>, element: &Element, length: usize) -> Resul
         Numbers::Text(words) => (length - words.position() + 1, 2 * element.properties.len()),
         Numbers::Binary(bytes) => (length - bytes.position(), smallest.sum()),
     };
-    let room = if each == 0 {
-        MOST_EMPTY
-    } else {
-        (left / each) as u64
-    };
+    let room = left
+        .checked_div(each)
+        .map_or(MOST_EMPTY, |room| room as u64);
     if element.count > room {
         return Err(numbers.fault(format!(
             "{} elements \"{}\" are announced, but the {left} bytes left hold {room} at most",

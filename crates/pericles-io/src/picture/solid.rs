@@ -100,6 +100,20 @@ pub(super) fn draw(scene: &Scene) -> Bitmap {
             high[c] = high[c].max(value);
         }
     }
+    // A surface need not fill its box.
+    if !scene.facets.is_empty() {
+        let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in scene.facets.iter().flat_map(|facet| facet.corners) {
+            for (c, value) in view.project(corner).into_iter().take(2).enumerate() {
+                least[c] = least[c].min(value);
+                most[c] = most[c].max(value);
+            }
+        }
+        for c in 0..2 {
+            low[c] = low[c].max(least[c]);
+            high[c] = high[c].min(most[c]).max(low[c]);
+        }
+    }
     let largest = (high[0] - low[0])
         .max(high[1] - low[1])
         .max(f64::MIN_POSITIVE);

@@ -1,5 +1,11 @@
 //! The breathing eigenvalue under refinement.
 
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use pericles::Archive;
+use pericles::cache::{Cache, Key};
+
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::modes::breathing;
@@ -23,9 +29,30 @@ const CONTINUUM: [(f64, f64); 5] = [
     (0.999, 1568.5),
 ];
 
+/// Distances do not depend on α: they are found once for each mesh.
+#[derive(Default)]
+struct Kept(Mutex<HashMap<String, Archive>>);
+
+impl Kept {
+    fn arrays(&self) -> MutexGuard<'_, HashMap<String, Archive>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Cache for Kept {
+    fn load(&self, key: &Key) -> Option<Archive> {
+        self.arrays().get(&key.digest()).cloned()
+    }
+
+    fn store(&self, key: &Key, arrays: &Archive) {
+        self.arrays().insert(key.digest(), arrays.clone());
+    }
+}
+
 fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let levels: &[u32] = if context.full { &[3, 4, 5] } else { &[3, 4] };
     let finest = *levels.last().unwrap_or(&3);
+    let kept = Kept::default();
     let mut rows = Vec::new();
     for (alpha, continuum) in CONTINUUM {
         for &level in levels {
@@ -35,7 +62,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 change("geodesics.method", "exact"),
                 change("material.self_cell", true),
             ];
-            let model = STANDARD.deck(&changes)?.build()?;
+            let model = STANDARD.deck(&changes)?.build_with(&kept)?;
             let ratio = breathing(&model.system)? / continuum;
             let case = format!("exact distances and the own cell, α = {alpha}, level {level}");
             let row = Row::new(case, "", Some(ratio));
@@ -48,7 +75,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         }
         for &level in levels {
             let changes = [change("material.alpha", alpha), change("body.level", level)];
-            let model = STANDARD.deck(&changes)?.build()?;
+            let model = STANDARD.deck(&changes)?.build_with(&kept)?;
             let ratio = breathing(&model.system)? / continuum;
             let case =
                 format!("distances along edges, as in the paper, α = {alpha}, level {level}");
