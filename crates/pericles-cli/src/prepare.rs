@@ -4,13 +4,14 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use pericles::Simulation;
+use pericles::cache::{Cache, NoCache};
 use pericles::observe::{CrackTracker, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, ExactReference, Model, Precision};
-use pericles_io::OutputFolder;
+use pericles_deck::{Deck, ExactReference, Model, Precision, Resources};
 use pericles_io::observers::{
     Cracks, Errors, FieldSeries, History, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
+use pericles_io::{DiskCache, OutputFolder, read_surface};
 use serde::Serialize;
 
 use crate::args::Caching;
@@ -106,11 +107,12 @@ impl Facts {
 /// # Errors
 /// A deck that is refused.
 pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
-    let Some(cache) = caching.cache() else {
-        return Ok(deck.build()?);
-    };
-    let model = deck.build_with(&cache);
-    for note in cache.notes() {
+    let cache = caching.cache();
+    let model = deck.build_with(Resources {
+        cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
+        read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
+    });
+    for note in cache.iter().flat_map(DiskCache::notes) {
         console::note(format_args!("{note}"));
     }
     Ok(model?)

@@ -59,7 +59,7 @@ enum Kind {
     Surface(SurfaceKind),
 }
 
-const KINDS: [(&str, Kind); 11] = [
+const KINDS: [(&str, Kind); 12] = [
     ("bar", Kind::Bar),
     ("plate", Kind::Plate),
     ("disc", Kind::Disc),
@@ -71,6 +71,7 @@ const KINDS: [(&str, Kind); 11] = [
     ("ellipsoid", Kind::Surface(SurfaceKind::Ellipsoid)),
     ("torus", Kind::Surface(SurfaceKind::Torus)),
     ("capsule", Kind::Surface(SurfaceKind::Capsule)),
+    ("surface", Kind::Surface(SurfaceKind::File)),
 ];
 
 impl Kind {
@@ -89,6 +90,7 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         frame: Frame {
             dimension: None,
             spacing: None,
+            cells: true,
         },
         state: None,
         surface: None,
@@ -131,16 +133,15 @@ fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead 
     let shape = surface::shape(&table, kind);
     let areas = surface::areas(&table);
     table.finish();
+    let (shape, spacing) = shape.unzip();
     read.frame = Frame {
         dimension: Some(3),
-        spacing: shape.map(|(_, spacing)| spacing),
+        spacing: spacing.flatten(),
+        cells: false,
     };
     read.state = Some(StressState::Spatial);
     read.body = Some(surface::no_grid());
-    read.surface = Some(SurfaceRead {
-        shape: shape.map(|(shape, _)| shape),
-        areas,
-    });
+    read.surface = Some(SurfaceRead { shape, areas });
     read
 }
 

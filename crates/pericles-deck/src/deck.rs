@@ -186,7 +186,7 @@ fn surface_of(
     let method = root.table_or_empty("geodesics").and_then(surface::method);
     let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
     Some(SurfaceDeck {
-        shape: read.shape?,
+        shape: read.shape.clone()?,
         areas: read.areas?,
         material,
         no_fail,

@@ -91,6 +91,14 @@ pub enum Fault {
         /// What is wrong, and what is allowed.
         reason: String,
     },
+    /// A surface that cannot be had from its file.
+    #[error("{file} gives no surface: {reason}")]
+    BadSurfaceFile {
+        /// The file.
+        file: String,
+        /// What is wrong, and where.
+        reason: String,
+    },
     /// A course over time for an expression that has its own.
     #[error("`{text}` depends on time by itself and takes no function of time besides")]
     TwoCourses {
@@ -236,6 +244,9 @@ impl Subject for Fault {
             }
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
+            Self::BadSurfaceFile { .. } => {
+                "a surface is closed, in one part and oriented outwards, unless open, several or flip = true; `pericles geodesics FILE` tells more".into()
+            }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::Model(_) => return None,
@@ -261,7 +272,9 @@ impl Subject for Fault {
             Self::WrongUnit { .. } => "wrong unit",
             Self::OutOfRange { .. } => "out of range",
             Self::WrongLength { .. } => "wrong length",
-            Self::BadName { .. } | Self::BadExpression { .. } => "not usable",
+            Self::BadName { .. } | Self::BadExpression { .. } | Self::BadSurfaceFile { .. } => {
+                "not usable"
+            }
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } => "no points here",

@@ -188,7 +188,8 @@
 //! [body]
 //! shape = "icosphere"                    # level, radius; or
 //! # "uv-sphere" (segments, rings, radius) | "ellipsoid" (level, half_axes) | "torus" (major_radius, minor_radius, around, across) |
-//! # "capsule" (radius, length, segments)
+//! # "capsule" (radius, length, segments) | "surface" (file = "part.stl", beside the deck: OBJ, PLY, STL, OFF, Gmsh, VTU, VTP; open, several, flip = true allow
+//! # borders and several parts, and turn over triangles that run the wrong way)
 //! level = 4                              # halvings of the icosahedron's edges
 //! radius = "1 m"
 //! areas = "barycentric"                  # default; or mixed-voronoi, or one area for every vertex
@@ -255,7 +256,7 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::{BoundaryCondition, HistoryForm};
-pub use build::{ExactReference, Model, Sets};
+pub use build::{ExactReference, Model, Resources, Sets, SurfaceReader};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
@@ -271,5 +272,5 @@ pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, NamedSet};
 pub use source::Location;
-pub use surface::{SurfaceDeck, SurfaceShape, VertexAreas};
+pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use time::{Time, TimeStep};

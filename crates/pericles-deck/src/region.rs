@@ -29,6 +29,8 @@ pub(crate) struct Frame {
     pub(crate) dimension: Option<usize>,
     /// Spacing, m.
     pub(crate) spacing: Option<f64>,
+    /// Whether there are cells to count.
+    pub(crate) cells: bool,
 }
 
 /// A table with exactly one key, the kind of region.
@@ -216,6 +218,10 @@ fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
         .exactly_one(DEPTHS)
         .and_then(|(kind, item)| match kind {
             "depth" => item.positive(Quantity::Length),
+            _ if !frame.cells => {
+                item.out_of_range("a `depth` instead: this body has no cells to count");
+                None
+            }
             _ => Some(item.positive(Quantity::Number)? * frame.spacing?),
         });
     table.finish();

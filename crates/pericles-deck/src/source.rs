@@ -95,6 +95,11 @@ impl Sources {
         self.0.len() - 1
     }
 
+    /// The name of the deck's file.
+    pub(crate) fn name(&self) -> &str {
+        self.0.first().map_or("", |named| named.name())
+    }
+
     pub(crate) fn text(&self, source: usize) -> &str {
         self.0.get(source).map_or("", |named| named.inner())
     }

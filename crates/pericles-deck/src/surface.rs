@@ -1,12 +1,14 @@
 //! Bodies that are surfaces: their shape, material and distances.
 
+use std::path::PathBuf;
+
 use pericles::family::geodesic::GeodesicMethod;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PowerMaterial, StressState,
     SurfaceBond,
 };
 use pericles::operator::{BondForm, DamageMeasure};
-use pericles::space::surface::{AreaRule, Surface, SurfaceError};
+use pericles::space::surface::{AreaRule, Surface, SurfaceChecks, SurfaceError};
 use pericles::space::{Grid, Shape};
 
 use crate::body::{Body, Quadrature};
@@ -32,9 +34,23 @@ pub struct SurfaceDeck {
     pub method: GeodesicMethod,
 }
 
+/// Where a surface comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceShape {
+    /// Triangles of a file.
+    File {
+        /// The file; a relative path starts at the folder of the deck.
+        path: PathBuf,
+        /// What is allowed of it.
+        checks: SurfaceChecks,
+    },
+    /// A formula.
+    Formula(SurfaceFormula),
+}
+
 /// Surfaces that are made by formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SurfaceShape {
+pub enum SurfaceFormula {
     /// A sphere from an icosahedron whose edges are halved `level` times.
     Icosphere {
         /// Halvings.
@@ -92,6 +108,7 @@ pub enum VertexAreas {
 /// A word of `body.shape` that is a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SurfaceKind {
+    File,
     Icosphere,
     UvSphere,
     Ellipsoid,
@@ -99,7 +116,7 @@ pub(crate) enum SurfaceKind {
     Capsule,
 }
 
-impl SurfaceShape {
+impl SurfaceFormula {
     /// The surface, its vertices numbered along a space-filling curve.
     ///
     /// # Errors
@@ -129,8 +146,8 @@ impl SurfaceShape {
     }
 }
 
-/// The shape of `[body]`, with the mean distance of its vertices.
-pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShape, f64)> {
+/// The shape of `[body]`, with the mean distance of its vertices unless it is still to be read from a file.
+pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShape, Option<f64>)> {
     let length = |key| {
         table
             .required(key)
@@ -138,16 +155,17 @@ pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShap
     };
     let number = |key| table.required(key).and_then(|item| small_count(&item));
     let shape = match kind {
+        SurfaceKind::File => return file(table).map(|shape| (shape, None)),
         SurfaceKind::Icosphere => {
             let (level, radius) = (number("level"), length("radius"));
-            SurfaceShape::Icosphere {
+            SurfaceFormula::Icosphere {
                 level: level?,
                 radius: radius?,
             }
         }
         SurfaceKind::UvSphere => {
             let (segments, rings, radius) = (number("segments"), number("rings"), length("radius"));
-            SurfaceShape::UvSphere {
+            SurfaceFormula::UvSphere {
                 segments: segments?,
                 rings: rings?,
                 radius: radius?,
@@ -164,7 +182,7 @@ pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShap
                 let lengths: Option<Vec<f64>> = lengths.into_iter().collect();
                 lengths?.try_into().ok()
             });
-            SurfaceShape::Ellipsoid {
+            SurfaceFormula::Ellipsoid {
                 level: level?,
                 half_axes: half_axes?,
             }
@@ -172,7 +190,7 @@ pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShap
         SurfaceKind::Torus => {
             let (major, minor) = (length("major_radius"), length("minor_radius"));
             let (around, across) = (number("around"), number("across"));
-            SurfaceShape::Torus {
+            SurfaceFormula::Torus {
                 major: major?,
                 minor: minor?,
                 around: around?,
@@ -182,7 +200,7 @@ pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShap
         SurfaceKind::Capsule => {
             let (radius, segments) = (length("radius"), number("segments"));
             let length = length("length");
-            SurfaceShape::Capsule {
+            SurfaceFormula::Capsule {
                 radius: radius?,
                 length: length?,
                 segments: segments?,
@@ -190,7 +208,22 @@ pub(crate) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShap
         }
     };
     let surface = table.accept(shape.surface().map_err(Into::into))?;
-    Some((shape, (surface.area() / surface.len() as f64).sqrt()))
+    let spacing = (surface.area() / surface.len() as f64).sqrt();
+    Some((SurfaceShape::Formula(shape), Some(spacing)))
+}
+
+fn file(table: &Table<'_>) -> Option<SurfaceShape> {
+    let path = table.required("file").and_then(|item| item.text());
+    let allow = |key| table.or(key, false, |item| item.boolean());
+    let (open, several, flip) = (allow("open"), allow("several"), allow("flip"));
+    Some(SurfaceShape::File {
+        path: path?.into(),
+        checks: SurfaceChecks {
+            open: open?,
+            several_components: several?,
+            flip: flip?,
+        },
+    })
 }
 
 /// A whole number from 1 to a hundred thousand.

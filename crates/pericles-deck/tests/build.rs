@@ -889,3 +889,71 @@ end = 5.0
         assert_eq!(pulse(what, 0.05).len(), 1, "{what}");
     }
 }
+
+#[test]
+fn surfaces_come_from_files_handed_in() {
+    use pericles::space::surface::Surface;
+    use pericles_deck::Resources;
+    let text = r#"
+[body]
+shape = "surface"
+file = "parts/ball.stl"
+[material]
+density = "1 kg/m2"
+alpha = 0.5
+p = 2
+horizon = "0.6 m"
+[time]
+end = "1 ms"
+"#;
+    let deck = Deck::parse(text, "decks/ball.toml", &[]).unwrap();
+    let asked = std::sync::Mutex::new(Vec::new());
+    let built = |surface: fn() -> Result<Surface, String>| {
+        deck.build_with(Resources {
+            read_surface: &|path| {
+                asked.lock().unwrap().push(path.to_owned());
+                surface()
+            },
+            ..Resources::default()
+        })
+    };
+    let sphere = || Ok(Surface::icosphere(2, 1.0).unwrap());
+    let Ok(model) = built(sphere) else {
+        panic!("a sphere is a surface");
+    };
+    assert_eq!(model.cloud.len(), 162);
+    assert_eq!(
+        asked.lock().unwrap()[0],
+        std::path::Path::new("decks/parts/ball.stl")
+    );
+    // A triangle is left out: the surface is open.
+    let open = || {
+        let sphere = Surface::icosphere(2, 1.0).unwrap();
+        Surface::new(
+            sphere.positions().to_vec(),
+            sphere.triangles()[1..].to_vec(),
+        )
+        .map_err(|error| error.to_string())
+    };
+    let message = |result: Result<Model, DeckError>| match result {
+        Ok(_) => panic!("refused"),
+        Err(error) => error.to_string(),
+    };
+    let error = message(built(open));
+    assert!(
+        error.starts_with("decks/ball.toml:4:8:") && error.contains("ball.stl gives no surface"),
+        "{error}"
+    );
+    let error = message(built(|| Err("line 3: no number".into())));
+    assert!(error.contains("line 3: no number"), "{error}");
+    // Nobody hands in a reader.
+    assert!(message(deck.build()).contains("handed in"));
+    let cells = text.replace(
+        "[material]",
+        "[sets]\ncap = { layer = { side = \"+z\", cells = 1 } }\n[material]",
+    );
+    let error = Deck::parse(&cells, "ball.toml", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("no cells to count"), "{error}");
+}

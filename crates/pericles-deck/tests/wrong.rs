@@ -151,7 +151,7 @@ const WRONG: &[Wrong] = &[
     wrong("[0, \"free\"]", "[\"free\", \"free\"]", (23, 12), "[\"free\"", &["every component is free"]),
     wrong("[0, \"free\"]", "[0, \"fre\"]", (23, 16), "\"fre\"", &["`fre` is not a number", "a velocity"]),
     // Words and names.
-    wrong("\"plate\"\nsize", "\"plaet\"\nsize", (4, 9), "\"plaet\"", &["unknown shape `plaet`", "did you mean `plate`?", "\"bar\", \"plate\", \"disc\", \"block\", \"cylinder\" and \"ball\""]),
+    wrong("\"plate\"\nsize", "\"plaet\"\nsize", (4, 9), "\"plaet\"", &["unknown shape `plaet`", "did you mean `plate`?", "\"bar\", \"plate\", \"disc\", \"block\", \"cylinder\", \"ball\", \"icosphere\""]),
     wrong("\"strain\"", "\"strian\"", (7, 9), "\"strian\"", &["did you mean `strain`?", "\"stress\" and \"strain\""]),
     wrong("set = \"top\"\nvelocity", "set = \"topp\"\nvelocity", (22, 7), "\"topp\"", &["unknown set `topp`", "did you mean `top`?", "\"all\" and \"top\""]),
     wrong("[sets.top]", "[sets.all]", (15, 7), "all", &["`all` cannot be used", "always means all points"]),

@@ -7,15 +7,17 @@ mod content;
 mod exact;
 mod fields;
 mod graded;
+mod resources;
 mod scheme;
 mod step;
 mod surface;
 
 pub use exact::ExactReference;
 
+pub use resources::{Resources, SurfaceReader};
+
 use std::sync::Arc;
 
-use pericles::cache::{Cache, NoCache};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
@@ -114,14 +116,15 @@ impl Deck {
     /// # Errors
     /// What the library refuses, at the entry of the deck that caused it; sets without points; a step that is not stable.
     pub fn build(&self) -> Result<Model, DeckError> {
-        self.build_with(&NoCache)
+        self.build_with(Resources::default())
     }
 
-    /// The same; what is dear to compute and depends on few inputs is taken from the cache if it is there, and stored there if it is not.
+    /// The same; what is dear to compute and depends on few inputs is taken from the cache if it is there, and stored there if it is not, and surfaces are read from files.
     ///
     /// # Errors
     /// As [`Deck::build`].
-    pub fn build_with(&self, cache: &dyn Cache) -> Result<Model, DeckError> {
+    pub fn build_with(&self, resources: Resources<'_>) -> Result<Model, DeckError> {
+        let cache = resources.cache;
         let mut warnings = Vec::new();
         let Assembled {
             cloud,
@@ -132,7 +135,7 @@ impl Deck {
             cracks,
             density,
         } = match &self.surface {
-            Some(deck) => self.assemble_surface(deck, cache, &mut warnings)?,
+            Some(deck) => self.assemble_surface(deck, &resources, &mut warnings)?,
             None => self.assemble_grid(&mut warnings)?,
         };
         let density = PointScalar::Uniform(density);
@@ -216,14 +219,14 @@ impl Deck {
     fn assemble_surface(
         &self,
         deck: &SurfaceDeck,
-        cache: &dyn Cache,
+        resources: &Resources<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<Assembled, DeckError> {
-        let (surface, cloud) = self.surface_points(deck)?;
+        let (surface, cloud) = self.surface_points(deck, resources)?;
         let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         self.refuse_body_forces()?;
-        let operator = self.surface_operator(deck, &surface, &cloud, &sets, cache)?;
+        let operator = self.surface_operator(deck, &surface, &cloud, &sets, resources.cache)?;
         let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
         for caution in surface.cautions(deck.material.horizon, neighbours) {
             warnings.push(self.finding(&"material.horizon".into(), Caution::Surface(caution)));

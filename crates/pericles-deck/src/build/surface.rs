@@ -1,5 +1,6 @@
 //! Points and operator of a surface.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use pericles::PericlesError;
@@ -8,23 +9,28 @@ use pericles::family::geodesic::geodesic_pairs_cached;
 use pericles::operator::ForceOperator;
 use pericles::operator::surface::SurfaceBody;
 use pericles::space::PointCloud;
-use pericles::space::surface::Surface;
+use pericles::space::surface::{Surface, SurfaceChecks};
 
-use super::Sets;
+use super::{Resources, Sets};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
-use crate::surface::{SurfaceDeck, VertexAreas};
+use crate::surface::{SurfaceDeck, SurfaceShape, VertexAreas};
 
 impl Deck {
     pub(super) fn surface_points(
         &self,
         deck: &SurfaceDeck,
+        resources: &Resources<'_>,
     ) -> Result<(Surface, PointCloud), DeckError> {
-        let surface = deck
-            .shape
-            .surface()
-            .map_err(|error| self.at("body", error.into()))?;
+        let surface = match &deck.shape {
+            SurfaceShape::File { path, checks } => {
+                self.surface_of_file(path, *checks, resources)?
+            }
+            SurfaceShape::Formula(shape) => shape
+                .surface()
+                .map_err(|error| self.at("body", error.into()))?,
+        };
         let areas = match deck.areas {
             VertexAreas::Rule(rule) => surface.vertex_areas(rule),
             VertexAreas::Same(area) => vec![area; surface.len()],
@@ -32,6 +38,25 @@ impl Deck {
         let cloud = PointCloud::of_surface(&surface, areas)
             .map_err(|error| self.at("body.areas", error))?;
         Ok((surface, cloud))
+    }
+
+    /// The surface of a file, checked, its vertices numbered along a space-filling curve.
+    fn surface_of_file(
+        &self,
+        path: &Path,
+        checks: SurfaceChecks,
+        resources: &Resources<'_>,
+    ) -> Result<Surface, DeckError> {
+        let folder = Path::new(self.record.sources.name()).parent();
+        let file = folder.unwrap_or(Path::new("")).join(path);
+        let refused = |reason: String| {
+            let file = file.display().to_string();
+            self.at_path(&"body.file".into(), Fault::BadSurfaceFile { file, reason })
+        };
+        let (surface, _) = (resources.read_surface)(&file)
+            .and_then(|surface| surface.checked(checks).map_err(|error| error.to_string()))
+            .map_err(refused)?;
+        Ok(surface.renumbered())
     }
 
     pub(super) fn surface_operator(
@@ -64,7 +89,7 @@ impl Deck {
     /// Refuses what only bodies with a volume have.
     pub(super) fn refuse_body_forces(&self) -> Result<(), DeckError> {
         use crate::conditions::LoadAmplitude;
-        use crate::reader::Path;
+        use crate::reader::Path as Key;
         for (k, load) in self.loads.iter().enumerate() {
             let key = match load.amplitude {
                 LoadAmplitude::BodyForce(_) => "body_force",
@@ -78,7 +103,7 @@ impl Deck {
                     "a surface is loaded by a `traction`, which acts on the area of each vertex"
                         .into(),
             };
-            return Err(self.at_path(&Path::from("load").index(k).key(key), fault));
+            return Err(self.at_path(&Key::from("load").index(k).key(key), fault));
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pericles::Archive;
 use pericles::cache::{Cache, Key};
+use pericles_deck::Resources;
 
 use super::super::row::Row;
 use super::super::{Context, Study};
@@ -62,7 +63,10 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 change("geodesics.method", "exact"),
                 change("material.self_cell", true),
             ];
-            let model = STANDARD.deck(&changes)?.build_with(&kept)?;
+            let model = STANDARD.deck(&changes)?.build_with(Resources {
+                cache: &kept,
+                ..Resources::default()
+            })?;
             let ratio = breathing(&model.system)? / continuum;
             let case = format!("exact distances and the own cell, α = {alpha}, level {level}");
             let row = Row::new(case, "", Some(ratio));
@@ -75,7 +79,10 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         }
         for &level in levels {
             let changes = [change("material.alpha", alpha), change("body.level", level)];
-            let model = STANDARD.deck(&changes)?.build_with(&kept)?;
+            let model = STANDARD.deck(&changes)?.build_with(Resources {
+                cache: &kept,
+                ..Resources::default()
+            })?;
             let ratio = breathing(&model.system)? / continuum;
             let case =
                 format!("distances along edges, as in the paper, α = {alpha}, level {level}");

@@ -238,7 +238,8 @@ mod tests {
             for k in [1e-3, 0.5, 3.0, 20.0, 150.0, 1e3] {
                 let (closed, sum) = (symbol.at(k)[0], symbol.integral(k)[0]);
                 let error = (closed - sum).abs() / largest;
-                assert!(error < 3e-15, "{case:?} {k}: {closed} {sum}");
+                // kδ = 700 is known to 1e-13, and both sides sum several such terms.
+                assert!(error < 1e-14, "{case:?} {k}: {closed} {sum}");
             }
         }
     }

@@ -1,0 +1,28 @@
+//! What a model is built with besides its deck.
+
+use std::path::Path;
+
+use pericles::cache::{Cache, NoCache};
+use pericles::space::surface::Surface;
+
+/// Reads a surface from a file; the error says in words what is wrong, with the file and the place in it.
+pub type SurfaceReader<'a> = dyn Fn(&Path) -> Result<Surface, String> + Sync + 'a;
+
+/// What a model is built with besides its deck. Decks know no files but themselves: who builds a model hands in what reads others.
+#[derive(Clone, Copy)]
+pub struct Resources<'a> {
+    /// Where results that are dear to compute are kept.
+    pub cache: &'a dyn Cache,
+    /// The reader of bodies with `shape = "surface"`.
+    pub read_surface: &'a SurfaceReader<'a>,
+}
+
+impl Default for Resources<'_> {
+    /// No cache, and no reader of files.
+    fn default() -> Self {
+        Self {
+            cache: &NoCache,
+            read_surface: &|_| Err("nothing that reads surfaces was handed in".into()),
+        }
+    }
+}
