@@ -10,7 +10,7 @@ use super::{AbsorbingError, LatticeStencil};
 
 type C = Complex<f64>;
 
-/// F_n^m[j] ≈ Re Σ_p a_{n,p} b_{m,p} λ_p^{j−1}, j ≥ 1.
+/// `F_n^m[j]` ≈ Re Σ_p a_{n,p} b_{m,p} λ_p^{j−1}, j ≥ 1.
 #[derive(Debug, Clone)]
 pub struct ExponentialKernels {
     pub(super) reach: usize,
@@ -96,7 +96,7 @@ impl ExponentialKernels {
         self.terms.len()
     }
 
-    /// F_n^m[j] for j = 0 … steps, m running faster: for comparison with exact kernels.
+    /// `F_n^m[j]` for j = 0 … steps, m running faster: for comparison with exact kernels.
     pub fn series(&self, steps: usize) -> Vec<Vec<f64>> {
         let mut series = vec![vec![0.0; steps + 1]; self.reach * self.reach];
         for term in &self.terms {
