@@ -60,7 +60,9 @@ pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
     // Rest before the start; then there and back again, so that the end is no jump.
     let mut signal = vec![0.0; samples];
     signal.extend((0..samples).map(|k| g((k as f64 + 0.5) * dt)));
-    share_beyond(&mirrored(&signal), frequency * dt, false)
+    let mut planner = RealFftPlanner::new();
+    let [beyond, all] = energies_of(&mut planner, &mirrored(&signal), frequency * dt, false);
+    if all > 0.0 { beyond / all } else { 0.0 }
 }
 
 /// The share of the energy of a field on a body's lattice that lies beyond a wavenumber (rad/m), along the worst of the axes: of the strain Σ k²|û|² if
@@ -84,6 +86,8 @@ pub fn space_content(
         .map(|&node| lattice.coordinates(node))
         .collect();
     let mut worst: Option<f64> = None;
+    // Lines of one length share a plan.
+    let mut planner = RealFftPlanner::new();
     for axis in 0..dimension {
         let mut order: Vec<usize> = (0..n).collect();
         let line = |i: usize| {
@@ -99,8 +103,12 @@ pub fn space_content(
                 .chunk_by(|&i, &j| line(i)[..2] == line(j)[..2] && line(j)[2] == line(i)[2] + 1)
             {
                 let values: Vec<f64> = run.iter().map(|&i| component[i]).collect();
-                let [beyond, all] =
-                    energies_of(&mirrored(&values), wavenumber * cloud.spacing(), strain);
+                let [beyond, all] = energies_of(
+                    &mut planner,
+                    &mirrored(&values),
+                    wavenumber * cloud.spacing(),
+                    strain,
+                );
                 energies[0] += beyond;
                 energies[1] += all;
             }
@@ -117,15 +125,15 @@ fn mirrored(values: &[f64]) -> Vec<f64> {
     values.iter().chain(values.iter().rev()).copied().collect()
 }
 
-fn share_beyond(signal: &[f64], limit: f64, strain: bool) -> f64 {
-    let [beyond, all] = energies_of(signal, limit, strain);
-    if all > 0.0 { beyond / all } else { 0.0 }
-}
-
 /// Energy beyond `limit` (rad per sample) and of all but the mean.
-fn energies_of(signal: &[f64], limit: f64, strain: bool) -> [f64; 2] {
+fn energies_of(
+    planner: &mut RealFftPlanner<f64>,
+    signal: &[f64],
+    limit: f64,
+    strain: bool,
+) -> [f64; 2] {
     let n = signal.len();
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let transform = planner.plan_fft_forward(n);
     let mut input = signal.to_vec();
     let mut output = transform.make_output_vec();
     if transform.process(&mut input, &mut output).is_err() {

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use super::runge_kutta::{Stages, StepForm, start};
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
-use crate::accounts::Completed;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::On;
@@ -191,20 +190,10 @@ impl Integrator for AdaptiveRungeKutta {
             }
             self.accepted += 1;
             let t = if last { t_next } else { state.t + try_h };
-            let State { u, v, a, .. } = state;
             let [u_next, v_next] = &mut self.next;
             system.constrain(t, u_next, v_next);
             system.constrain_velocity(t, v_next);
-            let completed = Completed {
-                t,
-                dt: try_h,
-                u: [u, u_next],
-                v: [v, v_next],
-            };
-            system.complete_and_accelerate(completed, a);
-            std::mem::swap(u, u_next);
-            std::mem::swap(v, v_next);
-            state.t = t;
+            state.complete(system, &mut self.next, t, try_h);
             // A sub-step cut short by the end of the step says little about the next.
             h = if last {
                 h.max(try_h * factor)

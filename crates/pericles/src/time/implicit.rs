@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::{Integrator, State};
-use crate::accounts::Completed;
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
@@ -284,7 +283,7 @@ impl Integrator for Implicit {
     }
 
     fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
-        let State { t, step, u, v, a } = state;
+        let State { t, u, v, a, .. } = state;
         let tau = t_next - *t;
         self.prescribe(system, t_next, u);
         if self.linear {
@@ -299,17 +298,8 @@ impl Integrator for Implicit {
         each(v_next, &self.half, |v, half| *v = 4.0 / tau * half - *v);
         system.constrain(t_next, u_next, v_next);
         system.constrain_velocity(t_next, v_next);
-        let completed = Completed {
-            t: t_next,
-            dt: tau,
-            u: [u, u_next],
-            v: [v, v_next],
-        };
-        system.complete_and_accelerate(completed, a);
-        std::mem::swap(u, u_next);
-        std::mem::swap(v, v_next);
-        *t = t_next;
-        *step += 1;
+        state.complete(system, &mut self.next, t_next, tau);
+        state.step += 1;
         Ok(())
     }
 }

@@ -33,6 +33,7 @@ pub use tableau::Tableau;
 pub use trigonometric::{FunctionMethod, LoadRule, Trigonometric, TrigonometricOptions};
 pub use verlet::VelocityVerlet;
 
+use crate::accounts::Completed;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::system::System;
@@ -62,6 +63,29 @@ impl State {
             v: vec![0.0; entries],
             a: vec![0.0; entries],
         }
+    }
+}
+
+impl State {
+    /// Ends a step of length dt at time t with the displacement and velocity in `next`, which then hold those before the step: decides breaking, books work and
+    /// impulse, and evaluates the acceleration.
+    pub(crate) fn complete(
+        &mut self,
+        system: &mut System,
+        [u, v]: &mut [Vec<f64>; 2],
+        t: f64,
+        dt: f64,
+    ) {
+        let completed = Completed {
+            t,
+            dt,
+            u: [&self.u, u],
+            v: [&self.v, v],
+        };
+        system.complete_and_accelerate(completed, &mut self.a);
+        std::mem::swap(&mut self.u, u);
+        std::mem::swap(&mut self.v, v);
+        self.t = t;
     }
 }
 

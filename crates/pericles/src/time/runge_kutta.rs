@@ -2,7 +2,6 @@
 
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
-use crate::accounts::Completed;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
 use crate::operator::On;
@@ -133,7 +132,7 @@ impl Integrator for RungeKutta {
     }
 
     fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
-        let State { t, step, u, v, a } = state;
+        let State { t, u, v, a, .. } = state;
         let (dt, n) = (t_next - *t, system.points());
         for i in 1..self.form.len() {
             let (before, later) = self.a.split_at_mut(i - 1);
@@ -164,17 +163,8 @@ impl Integrator for RungeKutta {
         self.form.velocity(dt, known).onto(v, &self.zone, n, v_next);
         system.constrain(t_next, u_next, v_next);
         system.constrain_velocity(t_next, v_next);
-        let completed = Completed {
-            t: t_next,
-            dt,
-            u: [u, u_next],
-            v: [v, v_next],
-        };
-        system.complete_and_accelerate(completed, a);
-        std::mem::swap(u, u_next);
-        std::mem::swap(v, v_next);
-        *t = t_next;
-        *step += 1;
+        state.complete(system, &mut self.next, t_next, dt);
+        state.step += 1;
         Ok(())
     }
 }

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::{Integrator, State};
-use crate::accounts::Completed;
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
@@ -354,7 +353,7 @@ impl Integrator for Trigonometric {
     }
 
     fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
-        let State { t, step, u, v, a } = state;
+        let State { t, u, v, a, .. } = state;
         let dt = t_next - *t;
         self.push.copy_from_slice(v);
         self.pull.copy_from_slice(a);
@@ -383,18 +382,8 @@ impl Integrator for Trigonometric {
             std::mem::swap(&mut self.next[0], &mut u_next);
             add(&mut self.next[1], 0.5 * dt, &self.remainder);
         }
-        let [u_next, v_next] = &mut self.next;
-        let completed = Completed {
-            t: t_next,
-            dt,
-            u: [u, u_next],
-            v: [v, v_next],
-        };
-        system.complete_and_accelerate(completed, a);
-        std::mem::swap(u, u_next);
-        std::mem::swap(v, v_next);
-        *t = t_next;
-        *step += 1;
+        state.complete(system, &mut self.next, t_next, dt);
+        state.step += 1;
         Ok(())
     }
 }

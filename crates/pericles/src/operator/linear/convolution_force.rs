@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::box_convolution::BoxConvolution;
+use super::energy::{add_density, elastic_energy, origin};
 use super::lattice_bonds::{LatticeBonds, OffsetBond};
 use super::pool::Pool;
 use super::refuse;
@@ -16,7 +17,7 @@ use crate::error::{PericlesError, Result};
 use crate::family::{Crack, VolumeCorrection};
 use crate::material::{BondConstants, BondMaterial, PairLaw};
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
-use crate::parallel::{components, components_mut, ordered_sum};
+use crate::parallel::{components, components_mut};
 use crate::space::{Lattice, PointCloud};
 
 /// f_a(x_i) = Σ_b [ Σ_j K_ab(ξ_ij) u_b(x_j) − u_b(x_i) Σ_j K_ab(ξ_ij) ], K(ξ) = c α κ V ξ⊗ξ/|ξ|³: the force density (N/m³) of the
@@ -153,12 +154,6 @@ impl<const D: usize> ConvolutionForce<D> {
         Ok(operator)
     }
 
-    /// The value that displacements are taken relative to: a rigid translation is then exactly zero.
-    fn origin(&self, u: &[f64]) -> [f64; D] {
-        let n = self.cloud.len();
-        std::array::from_fn(|c| u[c * n + n / 2])
-    }
-
     fn add(&self, u: &[f64], on: &On<'_>, out: &mut [f64]) {
         let n = self.cloud.len();
         match &self.engine {
@@ -172,7 +167,7 @@ impl<const D: usize> ConvolutionForce<D> {
                 });
             }
             Engine::Box(convolution) => {
-                let origin = self.origin(u);
+                let origin = origin::<D>(u);
                 let u = components::<D>(u, n);
                 let relative = |c: usize, points: Range<usize>, line: &mut [f64]| {
                     for (line, u) in line.iter_mut().zip(&u[c][points]) {
@@ -285,31 +280,20 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
     /// so that points without strain may show energies of either sign that small.
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
         let n = self.points();
-        let origin = self.origin(u);
+        let origin = origin::<D>(u);
         let mut force = vec![0.0; D * n];
         self.apply_into(u, &mut force);
         let mut squares = vec![0.0; n];
         self.add_squares(u, origin, &mut squares);
-        for i in 0..n {
-            let work: f64 = (0..D)
-                .map(|c| force[c * n + i] * (u[c * n + i] - origin[c]))
-                .sum();
-            out[i] += 0.25 * squares[i] - 0.5 * work;
-        }
+        add_density(u, &force, origin, &squares, out);
     }
 
     /// −½ Σ V f·u.
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
-        let n = self.points();
-        let origin = self.origin(u);
+        let origin = origin::<D>(u);
         let mut force = self.fields.take();
         self.apply_into(u, &mut force);
-        let force = &force[..];
-        let volumes = self.cloud.volumes();
-        let work = ordered_sum(D * n, |k| {
-            volumes[k % n] * force[k] * (u[k] - origin[k / n])
-        });
-        -0.5 * work
+        elastic_energy(self.cloud.volumes(), u, &force, origin)
     }
 
     /// ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|/|ξ|, by Gershgorin's discs of D×D blocks; for kernels with negative values over a full family.

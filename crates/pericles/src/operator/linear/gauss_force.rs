@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::energy::{elastic_energy, origin};
 use super::pool::Pool;
 use super::refuse;
 use super::toeplitz::{Ends, Toeplitz};
@@ -11,7 +12,6 @@ use crate::error::{PericlesError, Result};
 use crate::family::VolumeCorrection;
 use crate::material::{BondConstants, BondMaterial, PairLaw};
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
-use crate::parallel::ordered_sum;
 use crate::space::PointCloud;
 
 /// f_i = Σ_j c α κ V/|ξ| (u_j − u_i) on the nodes of [`gauss_bar`](crate::space::gauss_bar), free ends.
@@ -158,10 +158,6 @@ impl GaussForce {
             }
         }
     }
-
-    fn origin(&self, u: &[f64]) -> f64 {
-        u[u.len() / 2]
-    }
 }
 
 /// The width of the cells whose Gauss nodes the points are.
@@ -201,7 +197,7 @@ fn sums(nodes: usize, centre: f64, below: &[f64], above: &[f64]) -> Vec<f64> {
 
 impl LinearOperator for GaussForce {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
-        let origin = self.origin(u);
+        let [origin] = origin(u);
         let mut work = self.work.take();
         self.products(|i| u[i] - origin, &mut work);
         out.copy_from_slice(&work.force);
@@ -218,7 +214,7 @@ impl ForceOperator for GaussForce {
     }
 
     fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
-        let origin = self.origin(u);
+        let [origin] = origin(u);
         let mut work = self.work.take();
         self.products(|i| u[i] - origin, &mut work);
         for_each_wanted(&on, 0..u.len(), |points| {
@@ -230,7 +226,7 @@ impl ForceOperator for GaussForce {
 
     /// w_i = ¼ Σ_j k (u_j² − u_i²) − ½ f_i u_i, relative to a common origin.
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
-        let origin = self.origin(u);
+        let [origin] = origin(u);
         let mut work = self.work.take();
         self.products(|i| (u[i] - origin).powi(2), &mut work);
         for (out, square) in out.iter_mut().zip(&work.force) {
@@ -244,11 +240,10 @@ impl ForceOperator for GaussForce {
 
     /// −½ Σ V f·u.
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
-        let origin = self.origin(u);
+        let [origin] = origin(u);
         let mut work = self.work.take();
         self.products(|i| u[i] - origin, &mut work);
-        let (force, volumes) = (&work.force, self.cloud.volumes());
-        -0.5 * ordered_sum(u.len(), |i| volumes[i] * force[i] * (u[i] - origin))
+        elastic_energy(self.cloud.volumes(), u, &work.force, [origin])
     }
 
     /// ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|, by Gershgorin's discs; for functions without negative values.

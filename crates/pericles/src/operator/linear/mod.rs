@@ -51,6 +51,7 @@ mod box_convolution;
 mod comparison;
 mod convolution_force;
 mod cost;
+mod energy;
 mod fourier;
 mod gauss_force;
 mod lattice_bonds;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 
+use super::super::energy::{add_density, elastic_energy, origin};
 use super::super::pool::Pool;
 use super::super::refuse;
 use super::super::tensor_kernel::pairs;
@@ -18,7 +19,7 @@ use crate::error::{PericlesError, Result};
 use crate::material::{BondConstants, BondMaterial, PairLaw};
 use crate::operator::function::{Diagonal, Term};
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
-use crate::parallel::{components, components_mut, ordered_sum};
+use crate::parallel::{components, components_mut};
 use crate::space::PointCloud;
 
 /// f(x) = Σ_k −M(k) û(k) exp(ik·x): the force density (N/m³) of the linear bond-based law on a box whose opposite faces are one, with the continuum's symbol M.
@@ -204,12 +205,6 @@ impl<const D: usize> SpectralForce<D> {
         self.act(mode, &|value| value, unit)[a].re
     }
 
-    /// The value that displacements are taken relative to: a rigid translation is then exactly zero.
-    fn origin(&self, u: &[f64]) -> [f64; D] {
-        let n = self.cloud.len();
-        std::array::from_fn(|c| u[c * n + n / 2])
-    }
-
     /// The spectra of u less a constant, in the first D arrays.
     fn forward(&self, u: &[f64], origin: [f64; D], spectra: &mut [Vec<Complex<f64>>]) {
         let u = components::<D>(u, self.cloud.len());
@@ -245,7 +240,7 @@ impl<const D: usize> SpectralForce<D> {
 
     fn force_into(&self, u: &[f64], out: &mut [f64]) {
         let mut spectra = self.spectra.take();
-        self.forward(u, self.origin(u), &mut spectra);
+        self.forward(u, origin::<D>(u), &mut spectra);
         self.backward(&|value| -value, &mut spectra, out, &|_, _, value, out| {
             *out = value;
         });
@@ -285,7 +280,7 @@ impl<const D: usize> LinearOperator for SpectralForce<D> {
 impl<const D: usize> Diagonal for SpectralForce<D> {
     fn add_functions(&self, density: f64, shift: f64, x: &[f64], terms: &mut [Term<'_>]) {
         let mut spectra = self.spectra.take();
-        let origin = self.origin(x);
+        let origin = origin::<D>(x);
         self.forward(x, origin, &mut spectra);
         for term in terms {
             let (function, tau, factor) = (term.function, term.tau, term.factor);
@@ -326,31 +321,20 @@ impl<const D: usize> ForceOperator for SpectralForce<D> {
     /// number, so that fields should be smooth on the scale of two spacings.
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
         let n = self.points();
-        let origin = self.origin(u);
+        let origin = origin::<D>(u);
         let mut squares = vec![0.0; n];
         self.add_squares(u, origin, &mut squares);
         let mut force = self.fields.take();
         self.force_into(u, &mut force);
-        for i in 0..n {
-            let work: f64 = (0..D)
-                .map(|c| force[c * n + i] * (u[c * n + i] - origin[c]))
-                .sum();
-            out[i] += 0.25 * squares[i] - 0.5 * work;
-        }
+        add_density(u, &force, origin, &squares, out);
     }
 
     /// −½ Σ V f·u.
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
-        let n = self.points();
-        let origin = self.origin(u);
+        let origin = origin::<D>(u);
         let mut force = self.fields.take();
         self.force_into(u, &mut force);
-        let force = &force[..];
-        let volumes = self.cloud.volumes();
-        let work = ordered_sum(D * n, |k| {
-            volumes[k % n] * force[k] * (u[k] - origin[k / n])
-        });
-        -0.5 * work
+        elastic_energy(self.cloud.volumes(), u, &force, origin)
     }
 
     /// The largest ω of all plane waves, for the smallest density.
