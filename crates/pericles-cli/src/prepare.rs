@@ -11,7 +11,7 @@ use pericles_deck::{Deck, ExactReference, Model, Precision, Resources};
 use pericles_io::observers::{
     Cracks, Errors, FieldSeries, History, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
-use pericles_io::{DiskCache, OutputFolder, read_surface};
+use pericles_io::{DiskCache, OutputFolder, read_points, read_surface};
 use serde::Serialize;
 
 use crate::args::Caching;
@@ -111,6 +111,9 @@ pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
         read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
+        read_points: &|path, dimension| {
+            read_points(path, dimension).map_err(|error| error.to_string())
+        },
     });
     for note in cache.iter().flat_map(DiskCache::notes) {
         console::note(format_args!("{note}"));

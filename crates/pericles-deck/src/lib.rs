@@ -50,7 +50,7 @@
 //! title = "Branching crack"              # for people; optional
 //!
 //! [body]
-//! shape = "plate"                        # bar (1D) | plate, disc (2D) | block, cylinder, ball (3D)
+//! shape = "plate"                        # bar (1D) | plate, disc (2D) | block, cylinder, ball (3D) | points
 //! size = ["100 mm", "40 mm"]             # bar (or length = "…"), plate, block; whole numbers of cells
 //! origin = ["0 mm", "0 mm"]              # their lower corner; default 0
 //! # disc, ball: centre [center], default 0; radius          disc: inner_radius, optional
@@ -61,6 +61,7 @@
 //! # area = "1 mm2"                       # 1D only; default 1 m²
 //! # periodic = true                       # bar, plate, block without holes: opposite faces are one; default false
 //! # quadrature = "midpoint"               # default; or gauss: a bar with two Gauss nodes in every cell of `spacing`
+//! # points: those of file = "cloud.txt", beside the deck: text `x y z block volume` (m, m³), see below; dimension, default 3; spacing: about their distance
 //! [[body.hole]]                          # a region without material; any number
 //! ball = { centre = ["20 mm", "20 mm"], radius = "5 mm" }
 //! # [[body.refine]]                      # a region with smaller cells and a smaller horizon; any number, later ones before earlier ones. Bonds are then
@@ -100,6 +101,9 @@
 //! layer = { side = "+y", depth = "0.25 mm" }
 //! [sets.left]
 //! layer = { side = "-x", cells = 2 }
+//!
+//! [sets.grain]
+//! where = "x > 0.01 && (x - 0.02)^2 + y^2 <= 1e-6 || block == 2"   # a condition on x, y, z (m) and block; or block = 2, block = [2, 3]
 //!
 //! [[crack]]                              # cuts bonds before the run
 //! segment = [["0 mm", "20 mm"], ["50 mm", "20 mm"]]   # 2D
@@ -182,6 +186,11 @@
 //! `layer = { side, depth }` (side −x, +x, …, +z of the body's bounding box; `cells` counts spacings instead), `polygon = { corners = [[x, y], …] }`,
 //! `union = [ … ]`, `intersection = [ … ]`, `complement = { … }`.
 //!
+//! # Listed points
+//! `shape = "points"` takes the points of a text file: a line `x y z block volume` for each, separated by blanks or commas; with `#` or `!` begin comments. A first
+//! line may name the columns (`header: x y block_id volume`). In two dimensions z may be left out and volumes are area times `thickness`, in one
+//! dimension y as well and they are length times `area`. Bodies on grids are block 1. Tractions on sets of listed points need `area`.
+//!
 //! # Surfaces
 //! A body may be a closed surface of triangles. Its points are the vertices, with areas in place of volumes: densities are per area, forces are tractions.
 //! ```toml
@@ -243,6 +252,7 @@ mod nearest;
 mod newmark;
 mod output;
 mod overrides;
+mod points;
 mod quantity;
 mod reader;
 mod region;
@@ -256,7 +266,7 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::{BoundaryCondition, HistoryForm};
-pub use build::{ExactReference, Model, Resources, Sets, SurfaceReader};
+pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
@@ -264,13 +274,14 @@ pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
-pub use expression::Expression;
+pub use expression::{Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};
 pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
+pub use points::PointsFile;
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
-pub use set::{ALL, NamedSet};
+pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
 pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use time::{Time, TimeStep};

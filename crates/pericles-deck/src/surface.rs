@@ -367,6 +367,7 @@ pub(crate) fn no_grid() -> Body {
             section: 1.0,
             holes: Vec::new(),
         },
+        listed: None,
         finer: Vec::new(),
         state: StressState::Spatial,
         periodic: false,

@@ -957,3 +957,124 @@ end = "1 ms"
         .to_string();
     assert!(error.contains("no cells to count"), "{error}");
 }
+
+/// A plate of 12 × 6 cells of 1 mm as a list of points in no order, with its right third as block 2.
+fn listed_plate(volume: f64) -> pericles::space::ListedPoints {
+    let mut listed = pericles::space::ListedPoints::default();
+    for k in 0..72 {
+        // 5 and 72 have no common divisor: every cell once.
+        let cell = 5 * k % 72;
+        let (column, row) = (cell % 12, cell / 12);
+        let place = [column, row].map(|c| (f64::from(c) + 0.5) * 1e-3);
+        listed.positions.push([place[0], place[1], 0.0]);
+        listed.blocks.push(if column < 8 { 1 } else { 2 });
+        listed.volumes.push(volume);
+    }
+    listed
+}
+
+const LISTED: &str = r#"
+[body]
+shape = "points"
+file = "plate.txt"
+dimension = 2
+spacing = "1 mm"
+plane = "stress"
+thickness = "2 mm"
+[material]
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+[sets]
+right = { block = 2 }
+corner = { where = "x < 0.002 && y < 0.003 || block == 7" }
+edge = { layer = { side = "-x", cells = 1 } }
+[[load]]
+set = "right"
+traction = ["1 MPa", 0]
+area = "12 mm2"
+[time]
+end = "1 us"
+"#;
+
+#[test]
+fn listed_points_are_the_body_of_the_grid() {
+    use pericles::operator::On;
+    use pericles_deck::Resources;
+    let built = |text: &str, volume: f64| {
+        let deck = Deck::parse(text, "decks/plate.toml", &[]).unwrap();
+        deck.build_with(Resources {
+            read_points: &|path, dimension| {
+                assert_eq!(path, std::path::Path::new("decks/plate.txt"));
+                assert_eq!(dimension, 2);
+                Ok(listed_plate(volume))
+            },
+            ..Resources::default()
+        })
+    };
+    let cell = 2e-9;
+    let listed = built(LISTED, cell).unwrap_or_else(|error| panic!("{error}"));
+    let sizes: Vec<(&str, usize)> = listed
+        .sets
+        .iter()
+        .map(|(name, points)| (name.as_str(), points.len()))
+        .collect();
+    assert_eq!(
+        sizes,
+        [("all", 72), ("right", 24), ("corner", 6), ("edge", 6)]
+    );
+    // The same plate as a grid: equal forces, to round-off.
+    let grid = LISTED
+        .replace(
+            "\"points\"\nfile = \"plate.txt\"\ndimension = 2",
+            "\"plate\"\nsize = [\"12 mm\", \"6 mm\"]",
+        )
+        .replace("block = 2", "where = \"x > 0.008\"");
+    let grid = build(&grid);
+    let displaced = |model: &Model| -> Vec<f64> {
+        let places = (0..72).map(|i| model.cloud.point(i));
+        let u: Vec<[f64; 2]> = places
+            .map(|[x, y, _]| [1e-2 * x * x / 1e-3, 2e-3 * (x - y)])
+            .collect();
+        (0..2).flat_map(|c| u.iter().map(move |u| u[c])).collect()
+    };
+    let forces = |model: &Model| {
+        let u = displaced(model);
+        let mut force = vec![0.0; 144];
+        model
+            .system
+            .operator()
+            .add_force(0.0, &u, On::All, &mut force);
+        force
+    };
+    let (ours, theirs) = (forces(&listed), forces(&grid));
+    let scale = theirs.iter().fold(0.0, |max: f64, f| max.max(f.abs()));
+    for i in 0..72 {
+        let place = listed.cloud.point(i);
+        let twin = grid.cloud.nearest(place);
+        for c in 0..2 {
+            let difference = ours[c * 72 + i] - theirs[c * 72 + twin];
+            assert!(difference.abs() < 1e-11 * scale, "{i}: {difference}");
+        }
+    }
+    // Volumes in mm³, a set without points, a traction without area.
+    let refused =
+        |text: &str, volume: f64| built(text, volume).map(|_| ()).unwrap_err().to_string();
+    let error = refused(LISTED, 2.0);
+    assert!(
+        error.contains("plate.toml:6:11: the volumes of the listed points"),
+        "{error}"
+    );
+    assert!(
+        error.contains("volumes in m³; `thickness` is part"),
+        "{error}"
+    );
+    let error = refused(&LISTED.replace("block = 2", "block = 3"), cell);
+    assert!(
+        error.contains("the set `right` selects no point"),
+        "{error}"
+    );
+    let error = refused(&LISTED.replace("area = \"12 mm2\"", ""), cell);
+    assert!(error.contains("listed points have no faces"), "{error}");
+    assert!(refusal(LISTED).to_string().contains("handed in"));
+}

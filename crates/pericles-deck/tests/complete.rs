@@ -91,7 +91,7 @@ fn every_entry_arrives() {
     let sets: Vec<(&str, &Region)> = deck
         .sets
         .iter()
-        .map(|set| (set.name.as_str(), &set.region))
+        .map(|set| (set.name.as_str(), set.members.region().unwrap()))
         .collect();
     assert_eq!(
         sets,
@@ -432,11 +432,11 @@ fn overrides_change_what_is_read() {
 fn overrides_make_tables_and_point_at_themselves() {
     let deck = with(&["sets.right.layer.side=+x", "sets.right.layer.cells=2"]).unwrap();
     assert_eq!(
-        deck.sets[3].region,
-        Region::Layer {
+        deck.sets[3].members.region(),
+        Some(&Region::Layer {
             face: Face::named("+x").unwrap(),
             depth: 0.5e-3
-        }
+        })
     );
     for (text, column, words) in [
         ("time.end=-1 s", 10, "`-1 s` is out of range"),

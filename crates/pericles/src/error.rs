@@ -47,6 +47,26 @@ pub enum PericlesError {
         /// The limit.
         limit: u64,
     },
+    /// Lists of points, blocks and volumes that do not go together.
+    #[error(
+        "{positions} positions, {blocks} blocks and {volumes} volumes are listed: each point needs one of each"
+    )]
+    ListedLengths {
+        /// Positions.
+        positions: usize,
+        /// Blocks.
+        blocks: usize,
+        /// Volumes.
+        volumes: usize,
+    },
+    /// Two points at one place.
+    #[error("points {first} and {second} of the list (counted from 0) are at the same place")]
+    SamePlace {
+        /// The first of them.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
     /// The horizon reaches no neighbour.
     #[error(
         "the horizon {horizon} m reaches no neighbour: it must be at least the spacing, {spacing} m (usual: 3 spacings)"

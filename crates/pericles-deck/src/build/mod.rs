@@ -7,6 +7,7 @@ mod content;
 mod exact;
 mod fields;
 mod graded;
+mod points;
 mod resources;
 mod scheme;
 mod step;
@@ -14,7 +15,7 @@ mod surface;
 
 pub use exact::ExactReference;
 
-pub use resources::{Resources, SurfaceReader};
+pub use resources::{PointsReader, Resources, SurfaceReader};
 
 use std::sync::Arc;
 
@@ -22,12 +23,11 @@ use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
 use pericles::space::surface::Surface;
-use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet, Shape, gauss_bar};
+use pericles::space::{GradedCloud, PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use self::graded::Grids;
-use crate::body::Quadrature;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -136,7 +136,7 @@ impl Deck {
             density,
         } = match &self.surface {
             Some(deck) => self.assemble_surface(deck, &resources, &mut warnings)?,
-            None => self.assemble_grid(&mut warnings)?,
+            None => self.assemble_grid(&resources, &mut warnings)?,
         };
         let density = PointScalar::Uniform(density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
@@ -177,12 +177,16 @@ impl Deck {
         })
     }
 
-    fn assemble_grid(&self, warnings: &mut Vec<Warning>) -> Result<Assembled, DeckError> {
+    fn assemble_grid(
+        &self,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Assembled, DeckError> {
         let GradedCloud {
             cloud,
             ratios,
             grid_of_point,
-        } = self.points()?;
+        } = self.points(resources)?;
         let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
@@ -252,58 +256,11 @@ impl Deck {
         })
     }
 
-    fn points(&self) -> Result<GradedCloud, DeckError> {
-        let graded = GradedGrid {
-            grid: self.body.grid.clone(),
-            finer: self.body.finer.clone(),
-        };
-        let grid = &graded.grid;
-        let points = match (&grid.shape, self.body.quadrature) {
-            (Shape::Box { origin, size }, Quadrature::Gauss) => {
-                gauss_bar(origin[0], size[0], grid.spacing, grid.section)
-                    .map(GradedCloud::of_one_grid)
-            }
-            _ if self.body.periodic => grid
-                .points()
-                .and_then(PointCloud::with_periodic_faces)
-                .map(GradedCloud::of_one_grid),
-            _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
-            _ => graded.points(),
-        };
-        points.map_err(|error| {
-            let place = match &error {
-                PericlesError::NotWholeCells { length, .. } => self.side(*length),
-                PericlesError::TooManyPoints { .. } => "body.spacing".into(),
-                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
-                    Path::from("body.refine").index(*part)
-                }
-                PericlesError::FinerParts { .. } => "body.refine".into(),
-                _ => "body".into(),
-            };
-            self.at_path(&place, error.into())
-        })
-    }
-
-    /// The entry that gives a side of this length.
-    fn side(&self, length: f64) -> Path {
-        let given =
-            |path: &Path| self.record.value(path).and_then(|value| value.as_f64()) == Some(length);
-        let size = Path::from("body.size");
-        let candidates = [
-            size.index(0),
-            size.index(1),
-            size.index(2),
-            "body.length".into(),
-            "body.height".into(),
-        ];
-        candidates.into_iter().find(given).unwrap_or(size)
-    }
-
     fn select(&self, cloud: &PointCloud) -> Result<Sets, DeckError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
         let mut problems = Vec::new();
         for set in &self.sets {
-            let points = cloud.select(&set.region);
+            let points = set.members.of(cloud);
             if points.is_empty() {
                 let fault = Fault::EmptySet {
                     set: set.name.clone(),
