@@ -15,6 +15,12 @@ pub enum Caution {
     /// A horizon that does not go well with the mesh of a surface.
     #[error("{0}")]
     Surface(SurfaceCaution),
+    /// A strength that no brittle material has.
+    #[error("bonds break beyond a stretch of {:.0} % only", 100.0 * stretch)]
+    LargeStretch {
+        /// The critical stretch.
+        stretch: f64,
+    },
     /// A probe away from the body.
     #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
     ProbeOutside {
@@ -93,6 +99,9 @@ impl Subject for Caution {
             Self::CrackCutsNothing => {
                 "it must pass between points of the body that lie within a horizon of each other"
             }
+            Self::LargeStretch { .. } => {
+                "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
+            }
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
@@ -114,6 +123,7 @@ impl Subject for Caution {
     fn label(&self) -> &'static str {
         match self {
             Self::CrackCutsNothing => "no effect",
+            Self::LargeStretch { .. } => "very strong",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",

@@ -212,6 +212,12 @@ pub enum Fault {
         /// The set.
         set: String,
     },
+    /// A part of another material without points.
+    #[error("the part `{part}` has no point")]
+    EmptyPart {
+        /// Its name.
+        part: String,
+    },
     /// A load whose area cannot be guessed.
     #[error("the area that the traction acts on cannot be told: {reason}")]
     UnknownArea {
@@ -267,6 +273,7 @@ impl Subject for Fault {
             Self::EmptySet { .. } => {
                 "a set needs at least one cell centre; make the region larger (a layer is at least half a spacing deep)".into()
             }
+            Self::EmptyPart { .. } => "its set or blocks have none, or later parts have taken them".into(),
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
             Self::BadSurfaceFile { .. } => {
@@ -314,7 +321,7 @@ impl Subject for Fault {
             | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
-            Self::EmptySet { .. } => "no points here",
+            Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
             Self::UnknownArea { .. } => "which area?",
             Self::NoExactSolution { .. } => "of another problem",
             Self::Model(_) => "refused",

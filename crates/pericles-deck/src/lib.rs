@@ -97,6 +97,16 @@
 //! set = "left"
 //! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's
 //!
+//! surface_correction = "none"            # default; or volume, energy: bonds near surfaces are stiffened so that families lack nothing; kept as a list
+//! # [[material.part]]                    # another material; any number, later ones before earlier ones. Model, horizon and the like are those of [material]
+//! # name = "aluminium"
+//! # set = "left"                         # or block = 2, block = [2, 3]
+//! # density = "2700 kg/m3"
+//! # youngs_modulus = "70 GPa"            # and fracture_energy or critical_stretch, as above
+//! # [material.interface]                 # bonds between two materials
+//! # rule = "harmonic"                    # default: 2c₁c₂/(c₁+c₂); or arithmetic: (c₁+c₂)/2; or weaker: the smaller. Critical stretch: the smaller, unless
+//! # pair = [{ between = ["soda-lime glass", "aluminium"], critical_stretch = 1e-3 }]
+//!
 //! [sets.top]                             # named sets of points: exactly one region each; "all" is always there
 //! layer = { side = "+y", depth = "0.25 mm" }
 //! [sets.left]
@@ -150,7 +160,7 @@
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
 //! safety = 0.95                          # default; only with "auto"
-//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, newmark, discrete-gradient, implicit-midpoint, trapezoidal, trigonometric
+//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, newmark, discrete-gradient, implicit-midpoint, trapezoidal, trigonometric, relaxation
 //! # implicit-midpoint, trapezoidal, trigonometric: stable for any dt, which must be given
 //! # trigonometric: functions = "fastest" (default) | "chebyshev" | "fourier" | "lanczos" | "eigenvectors"; loads = "gauss" (default, order 4) | "midpoint";
 //! #   regularisation = 0 (default; 1/s², never needed)
@@ -164,6 +174,8 @@
 //! # fine = ["notch", "inclusion"]        # these sets, which may not overlap; or
 //! # adaptive = { every = 4, threshold = 0.85, layers = 2, hold = 1 }   # the defaults: what is near to breaking, looked for every so many steps
 //! # rk3-mts, rk4-mts: predictor = "structured" (default) | "backward-difference"; interpolant = "hermite" (default) | "stages"
+//! # relaxation: static states. load_steps = 1 (default) of them up to `end` (default 1 s), dt is not given; tolerance = 1e-6, the forces out of balance over
+//! #   those that act; iterations = 100000; damping = "adaptive" (default) or a number below 2, per iteration
 //! allow_unstable = false                 # default; true: a step known to be unstable is only warned of
 //!
 //! [output]                               # schedules: interval = time | every = steps | count = number over the run
@@ -252,10 +264,12 @@ mod nearest;
 mod newmark;
 mod output;
 mod overrides;
+mod part;
 mod points;
 mod quantity;
 mod reader;
 mod region;
+mod relaxation;
 mod scheme;
 mod set;
 mod source;
@@ -279,6 +293,7 @@ pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};
 pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
+pub use part::{MaterialInterface, Part, PartPlace};
 pub use points::PointsFile;
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Members, NamedSet};

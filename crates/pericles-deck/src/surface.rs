@@ -393,6 +393,9 @@ pub(crate) fn no_bonds() -> Material {
         },
         no_fail: Vec::new(),
         inclusions: Vec::new(),
+        parts: Vec::new(),
+        interface: Default::default(),
+        surface_correction: Default::default(),
         damage: DamageMeasure::default(),
         form: BondForm::List,
     }

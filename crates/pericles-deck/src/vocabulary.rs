@@ -46,6 +46,8 @@ pub(crate) const SELECTIONS: &[&str] = &[
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
 /// The horizon.
 pub(crate) const HORIZONS: &[&str] = &["horizon", "horizon_ratio"];
+/// Where a part of another material is.
+pub(crate) const PLACES: &[&str] = &["set", "block"];
 /// The strength of bonds.
 pub(crate) const STRENGTHS: &[&str] = &["fracture_energy", "critical_stretch"];
 /// When output is due.

@@ -50,6 +50,7 @@ fn every_entry_arrives() {
     let state = StressState::PlaneStrain;
     let body = Body {
         grid,
+        listed: None,
         finer: vec![],
         state,
         periodic: false,

@@ -343,6 +343,21 @@ pub enum PericlesError {
         /// What stands in the way.
         cause: &'static str,
     },
+    /// A load step without an equilibrium.
+    #[error(
+        "at t = {t:e} s no equilibrium was found: after {iterations} iterations the forces that are out of balance are {residual:e} of those that act, \
+         {tolerance:e} was asked for; usual causes: a part without support, a load beyond what the body bears, too few iterations"
+    )]
+    NoEquilibrium {
+        /// Time of the load step, s.
+        t: f64,
+        /// Iterations done.
+        iterations: u32,
+        /// The residual force over the forces that act.
+        residual: f64,
+        /// The ratio asked for.
+        tolerance: f64,
+    },
     /// No absorbing end can be made.
     #[error("absorbing end: {0}")]
     Absorbing(#[from] AbsorbingError),

@@ -18,8 +18,11 @@ const TOLERANCE: f64 = 0.05;
 const SHARE: f64 = 0.05;
 
 impl Deck {
-    /// Warns of loads, motions and initial values whose waves the grid distorts. Bodies that lie on no grid are not judged.
+    /// Warns of loads, motions and initial values whose waves the grid distorts. Bodies that lie on no grid, or are of several materials, are not judged.
     pub fn judge_waves(&self, model: &Model) -> Vec<Warning> {
+        if !self.material.parts.is_empty() {
+            return Vec::new();
+        }
         let material = &self.material.bonds;
         let Ok(lattice) = BondLattice::of_body(&model.cloud, material, &model.constants) else {
             return Vec::new();

@@ -7,6 +7,7 @@ mod content;
 mod exact;
 mod fields;
 mod graded;
+mod parts;
 mod points;
 mod resources;
 mod scheme;
@@ -21,7 +22,7 @@ use std::sync::Arc;
 
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::{AssembledBonds, BondBody, BondForm};
+use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody};
 use pericles::space::surface::Surface;
 use pericles::space::{GradedCloud, PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
@@ -85,7 +86,7 @@ struct Assembled {
     constants: BondConstants,
     bonds: AssembledBonds,
     cracks: Vec<TrackedCrack>,
-    density: f64,
+    density: PointScalar,
 }
 
 impl Model {
@@ -138,7 +139,6 @@ impl Deck {
             Some(deck) => self.assemble_surface(deck, &resources, &mut warnings)?,
             None => self.assemble_grid(&resources, &mut warnings)?,
         };
-        let density = PointScalar::Uniform(density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
         let mut state = self.initial_state(&cloud, &sets)?;
@@ -195,6 +195,7 @@ impl Deck {
             .map_err(|error| self.at_material(error))?;
         let no_fail = self.union_of(&sets, &self.material.no_fail)?;
         let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
+        let (classes, density) = self.parts(&cloud, &sets, &constants, warnings)?;
         let body = BondBody {
             cloud: &cloud,
             material,
@@ -208,13 +209,18 @@ impl Deck {
             ratios: &ratios,
             of_point: &grid_of_point,
         };
-        let (bonds, cracks) = self.bonds(body, grids, warnings)?;
+        let composite = CompositeBody {
+            body,
+            classes: classes.as_ref(),
+            correction: self.material.surface_correction,
+        };
+        let (bonds, cracks) = self.bonds(composite, grids, warnings)?;
         Ok(Assembled {
             surface: None,
             sets,
             bonds,
             cracks,
-            density: material.density,
+            density,
             constants,
             cloud,
         })
@@ -244,7 +250,7 @@ impl Deck {
                 form: BondForm::List,
             },
             cracks: Vec::new(),
-            density: deck.material.density,
+            density: PointScalar::Uniform(deck.material.density),
             constants: BondConstants {
                 young: f64::NAN,
                 micromodulus: f64::NAN,
@@ -314,7 +320,7 @@ impl Deck {
     /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
-        body: BondBody<'_>,
+        composite: CompositeBody<'_>,
         grids: Grids<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
@@ -331,20 +337,24 @@ impl Deck {
             .iter()
             .map(|crack| (crack.surface.clone(), crack.ends))
             .collect();
-        let body = BondBody {
-            cracks: &surfaces,
-            ..body
+        let composite = CompositeBody {
+            body: BondBody {
+                cracks: &surfaces,
+                ..composite.body
+            },
+            ..composite
         };
         let assembled = if grids.ratios.len() > 1 {
-            self.graded_bonds(&body, grids)?
+            self.graded_bonds(&composite, grids)?
         } else {
             let form = match self.material.form {
                 BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
-                    body.fastest_bonds()
+                    composite.fastest_bonds()
                 }
                 form => form,
             };
-            body.operator(form)
+            composite
+                .operator(form)
                 .map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();

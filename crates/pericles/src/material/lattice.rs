@@ -20,7 +20,7 @@ impl BondMaterial {
     }
 
     /// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
-    fn for_each_offset(
+    pub(super) fn for_each_offset(
         &self,
         dimension: usize,
         spacing: f64,

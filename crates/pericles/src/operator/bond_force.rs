@@ -5,13 +5,14 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::bond_kernels::{
-    Bonds, BreakRule, Rows, Tally, Which, accept_rows, energy_rows, force_rows, tangent_rows,
+    Bonds, BreakRule, PairThresholds, Rows, Tally, Which, accept_rows, energy_rows, force_rows,
+    tangent_rows,
 };
 use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::family::{BondList, LANES};
-use crate::material::{BondConstants, BondMaterial, PairForce};
+use crate::material::{BondConstants, BondMaterial, PairClasses, PairForce};
 use crate::parallel::{BLOCK, components, components_mut, for_each_block, ordered_sum};
 use crate::space::PointCloud;
 
@@ -53,6 +54,8 @@ pub struct BondForce<L: PairForce, const D: usize> {
     stiffness: Vec<f64>,
     breakable: Option<Vec<u8>>,
     critical_stretch: f64,
+    /// Critical stretches by the materials of a bond's ends, in place of the one.
+    pairs: Option<PairThresholds>,
     damage: DamageMeasure,
     blocks: Vec<BlockState>,
     instruction_set: InstructionSet,
@@ -182,10 +185,20 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
             stiffness,
             breakable,
             critical_stretch: breaking.critical_stretch,
+            pairs: None,
             damage,
             blocks,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
+        }
+    }
+
+    /// The same with critical stretches that depend on the materials of a bond's ends.
+    pub fn with_critical_stretches(self, classes: PairClasses) -> Self {
+        Self {
+            critical_stretch: classes.smallest_critical_stretch(),
+            pairs: Some(PairThresholds::of::<L>(classes)),
+            ..self
         }
     }
 
@@ -263,6 +276,7 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         };
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
+            pairs: self.pairs.as_ref(),
             breakable: self.breakable.as_deref(),
             volumes: self.cloud.volumes(),
             step: step.map(|(velocity, dt)| (components::<D>(velocity, n), dt)),
@@ -523,7 +537,13 @@ impl<L: PairForce, const D: usize> ZonedForce for BondForce<L, D> {
         if !self.can_break() {
             return;
         }
-        let threshold = L::threshold(fraction * self.critical_stretch);
+        let threshold = |i: usize, j: usize| {
+            let stretch = match &self.pairs {
+                Some(pairs) => pairs.classes.critical_stretch(i, j),
+                None => self.critical_stretch,
+            };
+            L::threshold(fraction * stretch)
+        };
         let u = components::<D>(u, self.points());
         let difference = |field: [&[f64]; D], i: usize, j: usize| -> [f64; D] {
             std::array::from_fn(|c| field[c][j] - field[c][i])
@@ -531,7 +551,7 @@ impl<L: PairForce, const D: usize> ZonedForce for BondForce<L, D> {
         let over = |i: usize, j: usize| {
             let xi = difference(self.view().reference, i, j).map(|x| x * self.unit);
             let (measure, square) = L::stretch_measure(xi, difference(u, i, j));
-            measure > threshold * square
+            measure > threshold(i, j) * square
         };
         let may_break = |entry: usize| {
             self.breakable

@@ -5,7 +5,7 @@
 
 use super::lanes::{F64x8, InstructionSet, for_each_instruction_set, vector};
 use crate::family::LANES;
-use crate::material::PairForce;
+use crate::material::{PairClasses, PairForce};
 
 /// The read-only arrays of a bond list as the loops see them.
 pub(super) struct Bonds<'a, const D: usize> {
@@ -151,9 +151,31 @@ pub(super) struct Tally {
     pub events: Vec<BreakEvent>,
 }
 
+/// Thresholds by the materials of a bond's ends.
+pub(super) struct PairThresholds {
+    pub classes: PairClasses,
+    /// By class of pairs.
+    table: Vec<f64>,
+}
+
+impl PairThresholds {
+    pub(super) fn of<L: PairForce>(classes: PairClasses) -> Self {
+        let stretches = classes.critical_stretches().iter();
+        let table = stretches.map(|&stretch| L::threshold(stretch)).collect();
+        Self { classes, table }
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize, j: usize) -> f64 {
+        self.table[self.classes.class(i, j)]
+    }
+}
+
 /// Breaking as the loops see it.
 pub(super) struct BreakRule<'a, const D: usize> {
     pub threshold: f64,
+    /// Thresholds that depend on the ends of a bond, in place of the one.
+    pub pairs: Option<&'a PairThresholds>,
     /// Bits of the bonds that may break; all of them if none.
     pub breakable: Option<&'a [u8]>,
     pub volumes: &'a [f64],
@@ -174,7 +196,6 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
     tally: &mut Tally,
 ) {
     let first_group = bonds.start[rows.first];
-    let threshold = F64x8([rule.threshold; LANES]);
     for k in 0..rows.which.len() {
         let i = rows.which.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
@@ -186,6 +207,13 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
             let xi = bonds.vectors(i, group);
             let eta = bonds.differences(i, group, u);
             let (measure, square) = L::stretch_measure(xi, eta);
+            let threshold = match rule.pairs {
+                None => F64x8([rule.threshold; LANES]),
+                Some(pairs) => F64x8::from_fn(|k| {
+                    let j = bonds.neighbours[group * LANES + k] as usize;
+                    pairs.at(i, j)
+                }),
+            };
             let breakable = rule.breakable.map_or(0xFF, |bits| bits[group]);
             let over = measure.greater(threshold * square) & mask & breakable;
             if over != 0 {

@@ -14,6 +14,7 @@
 mod assemble;
 mod bond_force;
 mod bond_kernels;
+mod composite;
 pub mod function;
 mod graded;
 mod grid_block;
@@ -40,6 +41,7 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use composite::CompositeBody;
 pub use graded::{EndLaw, GradedBody};
 pub use grid_force::GridForce;
 pub use grid_law::{GridLaw, Offset};
