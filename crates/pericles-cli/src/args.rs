@@ -2,6 +2,7 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use pericles::family::geodesic::GeodesicMethod;
@@ -136,6 +137,8 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) caching: Caching,
     #[command(flatten)]
+    pub(crate) limits: Limits,
+    #[command(flatten)]
     pub(crate) execution: Execution,
 }
 
@@ -230,6 +233,8 @@ pub(crate) struct ResumeArgs {
     #[command(flatten)]
     pub(crate) caching: Caching,
     #[command(flatten)]
+    pub(crate) limits: Limits,
+    #[command(flatten)]
     pub(crate) execution: Execution,
 }
 
@@ -320,6 +325,22 @@ impl Caching {
     }
 }
 
+/// What a run may use up.
+#[derive(Debug, Args)]
+pub(crate) struct Limits {
+    /// Stop in time, with a checkpoint, before so much time on the clock has passed, such as 2h, "90 min" or seconds; the exit status is then 7
+    #[arg(long, value_name = "TIME", value_parser = wall_time)]
+    pub(crate) wall_time: Option<Duration>,
+}
+
+fn wall_time(text: &str) -> Result<Duration, String> {
+    let allowed = "a time above zero such as 2h, \"90 min\" or 5400 (seconds)";
+    pericles_deck::seconds(text)
+        .filter(|&seconds| seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| allowed.to_owned())
+}
+
 /// How to compute and how much to say.
 #[derive(Debug, Args)]
 pub(crate) struct Execution {
@@ -368,6 +389,13 @@ mod tests {
         assert!(parse("pericles reproduce --list").is_ok());
         assert!(parse("pericles reproduce --list fracture/branching").is_err());
         assert!(parse("pericles run a.toml --threads 0").is_err());
+        assert!(parse("pericles run a.toml --wall-time 2h").is_ok());
+        for wrong in ["0", "2m", "-1s", "soon", "1e99h"] {
+            assert!(
+                parse(&format!("pericles resume a --wall-time={wrong}")).is_err(),
+                "{wrong}"
+            );
+        }
         assert!(parse("pericles dispersion a.toml --direction 2,1").is_ok());
         for wrong in ["0,0", "1,x", "1,2,3,4"] {
             assert!(parse(&format!("pericles dispersion a.toml --direction {wrong}")).is_err());
