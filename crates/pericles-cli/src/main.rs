@@ -1,6 +1,6 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `info` and `diff` on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] on one deck at several values, `info` and `diff` on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
@@ -28,6 +28,7 @@ mod results;
 mod run;
 mod signals;
 mod summary;
+mod sweep;
 mod units;
 mod waves;
 
