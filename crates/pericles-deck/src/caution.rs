@@ -21,6 +21,29 @@ pub enum Caution {
         /// The critical stretch.
         stretch: f64,
     },
+    /// A load that supports take.
+    #[error(
+        "{held} of the {points} points of this load are held along it: there it acts on the support alone"
+    )]
+    LoadOnHeld {
+        /// Points that are held.
+        held: usize,
+        /// Points of the load.
+        points: usize,
+    },
+    /// A static body of which a part may float away.
+    #[error(
+        "{points} of {of} points, such as that at ({}, {}, {}) m, are joined to no support by bonds",
+        place[0], place[1], place[2]
+    )]
+    NoSupport {
+        /// Points without support.
+        points: usize,
+        /// All points.
+        of: usize,
+        /// One of them, m.
+        place: [f64; 3],
+    },
     /// A probe away from the body.
     #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
     ProbeOutside {
@@ -102,6 +125,10 @@ impl Subject for Caution {
             Self::LargeStretch { .. } => {
                 "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
             }
+            Self::LoadOnHeld { .. } => "leave these points out of the load's set",
+            Self::NoSupport { .. } => {
+                "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
+            }
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
@@ -124,6 +151,8 @@ impl Subject for Caution {
         match self {
             Self::CrackCutsNothing => "no effect",
             Self::LargeStretch { .. } => "very strong",
+            Self::LoadOnHeld { .. } => "held",
+            Self::NoSupport { .. } => "loose parts",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",

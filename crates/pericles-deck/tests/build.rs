@@ -1078,3 +1078,107 @@ fn listed_points_are_the_body_of_the_grid() {
     assert!(error.contains("listed points have no faces"), "{error}");
     assert!(refusal(LISTED).to_string().contains("handed in"));
 }
+
+/// A bar of 20 cells, held at its left end and pulled at its right one, in two materials.
+const STATIC: &str = r#"
+[body]
+shape = "bar"
+length = "20 mm"
+spacing = "1 mm"
+area = "4 mm2"
+[material]
+name = "steel"
+density = "7850 kg/m3"
+youngs_modulus = "210 GPa"
+horizon_ratio = 3
+critical_stretch = 0.3
+[[material.part]]
+name = "glue"
+set = "middle"
+density = "1200 kg/m3"
+youngs_modulus = "7 GPa"
+critical_stretch = 0.01
+[material.interface]
+rule = "weaker"
+pair = [{ between = ["glue", "steel"], critical_stretch = 0.005 }]
+[sets]
+left = { where = "x < 0.003" }
+middle = { where = "0.009 < x < 0.011" }
+right = { layer = { side = "+x", cells = 3 } }
+[[prescribe]]
+set = "left"
+displacement = [0]
+[[load]]
+set = "right"
+traction = ["1 MPa"]
+[time]
+scheme = "relaxation"
+load_steps = 4
+"#;
+
+#[test]
+fn parts_have_their_own_density_and_strength() {
+    let model = build(STATIC);
+    assert_eq!(
+        (model.steps, model.dt, model.form),
+        (4, 0.25, BondForm::List)
+    );
+    let density = |x: f64| {
+        model
+            .system
+            .density()
+            .at(model.cloud.nearest([x, 0.0, 0.0]))
+    };
+    assert_eq!((density(2e-3), density(10e-3)), (7850.0, 1200.0));
+    assert!(model.system.operator().can_break());
+    let lines: Vec<String> = model
+        .warnings
+        .iter()
+        .map(|warning| warning.line())
+        .collect();
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!(
+        lines[0].contains("deck.toml:12:20: bonds break beyond a stretch of 30 %"),
+        "{lines:?}"
+    );
+}
+
+#[test]
+fn what_makes_no_physical_sense_is_said() {
+    let warned = |replace: &str, by: &str, says: &str| {
+        let text = STATIC.replace("0.3\n", "0.1\n");
+        let lines: Vec<String> = build(&text.replace(replace, by))
+            .warnings
+            .iter()
+            .map(|warning| warning.line())
+            .collect();
+        assert!(lines.iter().any(|line| line.contains(says)), "{lines:?}");
+    };
+    warned(
+        "set = \"right\"",
+        "set = \"all\"\narea = \"4 mm2\"",
+        "3 of the 20 points of this load are held along it",
+    );
+    warned(
+        "[time]",
+        "[[crack]]\nsection = \"15 mm\"\n[time]",
+        "5 of 20 points, such as that at (0.0155, 0, 0) m, are joined to no support",
+    );
+    let refused = |replace: &str, by: &str, says: &[&str]| {
+        let message = refusal(&STATIC.replace(replace, by)).to_string();
+        assert!(
+            says.iter().all(|words| message.contains(words)),
+            "{message}"
+        );
+    };
+    refused(
+        "horizon_ratio = 3",
+        "horizon = \"1e6 m\"",
+        &["deck.toml:11:11", "is a unit wrong?"],
+    );
+    refused(
+        "[sets]",
+        "[[material.part]]\nname = \"more\"\nset = \"middle\"\ndensity = 1\nyoungs_modulus = 1\n[sets]",
+        &["the part `glue` has no point"],
+    );
+}

@@ -121,6 +121,17 @@ const WRONG: &[Wrong] = &[
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\n", (3, 1), "[body]", &["[body] lacks `file`"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\ndimension = 4\n", (6, 13), "4", &["allowed: 1, 2 or 3"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\n", (7, 1), "plane", &["`plane` has no place in [body]"]),
+    // Several materials, relaxation.
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = -1\nyoungs_modulus = 1\n[sets.top]", (18, 11), "-1", &["a positive number"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\nblock = 2\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (18, 9), "2", &["`set` and `block` are given together in [material.part.0]"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nhorizon = 1\n[sets.top]", (20, 1), "horizon", &["no place", "for all bonds of the body"]),
+    wrong("[sets.top]", "[material.interface]\nrule = \"weaker\"\n[sets.top]", (15, 11), "interface", &["only a body with [[material.part]]"]),
+    wrong("[sets.top]", "[material.interface]\npair = [{ between = [\"b\", \"a\"], critical_stretch = 1 }]\n[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 22), "\"b\"", &["unknown material `b`", "\"a\""]),
+    wrong("fracture_energy", "surface_correction = \"force\"\nfracture_energy", (13, 22), "\"force\"", &["unknown surface correction `force`", "\"volume\" and \"energy\""]),
+    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndt = 1", (36, 1), "dt", &["`dt` has no place in [time]", "give load_steps"]),
+    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
+    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ntolerance = 0", (36, 13), "0", &["forces out of balance"]),
+    wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
     // Boundaries.
     wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),

@@ -77,6 +77,22 @@ pub enum PericlesError {
         /// Spacing, m.
         spacing: f64,
     },
+    /// A horizon with far too many neighbours.
+    #[error(
+        "the horizon {horizon} m is {:.0} spacings of {spacing} m, so that each point would have up to {neighbours:.0e} neighbours; at most {most:.0e} are \
+         possible (usual: 3 spacings); is a unit wrong?",
+        horizon / spacing
+    )]
+    HorizonTooLarge {
+        /// Horizon, m.
+        horizon: f64,
+        /// Spacing, m.
+        spacing: f64,
+        /// Cells of the cube about a family.
+        neighbours: f64,
+        /// The largest number.
+        most: f64,
+    },
     /// Shape, region or crack of another dimension than the body.
     #[error("{what} needs a body of dimension {needed}, this one has dimension {dimension}")]
     WrongDimension {

@@ -11,6 +11,7 @@ mod parts;
 mod points;
 mod resources;
 mod scheme;
+mod sense;
 mod step;
 mod surface;
 
@@ -150,6 +151,7 @@ impl Deck {
         }
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
+        self.judge_conditions(&system, &mut warnings);
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
         let ends = self.ends(&system, &state, &sets, &*integrator)?;
@@ -398,7 +400,9 @@ impl Deck {
             PericlesError::BadConvolution { .. }
             | PericlesError::FormNotUsable { .. }
             | PericlesError::OneStencil => "material.bonds",
-            PericlesError::HorizonTooSmall { .. } => self.horizon_key(),
+            PericlesError::HorizonTooSmall { .. } | PericlesError::HorizonTooLarge { .. } => {
+                self.horizon_key()
+            }
             _ => "material",
         };
         self.at(path, error)
