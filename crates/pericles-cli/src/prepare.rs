@@ -170,7 +170,7 @@ pub(crate) fn simulation(
     if output.fields != Schedule::Never {
         folder.subfolder("fields")?;
         let single = output.precision == Precision::Single;
-        let mut fields = FieldSeries::new(folder.path(), single);
+        let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
         if let Some(surface) = &surface {
             fields = fields.of_surface(surface.clone());
         }
@@ -190,6 +190,7 @@ fn add_pictures(
         return Ok(());
     }
     let place = folder.subfolder("pictures")?;
+    let dimension = simulation.system().dimension();
     let mut uses: HashMap<String, u32> = HashMap::new();
     for picture in &deck.output.pictures {
         let what = PictureOf {
@@ -202,11 +203,11 @@ fn add_pictures(
             surface: surface.cloned(),
         };
         // Two pictures of one field get two names.
-        let uses = uses.entry(what.name()).or_default();
+        let uses = uses.entry(what.name(dimension)).or_default();
         *uses += 1;
         let stem = match *uses {
-            1 => what.name(),
-            number => format!("{}_{number}", what.name()),
+            1 => what.name(dimension),
+            number => format!("{}_{number}", what.name(dimension)),
         };
         simulation.observe(
             picture.schedule,

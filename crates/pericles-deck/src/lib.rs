@@ -179,12 +179,14 @@
 //! allow_unstable = false                 # default; true: a step known to be unstable is only warned of
 //!
 //! [output]                               # schedules: interval = time | every = steps | count = number over the run
-//! fields = { count = 20 }                # default; or "never"
+//! fields = { count = 20 }                # default; or "never". names = ["Displacement", …]: which fields, by default the first five below; Stress and Strain are
+//! #                                        made of listed bonds, so that bonds = "fastest" becomes "list"
 //! history = { count = 200 }              # default; or "never". Reactions follow it too
 //! cracks = { threshold = 0.35 }          # default threshold of damage; schedule by default that of the history; or "never"
 //! precision = "double"                   # default; or single: numbers in field files
 //! [[output.picture]]                     # any number
-//! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density
+//! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density,
+//! #                                        External_Force_Density, Reaction_Density (_x, …), Stress, Strain (Frobenius norm of the components kept, or _xx, _yy, _xy …)
 //! scale = 1                              # default: factor of the displacement
 //! range = [0, 1]                         # of the colour bar; default: that of the field
 //! count = 4                              # default

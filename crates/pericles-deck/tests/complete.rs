@@ -217,6 +217,7 @@ fn conditions_time_and_output_arrive() {
         deck.output,
         Output {
             fields: Schedule::Interval(0.5e-6),
+            names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
             cracks: CrackOutput {
                 schedule: Schedule::Count(92),

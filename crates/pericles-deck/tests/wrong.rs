@@ -183,6 +183,8 @@ const WRONG: &[Wrong] = &[
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "polygon = { corners = [[0, 0], [1, 1]] }", (16, 23), "[[0, 0]", &["at least 3 corners"]),
     wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has it"]),
     wrong("fields =", "picture = [{ field = \"Displacement_z\" }]\nfields =", (38, 22), "\"Displacement_z\"", &["unknown field `Displacement_z`", "\"Displacement_x\""]),
+    wrong("{ interval = \"0.5 us\" }", "{ every = 2, names = [\"Stress_xx\"] }", (38, 32), "\"Stress_xx\"", &["whole fields"]),
+    wrong("fields =", "picture = [{ field = \"Stress_zz\" }]\nfields =", (38, 22), "\"Stress_zz\"", &["unknown field `Stress_zz`", "\"Stress_xy\""]),
     wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
     // What the library refuses.
     wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),

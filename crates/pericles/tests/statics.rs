@@ -383,3 +383,47 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
         );
     }
 }
+
+#[test]
+fn stress_and_strain_of_a_uniform_state() {
+    use pericles::observe::{Field, Snapshot, StartEnergy};
+    let cloud = boxed([0.0; 3], &[0.16, 0.12], DX, 0.01);
+    let mut steel = steel(Fracture::Unbreakable);
+    steel.modulus.calibration = pericles::material::Calibration::Lattice;
+    let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
+    let body = BondBody {
+        cloud: &cloud,
+        material: &steel,
+        constants: &constants,
+        cracks: &[],
+        no_fail: &[],
+        stiffness: &[],
+        damage: DamageMeasure::default(),
+    };
+    let operator = body.operator(BondForm::List).unwrap().operator;
+    let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
+    let n = cloud.len();
+    let mut state = State::at_rest(2 * n);
+    // Stretched alike along both axes, and turned by a little.
+    let (stretch, turn) = (1e-6, 3e-7);
+    for i in 0..n {
+        let [x, y, _] = cloud.point(i);
+        state.u[i] = stretch * x - turn * y;
+        state.u[n + i] = stretch * y + turn * x;
+    }
+    let snapshot = Snapshot::new(&system, &state, StartEnergy::default(), 0.0);
+    let (stress, strain) = (snapshot.field(Field::Stress), snapshot.field(Field::Strain));
+    // Strain everywhere, stress where no bond is missing: E/(1 - nu) strain.
+    let exact = YOUNG / (2.0 / 3.0) * stretch;
+    for i in 0..n {
+        for (c, expected) in [stretch, stretch, 0.0].into_iter().enumerate() {
+            assert!((strain[c * n + i] - expected).abs() < 1e-9 * stretch);
+        }
+        let [x, y, _] = cloud.point(i);
+        if (0.04..0.12).contains(&x) && (0.04..0.08).contains(&y) {
+            for (c, expected) in [exact, exact, 0.0].into_iter().enumerate() {
+                assert!((stress[c * n + i] - expected).abs() < 1e-5 * exact, "{c}");
+            }
+        }
+    }
+}

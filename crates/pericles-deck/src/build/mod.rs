@@ -217,6 +217,13 @@ impl Deck {
             correction: self.material.surface_correction,
         };
         let (bonds, cracks) = self.bonds(composite, grids, warnings)?;
+        if self.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
+            let error = PericlesError::FormNotUsable {
+                form: bonds.form.name(),
+                reason: "stress and strain are made of listed bonds: \"list\", or leave these fields out",
+            };
+            return Err(self.at("output", error));
+        }
         Ok(Assembled {
             surface: None,
             sets,
@@ -352,6 +359,9 @@ impl Deck {
             let form = match self.material.form {
                 BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
                     composite.fastest_bonds()
+                }
+                BondForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
+                    BondForm::List
                 }
                 form => form,
             };

@@ -288,6 +288,16 @@ impl PrescribedMotion {
         sum
     }
 
+    /// Adds the force density of the support at the last accepted state (N/m³) to the entries of held points.
+    pub fn add_reaction(&self, cloud_len: usize, out: &mut [f64]) {
+        let slots = self.reaction.chunks(self.points.len().max(1));
+        for (c, reactions) in self.axes().zip(slots) {
+            for (force, &i) in reactions.iter().zip(&self.points) {
+                out[c * cloud_len + i as usize] += force;
+            }
+        }
+    }
+
     /// The noted reactions (N/m³), for checkpoints.
     pub(crate) fn reactions(&self) -> &[f64] {
         &self.reaction

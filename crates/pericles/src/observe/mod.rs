@@ -8,6 +8,7 @@ mod probe;
 mod schedule;
 mod snapshot;
 mod surface;
+mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use probe::{Probe, ProbeReading};

@@ -25,6 +25,7 @@ mod linearisation;
 mod list;
 mod rows;
 pub mod surface;
+mod view;
 mod zoned;
 
 use std::ops::Range;
@@ -41,6 +42,7 @@ pub use linear::{
 };
 pub use linearisation::Linearisation;
 pub use list::BondForce;
+pub use view::{BondAt, BondView};
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;
@@ -181,6 +183,11 @@ pub trait ForceOperator: Saved + Send + Sync {
 
     /// The operator as a linear map, if it is one.
     fn as_linear(&self) -> Option<&dyn LinearOperator>;
+
+    /// The operator's bonds one by one, if it lists them.
+    fn as_bonds(&self) -> Option<&dyn BondView> {
+        None
+    }
 
     /// The operator as a sum over bonds that can be taken apart by zones, if it is one.
     fn as_zoned(&self) -> Option<&dyn ZonedForce> {

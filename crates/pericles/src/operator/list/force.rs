@@ -13,7 +13,9 @@ use crate::family::{BondList, LANES};
 use crate::material::{BondConstants, BondMaterial, PairClasses, PairForce};
 use crate::operator::damage::{self, BlockDamage, Breaking, DamageMeasure};
 use crate::operator::rows::Rows;
-use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
+use crate::operator::{
+    Accepted, BondAt, BondView, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce,
+};
 use crate::parallel::{BLOCK, components, components_mut, for_each_block, ordered_sum};
 use crate::space::PointCloud;
 
@@ -429,6 +431,10 @@ impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
     }
 
+    fn as_bonds(&self) -> Option<&dyn BondView> {
+        Some(self)
+    }
+
     fn as_zoned(&self) -> Option<&dyn ZonedForce> {
         Some(self)
     }
@@ -509,6 +515,30 @@ impl<L: PairForce, const D: usize> ZonedForce for BondForce<L, D> {
                     .family(i)
                     .any(|(entry, j)| self.is_intact(i, entry) && may_break(entry) && over(i, j));
             });
+    }
+}
+
+impl<L: PairForce, const D: usize> BondView for BondForce<L, D> {
+    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (n, view) = (self.points(), self.view());
+        let u = components::<D>(u, n);
+        for (entry, j) in self.bonds.family(i) {
+            if !self.is_intact(i, entry) {
+                continue;
+            }
+            let xi: [f64; D] =
+                std::array::from_fn(|c| (view.reference[c][j] - view.reference[c][i]) * view.unit);
+            let eta: [f64; D] = std::array::from_fn(|c| u[c][j] - u[c][i]);
+            let force = L::force(xi, eta).map(|force| self.stiffness[entry] * force);
+            let spatial =
+                |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
+            visit(BondAt {
+                neighbour: j,
+                xi: spatial(xi),
+                eta: spatial(eta),
+                force: spatial(force),
+            });
+        }
     }
 }
 
