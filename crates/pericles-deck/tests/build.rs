@@ -1162,7 +1162,7 @@ fn what_makes_no_physical_sense_is_said() {
     warned(
         "[time]",
         "[[crack]]\nsection = \"15 mm\"\n[time]",
-        "5 of 20 points, such as that at (0.0155, 0, 0) m, are joined to no support",
+        "5 of 20 points, such as that at (0.015",
     );
     let refused = |replace: &str, by: &str, says: &[&str]| {
         let message = refusal(&STATIC.replace(replace, by)).to_string();

@@ -145,7 +145,7 @@ const WRONG: &[Wrong] = &[
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),
-    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (36, 18), "\"yes\"", &["a string (`yes`) where true or false, without quotes is needed"]),
+    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (37, 18), "\"yes\"", &["a string (`yes`) where true or false, without quotes is needed"]),
     wrong("segment = [[", "ends = true\nsegment = [[", (19, 8), "true", &["one of \"closed\", \"open\""]),
     wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a string (`often`) where a table is needed"]),
     wrong("title = \"plate\"", "title = 2024-01-01", (1, 9), "2024-01-01", &["a date", "a string in quotes"]),

@@ -56,9 +56,12 @@ impl Deck {
                     }
                 }
             }
-            if !of_point.contains(&number) {
-                let set = part.name.clone();
-                return Err(self.at_path(&path, Fault::EmptyPart { part: set }));
+        }
+        for (k, part) in material.parts.iter().enumerate() {
+            if !of_point.contains(&((k + 1) as u8)) {
+                let part = part.name.clone();
+                let path = Path::from("material.part").index(k);
+                return Err(self.at_path(&path, Fault::EmptyPart { part }));
             }
         }
         let densities: Vec<f64> = of_point

@@ -24,7 +24,7 @@ pub enum Damping {
 pub struct RelaxationOptions {
     /// The damping.
     pub damping: Damping,
-    /// Norm of the forces that are out of balance over that of loads and supports.
+    /// Norm of the forces that are out of balance over that of loads or supports, the larger; the largest so far.
     pub tolerance: f64,
     /// The most iterations of one equilibrium.
     pub iterations: u32,
@@ -67,6 +67,8 @@ pub struct Relaxation {
     velocity: Vec<f64>,
     start: Vec<f64>,
     before: Vec<f64>,
+    /// The largest norm of loads or supports at an equilibrium so far, N.
+    largest: f64,
     /// Energy given to the damping after bonds broke, J.
     damped: f64,
     iterations: u64,
@@ -114,6 +116,7 @@ impl Relaxation {
             velocity: zeros(),
             start: zeros(),
             before: zeros(),
+            largest: 0.0,
             damped: 0.0,
             iterations: 0,
         })
@@ -148,8 +151,9 @@ impl Relaxation {
                 self.first_force.copy_from_slice(&self.force);
             }
             let support = self.norm(system, &self.force, |free| 1.0 - free);
-            // Where neither loads nor supports act, what was out of balance at first is all there is.
-            let acting = match load.max(support) {
+            // Of a body that comes apart nothing is left in the end to compare with: what acted before counts too. Where neither loads nor supports ever
+            // acted, what was out of balance at first is all there is.
+            let acting = match load.max(support).max(self.largest) {
                 0.0 => first,
                 acting => acting,
             };
@@ -159,6 +163,7 @@ impl Relaxation {
                 residual / acting
             };
             if ratio <= tolerance {
+                self.largest = self.largest.max(load).max(support);
                 return Ok(());
             }
             if !ratio.is_finite() || iteration == iterations {
@@ -301,12 +306,15 @@ impl Integrator for Relaxation {
 
 impl Saved for Relaxation {
     fn save(&self, archive: &mut Archive) {
-        archive.put("relaxation/damped", Values::F64(vec![self.damped]));
+        let account = vec![self.damped, self.largest];
+        archive.put("relaxation/account", Values::F64(account));
         archive.put("relaxation/iterations", Values::U64(vec![self.iterations]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        archive.f64_into("relaxation/damped", std::slice::from_mut(&mut self.damped))?;
+        let mut account = [0.0; 2];
+        archive.f64_into("relaxation/account", &mut account)?;
+        [self.damped, self.largest] = account;
         archive.u64_into(
             "relaxation/iterations",
             std::slice::from_mut(&mut self.iterations),
