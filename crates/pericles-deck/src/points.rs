@@ -39,21 +39,27 @@ pub(crate) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
     let section = body::section(&table, dimension);
     read.state = body::state(&table, dimension);
     table.finish();
-    let body = || {
-        Some(Body {
-            grid: no_grid(dimension, read.frame.spacing?, section?),
-            listed: Some(PointsFile {
-                path: path?.into(),
-                dimension,
-            }),
-            finer: Vec::new(),
-            state: read.state?,
-            periodic: false,
-            quadrature: Quadrature::Midpoint,
-        })
-    };
-    read.body = body();
+    read.body = body(&read, section, path, dimension);
     read
+}
+
+fn body(
+    read: &BodyRead,
+    section: Option<f64>,
+    path: Option<String>,
+    dimension: usize,
+) -> Option<Body> {
+    Some(Body {
+        grid: no_grid(dimension, read.frame.spacing?, section?),
+        listed: Some(PointsFile {
+            path: path?.into(),
+            dimension,
+        }),
+        finer: Vec::new(),
+        state: read.state?,
+        periodic: false,
+        quadrature: Quadrature::Midpoint,
+    })
 }
 
 /// What stands in the place of a grid: only its spacing and section are used.
