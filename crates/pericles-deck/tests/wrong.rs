@@ -117,7 +117,7 @@ const WRONG: &[Wrong] = &[
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"x > \"", (16, 9), "\"x > \"", &["the condition `x > ` cannot be used", "block == 2"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"z > 0\"", (16, 9), "\"z > 0\"", &["`z` is not known here", "Variables: x, y, block"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "block = 1.5", (16, 9), "1.5", &["a whole number from 0 on"]),
-    wrong("layer = {", "where = \"x > 0\"\nlayer = {", (16, 9), "\"x > 0\"", &["`layer` and `where` are given together", "`block`"]),
+    wrong("layer = {", "where = \"x > 0\"\nlayer = {", (17, 9), "{ side", &["`layer` and `where` are given together", "`block`"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\n", (3, 1), "[body]", &["[body] lacks `file`"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\ndimension = 4\n", (6, 13), "4", &["allowed: 1, 2 or 3"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\n", (7, 1), "plane", &["`plane` has no place in [body]"]),
