@@ -44,11 +44,13 @@ pub trait Lanes: Real {
     /// # Panics
     /// If the slice ends before.
     fn load(numbers: &[f64], at: usize) -> Self;
-    /// The components of eight points, each held as x, y, z and a number of no meaning.
+    /// The numbers of eight rows, number by number.
     ///
     /// # Safety
-    /// Every index is below `points.len()`.
-    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3];
+    /// Every index is below `rows.len()`.
+    unsafe fn gather(rows: &[[f64; 4]], indices: [usize; LANES]) -> [Self; 4];
+    /// 1/√self to round-off.
+    fn inverse_root(self) -> Self;
     /// The numbers, in order.
     fn to_array(self) -> [f64; LANES];
     /// self · factor + addend, rounded once where the set has such an instruction.
@@ -145,8 +147,12 @@ impl Lanes for F64x8 {
         Self::from_fn(|k| numbers[k])
     }
     #[inline(always)]
-    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
-        vector(|c| Self::from_fn(|k| points[indices[k] as usize][c]))
+    unsafe fn gather(rows: &[[f64; 4]], indices: [usize; LANES]) -> [Self; 4] {
+        vector(|c| Self::from_fn(|k| rows[indices[k]][c]))
+    }
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        Self::splat(1.0) / self.sqrt()
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {

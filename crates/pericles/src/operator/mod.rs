@@ -13,6 +13,7 @@
 
 mod assemble;
 mod damage;
+mod fast_law;
 pub mod function;
 mod graded;
 mod grid;
@@ -22,6 +23,7 @@ pub(crate) mod lanes_x86;
 pub mod linear;
 mod linearisation;
 mod list;
+mod records;
 mod rows;
 pub mod surface;
 mod zoned;
@@ -30,8 +32,9 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use damage::{Breaking, DamageMeasure};
+pub use fast_law::{FastLaw, FixedBond};
 pub use graded::{EndLaw, GradedBody};
-pub use grid::{GridForce, GridLaw, Offset};
+pub use grid::GridForce;
 pub use lanes::InstructionSet;
 pub use linear::{
     ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralCubicForce, SpectralForce,

@@ -11,6 +11,7 @@ use super::law::SurfaceLaw;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
 use crate::operator::linear::pool::{Lent, Pool};
+use crate::operator::records::pack;
 use crate::operator::rows::Rows;
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
@@ -43,7 +44,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         let mut reference = Vec::new();
         if L::CHORD {
             reference = vec![[0.0; 4]; n];
-            pack(cloud.positions(), &mut reference);
+            pack::<3>(cloud.positions(), &mut reference);
         }
         Self {
             law,
@@ -75,7 +76,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
 
     fn packed(&self, field: &[f64]) -> Lent<'_, Vec<[f64; 4]>> {
         let mut records = self.records.take();
-        pack(field, &mut records);
+        pack::<3>(field, &mut records);
         records
     }
 
@@ -110,23 +111,6 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
             breaking.decide(self.law, &mut self.bonds, &step, on);
         }
     }
-}
-
-/// Rows of four from a component-major field.
-fn pack(field: &[f64], records: &mut [[f64; 4]]) {
-    let n = records.len();
-    let (x, rest) = field.split_at(n);
-    let (y, z) = rest.split_at(n);
-    records
-        .par_chunks_mut(8 * BLOCK)
-        .zip(x.par_chunks(8 * BLOCK))
-        .zip(y.par_chunks(8 * BLOCK))
-        .zip(z.par_chunks(8 * BLOCK))
-        .for_each(|(((records, x), y), z)| {
-            for (((record, x), y), z) in records.iter_mut().zip(x).zip(y).zip(z) {
-                *record = [*x, *y, *z, 0.0];
-            }
-        });
 }
 
 impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {

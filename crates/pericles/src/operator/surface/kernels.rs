@@ -6,10 +6,8 @@ use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
 use crate::family::LANES;
 use crate::operator::lanes::{F64x8, InstructionSet, Lanes, for_each_instruction_set, vector};
+use crate::operator::records::Records;
 use crate::operator::rows::Rows;
-
-/// Points as rows of x, y, z and nothing.
-pub(super) type Records = [[f64; 4]];
 
 /// A list of bonds with the chords at rest.
 pub(super) struct Bonds<'a> {
@@ -29,7 +27,7 @@ impl<'a> Bonds<'a> {
     /// Differences of a field along the eight bonds of a group.
     #[inline(always)]
     fn differences<T: Lanes>(&self, here: [T; 3], group: usize, field: &Records) -> [T; 3] {
-        let indices = self.list.group(group);
+        let indices = self.list.group(group).map(|j| j as usize);
         // SAFETY: neighbours are below the number of points, which `SurfaceBonds` guarantees; `field` has as many rows: see `checked`.
         let there = unsafe { T::gather(field, indices) };
         vector(|c| there[c] - here[c])
