@@ -6,7 +6,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::lanes::{Lanes, Real};
+use super::lanes::{Lanes, Real, Row};
 use crate::family::LANES;
 
 /// Eight numbers in one 512-bit register.
@@ -95,9 +95,9 @@ impl Real for Avx2x8 {
 /// # Safety
 /// The index is below `rows.len()`, and the caller is compiled for AVX2.
 #[inline(always)]
-unsafe fn four(rows: &[[f64; 4]], index: usize) -> __m256d {
-    // SAFETY: a row holds four numbers.
-    unsafe { _mm256_loadu_pd(rows.get_unchecked(index).as_ptr()) }
+unsafe fn four(rows: &[Row], index: usize) -> __m256d {
+    // SAFETY: a row holds four numbers and is aligned to their size.
+    unsafe { _mm256_load_pd(rows.get_unchecked(index).0.as_ptr()) }
 }
 
 /// 1/√x from a seed y with eleven good bits or more: y (1 − e)^(−1/2) with e = 1 − x y², as a series of which the next term is below round-off.
@@ -120,7 +120,7 @@ impl Lanes for Avx512x8 {
     }
     /// Eight rows of four are loaded in pairs and turned by eleven exchanges: fewer loads than three gathers, and they stay in line.
     #[inline(always)]
-    unsafe fn gather(rows: &[[f64; 4]], indices: [usize; LANES]) -> [Self; 4] {
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
         unsafe {
             let row = |k: usize| four(rows, indices[k]);
@@ -218,7 +218,7 @@ impl Lanes for Avx2x8 {
         }
     }
     #[inline(always)]
-    unsafe fn gather(rows: &[[f64; 4]], indices: [usize; LANES]) -> [Self; 4] {
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
         unsafe {
             let turned = |first: usize| {

@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
+use super::lanes::Row;
 use crate::parallel::BLOCK;
 
 /// One row for each point; what a row holds behind the components is its owner's.
-pub(super) type Records = [[f64; 4]];
+pub(super) type Records = [Row];
 
 /// Writes a component-major field to the first numbers of the rows.
 pub(super) fn pack<const D: usize>(field: &[f64], records: &mut Records) {

@@ -10,6 +10,7 @@ use crate::family::{BondList, LANES};
 use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure};
 use crate::operator::fast_law::FastLaw;
+use crate::operator::lanes::Row;
 use crate::operator::linear::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
@@ -28,7 +29,7 @@ pub struct BondForce<L: FastLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) bonds: BondList,
     /// Coordinates and volumes, see [`Bonds`].
-    reference: Vec<[f64; 4]>,
+    reference: Vec<Row>,
     unit: f64,
     stiffness: Stiffness,
     pub(super) breakable: Option<Vec<u8>>,
@@ -280,13 +281,13 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
 }
 
 /// Coordinates with the points' volumes behind them, and the length of one unit. Integer coordinates make bonds of equal offset equal to the last bit.
-fn reference_rows(cloud: &PointCloud) -> (Vec<[f64; 4]>, f64) {
+fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, f64) {
     let row = |i: usize| {
         let [x, y, z] = match cloud.lattice() {
             Some(lattice) => lattice.coordinates(lattice.node[i]).map(f64::from),
             None => cloud.point(i),
         };
-        [x, y, z, cloud.volumes()[i]]
+        Row([x, y, z, cloud.volumes()[i]])
     };
     let unit = cloud.lattice().map_or(1.0, |lattice| lattice.spacing);
     ((0..cloud.len()).map(row).collect(), unit)

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::family::BondList;
 use crate::operator::On;
+use crate::operator::lanes::Row;
 use crate::operator::records::{Records, pack, pack_part};
 use crate::operator::rows::Rows;
 use crate::parallel::BLOCK;
@@ -59,7 +60,7 @@ impl Reach {
 /// A work array of rows.
 pub(super) struct Packed {
     /// Components of a vector field; behind them the size of the point's cell.
-    rows: Vec<[f64; 4]>,
+    rows: Vec<Row>,
     /// Blocks packed in this evaluation.
     done: Vec<bool>,
 }
@@ -67,7 +68,7 @@ pub(super) struct Packed {
 impl Packed {
     /// Rows with the sizes of the cells.
     pub fn new(cells: impl Iterator<Item = f64>) -> Self {
-        let rows: Vec<[f64; 4]> = cells.map(|cell| [0.0, 0.0, 0.0, cell]).collect();
+        let rows: Vec<Row> = cells.map(|cell| Row([0.0, 0.0, 0.0, cell])).collect();
         Self {
             done: vec![false; rows.len().div_ceil(BLOCK)],
             rows,

@@ -32,8 +32,8 @@ pub(super) struct Formula {
 /// Sizes of the cells that a horizon cuts.
 #[derive(Debug, Clone, Copy)]
 enum Cells {
-    /// All of this size, m.
-    Equal(f64),
+    /// All of one size; one over it, m⁻¹.
+    Equal { inverse: f64 },
     /// One for each point; they come with its displacement.
     Own,
 }
@@ -62,7 +62,9 @@ impl Formula {
             horizon,
             correction: match correction {
                 VolumeCorrection::None => None,
-                _ if equal => Some(Cells::Equal(first)),
+                _ if equal => Some(Cells::Equal {
+                    inverse: 1.0 / first,
+                }),
                 _ => Some(Cells::Own),
             },
         })
@@ -77,10 +79,14 @@ impl Formula {
         let half = T::splat(0.5);
         let kappa = match self.correction {
             None => return shape * volume,
-            Some(Cells::Equal(cell)) => (horizon - r).mul_add(T::splat(1.0 / cell), half),
-            Some(Cells::Own) => (horizon - r) / (half * (cells[0] + cells[1])) + half,
+            // No bond is so long that its factor is below zero.
+            Some(Cells::Equal { inverse }) => (horizon - r).mul_add(T::splat(inverse), half),
+            Some(Cells::Own) => {
+                let kappa = (horizon - r) / (half * (cells[0] + cells[1])) + half;
+                kappa.max(T::splat(0.0))
+            }
         };
-        shape * volume * kappa.min(one).max(T::splat(0.0))
+        shape * volume * kappa.min(one)
     }
 }
 

@@ -8,6 +8,7 @@ use crate::archive::{Archive, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
 use crate::operator::lanes::{F64x8, Real};
+use crate::operator::records::Records;
 use crate::parallel::BLOCK;
 
 /// What is broken, and what it takes to break the rest. A broken bond has weight zero.
@@ -26,7 +27,7 @@ pub(super) struct Step<'a> {
     /// Mean velocity and length of the step, if the force acted for half of it only.
     pub path: Option<(&'a [f64], f64)>,
     pub areas: &'a [f64],
-    pub reference: &'a [[f64; 4]],
+    pub reference: &'a Records,
 }
 
 impl Breaking {

@@ -10,6 +10,7 @@ use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
 use super::law::SurfaceLaw;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
+use crate::operator::lanes::Row;
 use crate::operator::linear::pool::{Lent, Pool};
 use crate::operator::records::pack;
 use crate::operator::rows::Rows;
@@ -26,9 +27,9 @@ pub struct SurfaceForce<L: SurfaceLaw> {
     cloud: Arc<PointCloud>,
     bonds: SurfaceBonds,
     /// Positions at rest, if the law needs chords.
-    reference: Vec<[f64; 4]>,
+    reference: Vec<Row>,
     breaking: Option<Breaking>,
-    records: Pool<Vec<[f64; 4]>>,
+    records: Pool<Vec<Row>>,
     instruction_set: InstructionSet,
 }
 
@@ -43,7 +44,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         let n = cloud.len();
         let mut reference = Vec::new();
         if L::CHORD {
-            reference = vec![[0.0; 4]; n];
+            reference = vec![Row::default(); n];
             pack::<3>(cloud.positions(), &mut reference);
         }
         Self {
@@ -55,7 +56,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
                 broken: Vec::new(),
                 dissipated: 0.0,
             }),
-            records: Pool::new(1, move || vec![[0.0; 4]; n]),
+            records: Pool::new(1, move || vec![Row::default(); n]),
             cloud,
             instruction_set: InstructionSet::detect(),
         }
@@ -74,7 +75,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         &self.bonds
     }
 
-    fn packed(&self, field: &[f64]) -> Lent<'_, Vec<[f64; 4]>> {
+    fn packed(&self, field: &[f64]) -> Lent<'_, Vec<Row>> {
         let mut records = self.records.take();
         pack::<3>(field, &mut records);
         records
@@ -234,7 +235,7 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
                 .breaking
                 .as_ref()
                 .map_or(0, |breaking| size_of_val(&breaking.limits[..]))
-            + self.points() * size_of::<[f64; 4]>()
+            + self.points() * size_of::<Row>()
     }
 
     fn instruction_set(&self) -> InstructionSet {
