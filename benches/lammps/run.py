@@ -21,6 +21,7 @@ import venv
 HERE = pathlib.Path(__file__).resolve().parent
 TREE = HERE.parents[1]
 INPUTS = "block.common", "in.block", "in.forces"
+CASES = "block-46", "block-46-avx2", "block-46-list", "block-46-list-avx2"
 
 
 def prepare(folder):
@@ -63,10 +64,10 @@ def dump(path):
     return {int(row[0]): [float(x) for x in row[1:]] for row in rows}
 
 
-def check_forces(lmp, folder, cells):
+def check_forces(lmp, folder, cells, form):
     """Largest difference of two forces over the largest force; stops if the bond counts differ."""
     log = lammps(lmp, folder, "in.forces", n=cells)
-    lines = pericles(["forces", cells], 1).splitlines()
+    lines = pericles(["forces", cells, form], 1).splitlines()
     counts = bond_count(log), int(lines[0])
     if counts[0] != counts[1]:
         sys.exit(f"bond counts differ: LAMMPS {counts[0]}, Pericles {counts[1]}")
@@ -80,7 +81,7 @@ def check_forces(lmp, folder, cells):
         cell = tuple(round(x / 1e-3) for x in place)
         for a, b in zip(forces[atom], ours[cell]):
             largest, difference = max(largest, abs(a)), max(difference, abs(a - b))
-    print(f"forces of {len(ours)} nodes, {counts[0]} directed bonds: differ by {difference / largest:.1e} of the largest")
+    print(f"{form}: forces of {len(ours)} nodes, {counts[0]} directed bonds: differ by {difference / largest:.1e} of the largest")
     return difference / largest
 
 
@@ -104,20 +105,21 @@ def main():
     lmp = prepare(options.venv)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        if check_forces(lmp, folder, 20) > 1e-10:
-            sys.exit("forces differ by more than 1e-10 of the largest")
-        times = {"lammps": [], "block-46": [], "block-46-list": []}
+        for form in ("grid", "list"):
+            if check_forces(lmp, folder, 20, form) > 1e-10:
+                sys.exit("forces differ by more than 1e-10 of the largest")
+        times = {name: [] for name in ("lammps", *CASES)}
         for _ in range(options.rounds):
             wall, cpu, bonds = time_lammps(lmp, folder, 46, options.steps)
             times["lammps"].append(cpu)
-            for case in ("block-46", "block-46-list"):
+            for case in CASES:
                 result = json.loads(pericles(["time", case, 3], options.threads))
                 if result["directed_bonds"] != bonds:
                     sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
                 times[case].append(result["cpu_ns"])
             print("  ".join(f"{key} {values[-1]:.2f}" for key, values in times.items()), "ns CPU per directed bond", flush=True)
     medians = {key: statistics.median(values) for key, values in times.items()}
-    for case in ("block-46", "block-46-list"):
+    for case in CASES:
         print(f"{case}: {medians['lammps'] / medians[case]:.1f} times LAMMPS")
 
 

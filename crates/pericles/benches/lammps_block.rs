@@ -1,6 +1,6 @@
 //! Our side of the comparison in `benches/lammps`, run by its script.
 //!
-//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS` prints cells and force
+//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|list]` prints cells and force
 //! densities of a deformed block, `i j k fx fy fz` a line.
 
 use std::f64::consts::TAU;
@@ -50,12 +50,8 @@ fn displacement(cell: [f64; 3], length: f64, spacing: f64) -> [f64; 3] {
     ]
 }
 
-fn forces(cells: usize) -> pericles::Result<()> {
-    let case = Case {
-        name: "forces",
-        cells: vec![cells; 3],
-        form: BondForm::Fastest,
-    };
+fn forces(cells: usize, form: BondForm) -> pericles::Result<()> {
+    let case = Case::new("forces", vec![cells; 3], form);
     let cloud = case.cloud()?;
     let material = case.material();
     let body = BondBody {
@@ -100,7 +96,11 @@ fn main() -> pericles::Result<()> {
             .unwrap_or(default)
     };
     match words.first().map(String::as_str) {
-        Some("forces") => forces(number(1, 20)),
+        Some("forces") => {
+            let list = words.get(2).is_some_and(|word| word == "list");
+            let form = if list { BondForm::List } else { BondForm::Grid };
+            forces(number(1, 20), form)
+        }
         Some("time") => match words.get(1).and_then(|name| Case::named(name)) {
             Some(case) => time(&case, number(2, 5)),
             None => {
@@ -112,7 +112,7 @@ fn main() -> pericles::Result<()> {
             }
         },
         _ => {
-            println!("time CASE ROUNDS | forces CELLS; see benches/lammps");
+            println!("time CASE ROUNDS | forces CELLS [grid|list]; see benches/lammps");
             Ok(())
         }
     }

@@ -41,6 +41,10 @@ pub struct Case {
     pub cells: Vec<usize>,
     /// Form of the operator.
     pub form: BondForm,
+    /// What the loops are compiled for, if the machine has it.
+    pub instruction_set: InstructionSet,
+    /// Every point is moved off its lattice node, so that no two bonds are alike.
+    pub moved: bool,
 }
 
 /// Spacing of all cases, m.
@@ -52,19 +56,37 @@ const DENSITY: f64 = 2235.0;
 impl Case {
     /// All cases that have names.
     pub fn all() -> Vec<Self> {
-        let case = |name, cells: &[usize], form| Self {
-            name,
-            cells: cells.to_vec(),
-            form,
+        let case = |name, cells: &[usize], form| Self::new(name, cells.to_vec(), form);
+        let narrow = |case| Self {
+            instruction_set: InstructionSet::Avx2,
+            ..case
+        };
+        let moved = Self {
+            moved: true,
+            ..case("block-46-moved", &[46; 3], BondForm::List)
         };
         vec![
             case("block-46", &[46; 3], BondForm::Grid),
+            narrow(case("block-46-avx2", &[46; 3], BondForm::Grid)),
             case("block-46-list", &[46; 3], BondForm::List),
+            narrow(case("block-46-list-avx2", &[46; 3], BondForm::List)),
+            moved,
             case("block-100", &[100; 3], BondForm::Grid),
             case("plate-512", &[512; 2], BondForm::Grid),
             case("plate-512-list", &[512; 2], BondForm::List),
             case("bar-1e6", &[1_000_000], BondForm::Grid),
         ]
+    }
+
+    /// A box of cells on its lattice, with the best instructions of the machine.
+    pub fn new(name: &'static str, cells: Vec<usize>, form: BondForm) -> Self {
+        Self {
+            name,
+            cells,
+            form,
+            instruction_set: InstructionSet::detect(),
+            moved: false,
+        }
     }
 
     /// The case of this name.
@@ -87,7 +109,17 @@ impl Case {
             section: if self.cells.len() == 3 { 1.0 } else { SPACING },
             holes: vec![],
         };
-        Ok(Arc::new(grid.points()?))
+        let points = grid.points()?;
+        if !self.moved {
+            return Ok(Arc::new(points));
+        }
+        let moved = |(k, x): (usize, &f64)| x + 0.3 * SPACING * (1e3 * (k as f64).sin()).sin();
+        Ok(Arc::new(PointCloud::new(
+            points.dimension(),
+            points.positions().iter().enumerate().map(moved).collect(),
+            points.volumes().to_vec(),
+            points.section(),
+        )?))
     }
 
     /// Glass with a horizon of 3.015 spacings, linear partial volumes and a critical stretch that is never reached.
@@ -127,7 +159,8 @@ impl Case {
             stiffness: &[],
             damage: DamageMeasure::default(),
         };
-        let operator = body.operator(self.form)?.operator;
+        let mut operator = body.operator(self.form)?.operator;
+        operator.use_instruction_set(self.instruction_set);
         let n = cloud.len();
         let mut start = State::at_rest(n * cloud.dimension());
         for i in 0..n {

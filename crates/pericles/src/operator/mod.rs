@@ -5,7 +5,7 @@
 //!
 //! | form | bodies | bonds | ns per directed bond, 3D |
 //! |---|---|---|---|
-//! | [`BondForce`] | any | listed, 13 bytes each | 6 |
+//! | [`BondForce`] | any | listed, 3 bytes each | 3 |
 //! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | see `benches/surface.rs` |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline) |
 //!
@@ -179,6 +179,11 @@ pub trait ForceOperator: Saved + Send + Sync {
 
     /// What the loops are compiled for.
     fn instruction_set(&self) -> InstructionSet;
+
+    /// Runs the loops with another instruction set, if the operator has loops for it and the machine has it; for tests and benchmarks.
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        let _ = set;
+    }
 
     /// The operator as a linear map, if it is one.
     fn as_linear(&self) -> Option<&dyn LinearOperator>;

@@ -170,9 +170,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
 
     /// Runs the loops with another instruction set; for tests and benchmarks.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
-        if InstructionSet::available().contains(&set) {
-            self.instruction_set = set;
-        }
+        self.use_instruction_set(set);
         self
     }
 

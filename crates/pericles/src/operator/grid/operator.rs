@@ -142,6 +142,12 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         self.instruction_set
     }
 
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+    }
+
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
     }

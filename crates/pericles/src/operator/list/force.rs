@@ -14,7 +14,7 @@ use crate::operator::lanes::Row;
 use crate::operator::linear::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
-use crate::operator::{InstructionSet, On};
+use crate::operator::{ForceOperator, InstructionSet, On};
 use crate::parallel::{BLOCK, components, components_mut, for_each_block};
 use crate::space::PointCloud;
 
@@ -154,9 +154,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
 
     /// Runs the loops with another instruction set; for tests and benchmarks.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
-        if InstructionSet::available().contains(&set) {
-            self.instruction_set = set;
-        }
+        self.use_instruction_set(set);
         self
     }
 
@@ -203,8 +201,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         );
     }
 
-    /// Decides breaking of the wanted points' bonds, those that lead to `partners` if there are any, and with FORCE adds the force of those that are left.
-    pub(super) fn decide<const FORCE: bool>(
+    /// Decides breaking of the wanted points' bonds, those that lead to `partners` if there are any, and adds the force of those that are left.
+    pub(super) fn decide(
         &mut self,
         u: &[f64],
         step: Option<(&[f64], f64)>,
@@ -230,7 +228,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                 &|first, mut out, block| {
                     let len = n.min(first + BLOCK) - first;
                     if let Some(wanted) = Rows::of_block(on, first, len) {
-                        accept_rows::<L, D, FORCE>(
+                        accept_rows::<L, D>(
                             self.instruction_set,
                             &bonds,
                             &rule,

@@ -262,7 +262,7 @@ fn force_rows_body<T: Lanes, L: FastLaw, const D: usize>(
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize, const FORCE: bool>(
+fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     bonds: &Bonds<'_>,
     rule: &BreakRule<'_, D>,
     u: &Records,
@@ -275,13 +275,15 @@ fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize, const FORCE: bool>(
     for k in 0..rows.len() {
         let i = rows.at(k);
         let intact = &mut intact[groups_of(bonds.list, i, rows.first)];
-        let mut fast = fast_force::<T, L, D>(bonds, u, i, intact);
-        if fast.largest.greater(watch) != 0 && break_row::<L, D>(bonds, rule, u, i, intact, tally) {
-            fast = fast_force::<T, L, D>(bonds, u, i, intact);
-        }
-        if FORCE {
-            add_point_force::<T, L, D>(bonds, u, i, intact, fast, i - rows.first, out);
-        }
+        // Once more if bonds have broken: a loop, so that the compiler has one copy of its body.
+        let fast = loop {
+            let fast = fast_force::<T, L, D>(bonds, u, i, intact);
+            let endangered = fast.largest.greater(watch) != 0;
+            if !(endangered && break_row::<L, D>(bonds, rule, u, i, intact, tally)) {
+                break fast;
+            }
+        };
+        add_point_force::<T, L, D>(bonds, u, i, intact, fast, i - rows.first, out);
     }
 }
 
@@ -351,8 +353,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the rows and, with FORCE, adds the force density of those that are left.
-    pub(super) fn accept_rows [L: FastLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
+    /// Breaks over-stretched bonds of the rows and adds the force density of those that are left.
+    pub(super) fn accept_rows [L: FastLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
         rule: &BreakRule<'_, D>,
         u: &Records,

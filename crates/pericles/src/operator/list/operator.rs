@@ -66,7 +66,7 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
         if self.can_break() {
             let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide::<true>(accepted.u, step, &on, None, out);
+            self.decide(accepted.u, step, &on, None, out);
         } else {
             self.add_force(accepted.t, accepted.u, on, out);
         }
@@ -74,9 +74,9 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
 
     fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
         if self.can_break() {
-            // No force is written: any array of the right shape will do for the loop's slices.
+            // The force of the same sweep is not wanted.
             let mut unused = vec![0.0; D * self.points()];
-            self.decide::<false>(u, None, &on, None, &mut unused);
+            self.decide(u, None, &on, None, &mut unused);
         }
     }
 
@@ -142,6 +142,12 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
 
     fn instruction_set(&self) -> InstructionSet {
         self.instruction_set
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
     }
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {

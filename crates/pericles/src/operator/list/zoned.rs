@@ -37,7 +37,7 @@ impl<L: FastLaw, const D: usize> ZonedForce for BondForce<L, D> {
     ) {
         if self.can_break() {
             let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide::<true>(accepted.u, step, &on, Some(partners), out);
+            self.decide(accepted.u, step, &on, Some(partners), out);
         } else {
             self.add_force_from(accepted.t, accepted.u, on, partners, out);
         }
