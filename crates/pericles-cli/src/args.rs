@@ -66,6 +66,11 @@ checkpoint holds, so the file may have changed or gone. Another number of thread
     Resume(ResumeArgs),
     /// Tell what an output folder holds and how the run stands
     Info(InfoArgs),
+    /// Put a run on one page of HTML: deck, pictures, histories, audit, warnings, machine
+    #[command(
+        after_help = "The page needs no other file and no network, so that it can be mailed."
+    )]
+    Report(ReportArgs),
     /// Compare two results field by field
     #[command(after_help = "\
 Compares fields state by state and tables column by column, relative to the largest value of each. The exit status
@@ -248,6 +253,15 @@ pub(crate) struct ResumeArgs {
 pub(crate) struct InfoArgs {
     /// The folder of a run
     pub(crate) dir: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// The folder of a run
+    pub(crate) dir: PathBuf,
+    /// The page [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

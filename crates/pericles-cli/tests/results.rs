@@ -117,6 +117,40 @@ fn shells_and_manuals_get_what_they_read() {
 }
 
 #[test]
+fn a_report_is_one_page_with_everything() {
+    let place = with_plate();
+    let deck = common::PLATE.replace("Torn plate", "Torn <plate>");
+    fs::write(place.path().join("plate.toml"), deck).unwrap();
+    succeed(place.path(), "run plate.toml --quiet");
+    let said = text(&succeed(place.path(), "report plate").stdout);
+    assert_eq!(said, "plate/report.html\n");
+    let page = fs::read_to_string(place.path().join("plate/report.html")).unwrap();
+    for words in [
+        "<h1>Torn &lt;plate&gt;</h1>",
+        "finished; step 400 of 400",
+        "Velocity y (Velocity_y-000",
+        "energy (history.csv)",
+        "corner u (probes.csv)",
+        "energy drift",
+        "horizon_ratio = 3",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    // Nothing is fetched: every picture is in the page.
+    assert_eq!(
+        page.matches("<img ").count(),
+        page.matches("src=\"data:image/png;base64,iVBOR").count()
+    );
+    assert!(!page.contains("http"), "a link");
+    // It belongs to the results, and goes with them.
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --set time.end=1e-6 --out plate --force",
+    );
+    assert!(!place.path().join("plate/report.html").exists());
+}
+
+#[test]
 fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
     let place = with_plate();
     let line = "run plate.toml --quiet --set time.end=\"9us\" --sweep material.horizon_ratio=2,3 --sweep load.0.traction=[1e6,0],[2e6,0]";
