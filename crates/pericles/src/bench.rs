@@ -43,6 +43,8 @@ pub struct Case {
     pub form: BondForm,
     /// What the loops are compiled for, if the machine has it.
     pub instruction_set: InstructionSet,
+    /// Critical stretch; no case that is timed by name reaches it.
+    pub critical_stretch: f64,
     /// Every point is moved off its lattice node, so that no two bonds are alike.
     pub moved: bool,
 }
@@ -85,6 +87,7 @@ impl Case {
             cells,
             form,
             instruction_set: InstructionSet::detect(),
+            critical_stretch: 0.015,
             moved: false,
         }
     }
@@ -122,7 +125,7 @@ impl Case {
         )?))
     }
 
-    /// Glass with a horizon of 3.015 spacings, linear partial volumes and a critical stretch that is never reached.
+    /// Glass with a horizon of 3.015 spacings, linear partial volumes and the case's critical stretch.
     pub fn material(&self) -> BondMaterial {
         BondMaterial {
             law: PairLaw::BondStretch,
@@ -134,7 +137,7 @@ impl Case {
             horizon: 3.015 * SPACING,
             influence: Influence::default(),
             volume_correction: VolumeCorrection::Linear,
-            fracture: Fracture::CriticalStretch(0.015),
+            fracture: Fracture::CriticalStretch(self.critical_stretch),
         }
     }
 
