@@ -229,3 +229,17 @@ fn neighbours_far_apart_in_number() {
         assert!((f[i] - 12e-6).abs() < 1e-10, "{i}: {}", f[i]);
     }
 }
+
+/// 46³ points at 122 neighbours: 2.5 bytes and 3 bits an entry, rows of 64 bytes; with u, v, a (72 B) and the cloud (36 B) some 520 B in all.
+#[test]
+fn memory_per_point() {
+    let cloud = common::boxed([0.0; 3], &[0.46; 3], DX, 1.0);
+    let material = BondMaterial {
+        horizon: 3.015 * DX,
+        ..material(VolumeCorrection::Linear, Influence::default())
+    };
+    let list = common::listed::<BondStretch, 3>(&cloud, &material, StressState::Spatial, None, &[]);
+    assert_eq!(list.directed_bonds(), 11_006_544);
+    let bytes = list.bytes() as f64 / cloud.len() as f64;
+    assert!(bytes < 420.0, "{bytes}");
+}
