@@ -32,6 +32,7 @@ pub mod lanes;
 pub(crate) mod lanes_x86;
 pub mod linear;
 mod linearisation;
+pub(crate) mod prefetch;
 mod stencil;
 pub mod surface;
 mod zoned;
