@@ -115,6 +115,13 @@ fn every_vibration_turns_as_the_scheme_says() {
         let highest = modes.omega.iter().fold(0.0_f64, |max, w| max.max(*w));
         let still = modes.omega.iter().filter(|w| **w < 1e-6 * highest).count();
         assert_eq!(still, 1, "translations only");
+        let mut slowest = modes.omega.clone();
+        slowest.sort_by(f64::total_cmp);
+        let [one, two, three, other] = [1, 2, 3, 4].map(|k| slowest[k]);
+        assert!(
+            three - one < 1e-9 * two && other > 1.1 * three,
+            "breathing along x, y, z"
+        );
         let start = start(&sphere);
         let steps = 40;
 

@@ -127,7 +127,7 @@ fn two_time_steps_conserve_momentum_and_energy() {
         .collect();
     for (fine, critical) in [
         (Fine::Fixed(vec![north]), f64::INFINITY),
-        (Fine::Adaptive(Follow::default()), 3.0),
+        (Fine::Adaptive(Follow::default()), 0.5),
     ] {
         let system = sphere.system(&brittle(SurfaceBond::Displacement, critical));
         let scheme: Box<dyn Integrator> = Box::new(Respa::new(4, fine, &system).unwrap());
@@ -141,7 +141,7 @@ fn two_time_steps_conserve_momentum_and_energy() {
         if critical.is_finite() {
             assert!(run.system().operator().broken_bonds() > 10);
             let balance = energies.balance().abs() / energies.initial;
-            assert!(balance < 1e-3, "{balance}");
+            assert!(balance < 5e-3, "{balance}");
         } else {
             assert!(change < 1e-3, "{change}");
         }
