@@ -3,6 +3,8 @@
 //! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|list]` prints cells and force
 //! densities of a deformed block, `i j k fx fy fz` a line; `fracture CELLS STEPS [grid|list]` one line of JSON on a block torn in two.
 
+mod clock;
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -12,15 +14,7 @@ use pericles::material::StressState;
 use pericles::operator::{BondBody, BondForm, DamageMeasure, On};
 use pericles::time::{Integrator, State, VelocityVerlet};
 
-/// CPU time of all threads of this process, s.
-fn cpu_seconds() -> f64 {
-    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten();
-    let nanoseconds = tasks.flatten().filter_map(|task| {
-        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse::<f64>().ok()
-    });
-    1e-9 * nanoseconds.sum::<f64>()
-}
+use clock::cpu_seconds;
 
 fn time(case: &Case, rounds: usize) -> pericles::Result<()> {
     let wall = run(case, rounds)?;

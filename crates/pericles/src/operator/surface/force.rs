@@ -14,7 +14,7 @@ use crate::operator::lanes::Row;
 use crate::operator::linear::pool::{Lent, Pool};
 use crate::operator::records::pack;
 use crate::operator::rows::Rows;
-use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
 use crate::space::PointCloud;
 
@@ -101,12 +101,26 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         );
     }
 
-    fn decide(&mut self, u: &[f64], path: Option<(&[f64], f64)>, on: &On<'_>) {
+    fn add_force_of(&self, bonds: &Bonds<'_>, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+        let u = self.packed(u);
+        self.sweep::<3>(on, out, |rows, out| {
+            force_rows(self.instruction_set, self.law, bonds, &u, rows, out);
+        });
+    }
+
+    fn decide(
+        &mut self,
+        u: &[f64],
+        path: Option<(&[f64], f64)>,
+        on: &On<'_>,
+        partners: Option<&[bool]>,
+    ) {
         let step = Step {
             u,
             path,
             areas: self.cloud.volumes(),
             reference: &self.reference,
+            partners,
         };
         if let Some(breaking) = &mut self.breaking {
             breaking.decide(self.law, &mut self.bonds, &step, on);
@@ -124,11 +138,7 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
     }
 
     fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
-        let u = self.packed(u);
-        let bonds = Bonds::new(&self.bonds, &self.reference);
-        self.sweep::<3>(&on, out, |rows, out| {
-            force_rows(self.instruction_set, self.law, &bonds, &u, rows, out);
-        });
+        self.add_force_of(&Bonds::new(&self.bonds, &self.reference), u, &on, out);
     }
 
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
@@ -160,12 +170,12 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
 
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
         let path = Some((accepted.mean_velocity, accepted.dt));
-        self.decide(accepted.u, path, &on);
+        self.decide(accepted.u, path, &on, None);
         self.add_force(accepted.t, accepted.u, on, out);
     }
 
     fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
-        self.decide(u, None, &on);
+        self.decide(u, None, &on, None);
     }
 
     fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
@@ -244,6 +254,43 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         self.law.is_linear().then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        Some(self)
+    }
+
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        Some(self)
+    }
+}
+
+impl<L: SurfaceLaw> ZonedForce for SurfaceForce<L> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.bonds.row(i).for_each(|(_, j)| visit(j));
+    }
+
+    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+        let bonds = Bonds::new(&self.bonds, &self.reference).to(partners);
+        self.add_force_of(&bonds, u, &on, out);
+    }
+
+    fn accept_and_force_from(
+        &mut self,
+        accepted: Accepted<'_>,
+        on: On<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
+        let path = Some((accepted.mean_velocity, accepted.dt));
+        self.decide(accepted.u, path, &on, Some(partners));
+        self.add_force_from(accepted.t, accepted.u, on, partners, out);
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if let Some(breaking) = &self.breaking {
+            breaking.mark_endangered(&self.bonds, u, fraction, marks);
+        }
     }
 }
 
