@@ -22,12 +22,8 @@ pub enum Caution {
         stretch: f64,
     },
     /// A load that supports take.
-    #[error(
-        "{held} of the {points} points of this load are held along it: there it acts on the support alone"
-    )]
+    #[error("all {points} points of this load are held along it: it acts on the supports alone")]
     LoadOnHeld {
-        /// Points that are held.
-        held: usize,
         /// Points of the load.
         points: usize,
     },
@@ -125,7 +121,7 @@ impl Subject for Caution {
             Self::LargeStretch { .. } => {
                 "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
             }
-            Self::LoadOnHeld { .. } => "leave these points out of the load's set",
+            Self::LoadOnHeld { .. } => "take other points, or leave the load out",
             Self::NoSupport { .. } => {
                 "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
             }

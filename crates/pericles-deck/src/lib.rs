@@ -93,11 +93,11 @@
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
 //! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only; linear unbreakable bodies also
 //!                                         # convolution (grids of any shape and gauss bars; periodic ones, too) and spectral (periodic: the continuum's own forces)
+//! surface_correction = "none"            # default; or volume, energy: bonds near surfaces are stiffened so that families lack nothing; kept as a list
 //! [[material.inclusion]]                 # a part of other stiffness; any number, later ones before earlier ones
 //! set = "left"
 //! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's
 //!
-//! surface_correction = "none"            # default; or volume, energy: bonds near surfaces are stiffened so that families lack nothing; kept as a list
 //! # [[material.part]]                    # another material; any number, later ones before earlier ones. Model, horizon and the like are those of [material]
 //! # name = "aluminium"
 //! # set = "left"                         # or block = 2, block = [2, 3]
@@ -189,6 +189,8 @@
 //! #                                        External_Force_Density, Reaction_Density (_x, …), Stress, Strain (Frobenius norm of the components kept, or _xx, _yy, _xy …)
 //! scale = 1                              # default: factor of the displacement
 //! range = [0, 1]                         # of the colour bar; default: that of the field
+//! animation = false                      # default; true: at the end all of them in one animated PNG, ten a second; all then show the box of the body at rest and a
+//!                                        #   tenth around it. Give it a `range` too, or the colours change their meaning from picture to picture
 //! count = 4                              # default
 //!
 //! [checkpoint]
@@ -219,6 +221,7 @@
 //!
 //! [geodesics]
 //! method = "exact"                       # default; or edge, edge-diagonals, steiner(1) to steiner(32)
+//! ball = "geodesic"                      # default: bonds within the horizon along the surface; or euclid: on the straight line, with distances along the surface
 //!
 //! [material]
 //! model = "power"                        # default, the only one: κ |η|^(p−2) η / d^(2+αp)

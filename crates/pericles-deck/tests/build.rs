@@ -1156,8 +1156,8 @@ fn what_makes_no_physical_sense_is_said() {
     };
     warned(
         "set = \"right\"",
-        "set = \"all\"\narea = \"4 mm2\"",
-        "3 of the 20 points of this load are held along it",
+        "set = \"left\"\narea = \"4 mm2\"",
+        "all 3 points of this load are held along it",
     );
     warned(
         "[time]",

@@ -203,6 +203,7 @@ fn conditions_time_and_output_arrive() {
         scale: 1.0,
         range: Some([0.0, 1.0]),
         view: None,
+        animation: false,
         schedule: Schedule::Count(2),
     };
     let uplift = Picture {
@@ -211,6 +212,7 @@ fn conditions_time_and_output_arrive() {
         scale: 10.0,
         range: Some([-1e-3, 1e-3]),
         view: None,
+        animation: true,
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(
@@ -263,7 +265,7 @@ fn defaults_are_filled_in_and_recorded() {
         "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "periodic": false, "quadrature": "midpoint" },
         "material": {
             "model": "bond-stretch", "density": 7850.0, "youngs_modulus": 210e9, "modulus": "continuum",
-            "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended",
+            "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended", "surface_correction": "none",
             "influence": { "function": "constant", "acts_on": "stretch" },
             "damage": { "measure": "volume", "count_precut": false },
         },

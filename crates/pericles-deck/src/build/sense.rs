@@ -26,19 +26,19 @@ impl Deck {
             | LoadAmplitude::Traction {
                 traction: field, ..
             }) = &given.amplitude;
-            let mut held = vec![false; system.points()];
+            let acts = |c: usize| c < system.dimension() && field[c].number() != Some(0.0);
+            // The axes along which each point is held, one bit each.
+            let mut held = vec![0u8; system.points()];
             for motion in system.motions() {
-                let both = motion.axes().any(|c| field[c].number() != Some(0.0));
-                for &i in motion.points.iter().filter(|_| both) {
-                    held[i as usize] = true;
+                let axes = motion.axes().fold(0, |bits, c| bits | 1 << c);
+                for &i in &motion.points {
+                    held[i as usize] |= axes;
                 }
             }
-            let count = load.points.iter().filter(|&&i| held[i as usize]).count();
-            if count > 0 {
-                let caution = Caution::LoadOnHeld {
-                    held: count,
-                    points: load.points.len(),
-                };
+            let resisted = |&i: &u32| (0..3).all(|c| !acts(c) || held[i as usize] >> c & 1 == 1);
+            if load.points.iter().all(resisted) {
+                let points = load.points.len();
+                let caution = Caution::LoadOnHeld { points };
                 warnings.push(self.finding(&Path::from("load").index(k), caution));
             }
         }

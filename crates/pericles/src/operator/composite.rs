@@ -4,9 +4,9 @@ use super::{AssembledBonds, BondBody, BondForce, BondForm, Breaking};
 use crate::error::{PericlesError, Result};
 use crate::family::BondList;
 use crate::material::{
-    BondStretch, GreenBond, LinearBond, LiteralBond, PairClasses, PairForce, PairLaw,
-    SurfaceCorrection,
+    BondStretch, GreenBond, LinearBond, LiteralBond, PairClasses, PairLaw, SurfaceCorrection,
 };
+use crate::operator::fast_law::FastLaw;
 
 /// A body of several materials, or with corrected surfaces; always kept as a list.
 ///
@@ -78,7 +78,7 @@ impl CompositeBody<'_> {
         }
     }
 
-    fn list<L: PairForce, const D: usize>(&self) -> Result<AssembledBonds> {
+    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
         let BondBody {
             cloud,
             material,
