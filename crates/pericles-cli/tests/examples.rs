@@ -177,7 +177,7 @@ fn peak(t: &[f64], y: &[f64]) -> f64 {
 #[test]
 fn the_spectral_pulse_is_exact() {
     let (_place, out) = check("wave", "spectral");
-    let errors = table(&out, "errors.csv");
+    let errors = table(&out, "history.csv");
     assert!(*errors.column("error_so_far").unwrap().last().unwrap() < 1e-13);
 }
 
@@ -193,6 +193,13 @@ fn gauss_nodes_by_the_midpoint_rule_keep_their_energy() {
 #[test]
 fn waves_in_the_periodic_plate() {
     let (_place, out) = check("wave", "plate");
+    // The bound of the energy holds, and is of its size.
+    let history = table(&out, "history.csv");
+    let column = |name: &str| history.column(name).unwrap();
+    let (bound, margin) = (column("energy_bound"), column("energy_margin"));
+    assert!(margin.iter().all(|margin| *margin >= 0.0));
+    let (bound, margin) = (bound.last().unwrap(), margin.last().unwrap());
+    assert!(bound - margin > 0.05 * bound, "{bound:e} {margin:e}");
     // Loads are booked along the cubic through both ends of a step.
     let report = report(&out);
     assert!(report["audit"]["balance_over_work"].as_f64().unwrap().abs() < 1e-3);

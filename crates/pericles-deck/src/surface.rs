@@ -371,6 +371,7 @@ pub(crate) fn no_grid() -> Body {
         state: StressState::Spatial,
         periodic: false,
         quadrature: Quadrature::Midpoint,
+        rectangular: None,
     }
 }
 

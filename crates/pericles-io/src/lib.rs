@@ -55,5 +55,5 @@ pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
 pub use mesh::{MeshError, Place, SURFACE_ENDINGS, read_surface};
-pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity};
+pub use picture::{Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -79,6 +79,8 @@ pub struct GridForce<L: GridLaw, const D: usize> {
     pub(super) damage: DamageMeasure,
     /// Work arrays, locked for the length of an evaluation.
     pub(super) scratch: Mutex<Scratch<D>>,
+    /// A second vector in padded rows, made by the first tangent.
+    pub(super) direction: Mutex<Option<Padded<D>>>,
     pub(super) instruction_set: InstructionSet,
     pub(super) law: std::marker::PhantomData<L>,
 }
@@ -154,6 +156,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
             directed_bonds: count_bonds(&blocks),
             held: (!no_fail.is_empty()).then(|| bits_of_set(&layout, no_fail)),
             scratch: Mutex::new(Scratch::new(&layout, &stencil)),
+            direction: Mutex::new(None),
             cloud,
             layout,
             stencil,
