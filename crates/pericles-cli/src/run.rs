@@ -10,6 +10,7 @@ use pericles_io::{IoError, OutputFolder};
 use crate::args::{ResumeArgs, RunArgs};
 use crate::checkpoint::{Checkpoints, DeckText, Stored};
 use crate::console;
+use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::prepare::{self, Facts};
@@ -24,6 +25,7 @@ use crate::units::{count, quantity};
 /// # Errors
 /// A deck that is refused, output that cannot be written, an unstable run.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
+    let deadline = Deadline::from_now(args.limits.wall_time);
     args.execution.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
@@ -49,6 +51,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         simulation,
         report,
         folder,
+        deadline,
         quiet,
     };
     session.drive()
@@ -59,6 +62,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
 /// # Errors
 /// No usable checkpoint, and what can go wrong with a run.
 pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
+    let deadline = Deadline::from_now(args.limits.wall_time);
     args.execution.threads.start()?;
     let quiet = args.execution.quiet;
     if args.dir.is_dir() && !args.dir.join("checkpoints").is_dir() {
@@ -109,6 +113,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         simulation,
         report,
         folder,
+        deadline,
         quiet,
     };
     session.drive()
@@ -167,6 +172,7 @@ struct Session {
     checkpoints: Checkpoints,
     report: Report,
     folder: OutputFolder,
+    deadline: Option<Deadline>,
     quiet: bool,
 }
 
@@ -204,11 +210,15 @@ impl Session {
         let (first, steps) = (self.simulation.state().step, self.simulation.steps());
         let mut progress = Progress::new(self.quiet, first, steps);
         let checkpoints = &mut self.checkpoints;
+        if let Some(deadline) = &mut self.deadline {
+            deadline.begin();
+        }
         let mut trouble = None;
         let outcome = self.simulation.run(|simulation| {
             let state = simulation.state();
             progress.step(state.step, state.t);
-            if signals.asked().is_some() {
+            let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
+            if signals.asked().is_some() || self.deadline.as_mut().is_some_and(late) {
                 return Control::Stop;
             }
             if checkpoints.is_due(simulation)
