@@ -86,7 +86,7 @@ impl Saved for History {
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         self.table.restore(archive)?;
-        let more = self.more.iter_mut();
-        more.map(|columns| columns.restore(archive)).collect()
+        let mut more = self.more.iter_mut();
+        more.try_for_each(|columns| columns.restore(archive))
     }
 }
