@@ -940,7 +940,7 @@ end = "1 ms"
     let error = Deck::parse(&cells, "ball.toml", &[])
         .unwrap_err()
         .to_string();
-    assert!(error.contains("no cells to count"), "{error}");
+    assert!(error.contains("no cells of one size"), "{error}");
 }
 
 #[test]

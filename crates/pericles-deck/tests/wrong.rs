@@ -150,6 +150,7 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "dt = \"automatic\"", (35, 6), "\"automatic\"", &["unknown time step `automatic`", "allowed: \"auto\""]),
     wrong("dt = \"auto\"", "safety = 1.5", (35, 10), "1.5", &["`1.5` is out of range", "above 0 and at most 1"]),
     wrong("\"0.75 mm\"", "\"0.1 mm\"", (12, 11), "\"0.1 mm\"", &["at least one spacing"]),
+    wrong("horizon = \"0.75 mm\"", "horizon_ratio = 0.5", (12, 17), "0.5", &["a number of at least 1"]),
     wrong("{ interval = \"0.5 us\" }", "{ every = 0 }", (38, 20), "0", &["`0` is out of range", "whole number of at least 1"]),
     wrong("{ interval = \"0.5 us\" }", "{ every = 1.5 }", (38, 20), "1.5", &["whole number"]),
     wrong("{ interval = \"0.5 us\" }", "{ interval = 1, every = 2 }", (38, 34), "2", &["`interval` and `every` are given together in [output.fields]", "`count`"]),

@@ -22,7 +22,8 @@ pub(crate) struct Curves<'a> {
 }
 
 impl Curves<'_> {
-    fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
+    /// Frequency of the continuum, 1/s.
+    pub(crate) fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
         let wave_number = point.k.iter().map(|k| k * k).sum::<f64>().sqrt();
         let speed = self.targets.get(branch).copied().flatten();
         speed.map_or(f64::NAN, |speed| speed * wave_number)
