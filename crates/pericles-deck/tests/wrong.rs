@@ -128,10 +128,10 @@ const WRONG: &[Wrong] = &[
     wrong("[material]", "[[body.refine]]\nall = true\nratio = 1\n[material]", (11, 9), "1", &["from 2 to 16"]),
     // Spacings by axis.
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", 0]", (6, 23), "0", &["a positive number"]),
-    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\"]", (6, 11), "[\"0.25", &["has 1 entry", "2 entries"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\"]", (6, 11), "[\"0.25", &["has 1 entry", "a length, or one for each axis"]),
     wrong("spacing = \"0.25 mm\"\nplane", "periodic = true\nspacing = [\"0.25 mm\", \"0.2 mm\"]\nplane", (6, 1), "periodic", &["no place", "of equal cells"]),
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["only cells of one size"]),
-    wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 44), "1", &["no cells of one size"]),
+    wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no cells of one size"]),
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),
