@@ -9,6 +9,7 @@ use pericles::family::geodesic::GeodesicMethod;
 use pericles_io::DiskCache;
 
 use crate::exit::Exit;
+use crate::sweep::Axis;
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
 
@@ -19,6 +20,7 @@ Examples:
   pericles run examples/fracture/branching.toml       results in ./branching, then ./branching-2 …
   pericles run deck.toml --out results --force        results in ./results, replacing earlier ones
   pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
+  pericles run deck.toml --sweep body.spacing=1e-3,2e-3     one run per value, and a table of them
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
   pericles geodesics 'icosphere(4)' --horizon 0.5     how far distances along edges are off
@@ -64,6 +66,11 @@ checkpoint holds, so the file may have changed or gone. Another number of thread
     Resume(ResumeArgs),
     /// Tell what an output folder holds and how the run stands
     Info(InfoArgs),
+    /// Put a run on one page of HTML: deck, pictures, histories, audit, warnings, machine
+    #[command(
+        after_help = "The page needs no other file and no network, so that it can be mailed."
+    )]
+    Report(ReportArgs),
     /// Compare two results field by field
     #[command(after_help = "\
 Compares fields state by state and tables column by column, relative to the largest value of each. The exit status
@@ -134,6 +141,10 @@ pub(crate) struct RunArgs {
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+    /// Run the deck once per value of a key: a,b,c or start:stop:step; several times for all combinations.
+    /// Results go to a folder each, with a table of them, in ./<deck's name>-sweep or --out; `resume` goes on
+    #[arg(long, value_name = "KEY=VALUES", conflicts_with = "force")]
+    pub(crate) sweep: Vec<Axis>,
     #[command(flatten)]
     pub(crate) caching: Caching,
     #[command(flatten)]
@@ -242,6 +253,15 @@ pub(crate) struct ResumeArgs {
 pub(crate) struct InfoArgs {
     /// The folder of a run
     pub(crate) dir: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// The folder of a run
+    pub(crate) dir: PathBuf,
+    /// The page [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -360,6 +380,11 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
+    /// The number given, or another.
+    pub(crate) fn count_or(&self, other: usize) -> usize {
+        self.count.map_or(other, NonZeroUsize::get)
+    }
+
     /// Starts the threads; without a number one per core.
     pub(crate) fn start(&self) -> Result<usize, rayon::ThreadPoolBuildError> {
         let count = self.count.map_or(0, NonZeroUsize::get);

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// The time by which a run must have stopped.
+#[derive(Debug, Clone)]
 pub(crate) struct Deadline {
     end: Instant,
     /// The end of the step before.

@@ -1,11 +1,12 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `info` and `diff` on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] on one deck at several values, `info`, `diff` and `report` ([`page`]) on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
 mod args;
 mod bench;
+mod charts;
 mod check;
 mod checkpoint;
 mod console;
@@ -19,6 +20,7 @@ mod info;
 mod machine;
 mod manual;
 mod new;
+mod page;
 mod prepare;
 mod progress;
 mod refinement;
@@ -28,6 +30,7 @@ mod results;
 mod run;
 mod signals;
 mod summary;
+mod sweep;
 mod units;
 mod waves;
 
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args),
         Command::Info(args) => info::info(&args),
+        Command::Report(args) => page::report(&args),
         Command::Diff(args) => diff::diff(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Dispersion(args) => dispersion::dispersion(&args),

@@ -115,3 +115,84 @@ fn shells_and_manuals_get_what_they_read() {
         "{page}"
     );
 }
+
+#[test]
+fn a_report_is_one_page_with_everything() {
+    let place = with_plate();
+    let deck = common::PLATE.replace("Torn plate", "Torn <plate>");
+    fs::write(place.path().join("plate.toml"), deck).unwrap();
+    succeed(place.path(), "run plate.toml --quiet");
+    let said = text(&succeed(place.path(), "report plate").stdout);
+    assert_eq!(said, "plate/report.html\n");
+    let page = fs::read_to_string(place.path().join("plate/report.html")).unwrap();
+    for words in [
+        "<h1>Torn &lt;plate&gt;</h1>",
+        "finished; step 400 of 400",
+        "Velocity y (Velocity_y-000",
+        "energy (history.csv)",
+        "corner u (probes.csv)",
+        "energy drift",
+        "horizon_ratio = 3",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    // Nothing is fetched: every picture is in the page.
+    assert_eq!(
+        page.matches("<img ").count(),
+        page.matches("src=\"data:image/png;base64,iVBOR").count()
+    );
+    assert!(!page.contains("http"), "a link");
+    // It belongs to the results, and goes with them.
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --set time.end=1e-6 --out plate --force",
+    );
+    assert!(!place.path().join("plate/report.html").exists());
+}
+
+#[test]
+fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
+    let place = with_plate();
+    let line = "run plate.toml --quiet --set time.end=\"9us\" --sweep material.horizon_ratio=2,3 --sweep load.0.traction=[1e6,0],[2e6,0]";
+    succeed(place.path(), line);
+    let sweep = place.path().join("plate-sweep");
+    let table = fs::read_to_string(sweep.join("summary.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 5, "{table}");
+    assert!(
+        rows[0].starts_with("run,material.horizon_ratio,load.0.traction,status,points,"),
+        "{table}"
+    );
+    assert!(rows[0].contains("corner_u_x [m]"), "{table}");
+    assert!(
+        rows[4].starts_with("\"horizon_ratio=3,traction=_2e6,0_\",3,\"[2e6,0]\",finished,288,"),
+        "{table}"
+    );
+    // A run of a sweep is the run that one would do by hand.
+    let one = "run plate.toml --quiet --out one --set time.end=\"9us\" --set material.horizon_ratio=3 --set load.0.traction=[2e6,0]";
+    succeed(place.path(), one);
+    common::assert_same_results(
+        &place.path().join("one"),
+        &sweep.join("horizon_ratio=3,traction=_2e6,0_"),
+    );
+
+    // One run is lost, one was stopped early.
+    fs::remove_dir_all(sweep.join("horizon_ratio=2,traction=_1e6,0_")).unwrap();
+    let stopped = sweep.join("horizon_ratio=2,traction=_2e6,0_/run.json");
+    let text = fs::read_to_string(&stopped).unwrap();
+    fs::write(&stopped, text.replace("\"finished\"", "\"running\"")).unwrap();
+    fs::remove_file(sweep.join("summary.csv")).unwrap();
+    succeed(place.path(), "resume plate-sweep --quiet");
+    assert_eq!(
+        fs::read_to_string(sweep.join("summary.csv")).unwrap(),
+        table
+    );
+
+    let (status, message) = fail(
+        place.path(),
+        "run plate.toml --sweep body.spacing=1e-3,0.7e-3",
+    );
+    assert_eq!(status, 3, "{message}");
+    assert!(message.contains("whole number of cells"), "{message}");
+    assert_eq!(fail(place.path(), "run plate.toml --sweep spacing").0, 2);
+}
