@@ -177,7 +177,7 @@ fn schemes() -> Result<Vec<Row>, CliError> {
 
 /// The pseudo-spectral force, dealiased, against the sum over bonds.
 fn series() -> Result<Row, CliError> {
-    let cloud = Arc::new(cells_of(-12.0, 24.0, 0.1875)?);
+    let cloud = Arc::new(cells_of(-18.0, 36.0, 0.1875)?);
     let ring = Arc::new(PointCloud::clone(&cloud).with_periodic_faces()?);
     let material = material(PairLaw::GreenStrain);
     let sums = system_as(&cloud, &material, BondForm::List)?;
@@ -191,7 +191,7 @@ fn series() -> Result<Row, CliError> {
     );
     Ok(row
         .within(0.0, 1e-9)
-        .note("over the height; 128 points, twice as many for products, period 24; what is left comes round the ring"))
+        .note("over the height; 192 points, twice as many for products, period 36"))
 }
 
 /// How far the force is from its linearisation at the start.
