@@ -3,8 +3,8 @@
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
-    SurfaceCorrection,
+    BondMaterial, Calibration, CubicLaw, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+    SurfaceCorrection, Treatment,
 };
 use pericles::operator::{BondForm, DamageMeasure};
 
@@ -61,6 +61,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             ("literal57", PairLaw::Literal57),
         ],
     );
+    let law = treated(&table, law);
     let density = table
         .required("density")
         .and_then(|item| item.positive(Quantity::Density));
@@ -92,6 +93,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             dimension,
             state: body.state,
             spacing: body.frame.spacing,
+            cells: body.frame.cells,
             horizon,
             correction: volume_correction,
         },
@@ -160,6 +162,44 @@ fn interface(
     let others = parts?.iter().map(|part| Some(part.name.clone()));
     let names: Vec<Option<String>> = std::iter::once(own).chain(others).collect();
     part::interface(interface?, &names)
+}
+
+/// The law as it is taken.
+fn treated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Exact,
+        FirstOrder,
+        As(Treatment),
+    }
+    let cubic = match law? {
+        PairLaw::GreenStrain => CubicLaw::GreenStrain,
+        PairLaw::Literal57 => CubicLaw::Literal57,
+        other => {
+            table.forbid(
+                "treatment",
+                "it belongs to model = \"green-strain\" or \"literal57\"",
+            );
+            return Some(other);
+        }
+    };
+    let treatment = table.choice_or_first(
+        "treatment",
+        "treatment",
+        &[
+            ("exact", Kind::Exact),
+            ("taylor-1", Kind::FirstOrder),
+            ("taylor-2", Kind::As(Treatment::SecondOrder)),
+            // The law itself.
+            ("taylor-3", Kind::Exact),
+            ("trapezoidal", Kind::As(Treatment::Trapezoidal)),
+        ],
+    );
+    Some(match treatment? {
+        Kind::Exact => law?,
+        Kind::FirstOrder => PairLaw::Linear,
+        Kind::As(treatment) => PairLaw::Treated(cubic, treatment),
+    })
 }
 
 pub(crate) fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> {

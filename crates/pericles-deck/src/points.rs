@@ -55,6 +55,7 @@ fn body(
             path: path?.into(),
             dimension,
         }),
+        rectangular: None,
         finer: Vec::new(),
         state: read.state?,
         periodic: false,

@@ -55,6 +55,7 @@ fn every_entry_arrives() {
         state,
         periodic: false,
         quadrature: Quadrature::Midpoint,
+        rectangular: None,
     };
     assert_eq!(deck.body, body);
 
@@ -221,6 +222,7 @@ fn conditions_time_and_output_arrive() {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
+            energy_bound: None,
             cracks: CrackOutput {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,

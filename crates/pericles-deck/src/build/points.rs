@@ -3,7 +3,7 @@
 use std::path::{Path as FilePath, PathBuf};
 
 use pericles::PericlesError;
-use pericles::space::{GradedCloud, GradedGrid, PointCloud, Shape, gauss_bar};
+use pericles::space::{GradedCloud, GradedGrid, PointCloud, Shape, gauss_bar, rectangular_cells};
 
 use super::Resources;
 use crate::body::Quadrature;
@@ -62,6 +62,11 @@ impl Deck {
         };
         let grid = &graded.grid;
         let points = match (&grid.shape, self.body.quadrature) {
+            (Shape::Box { origin, size }, _) if self.body.rectangular.is_some() => {
+                let spacing = self.body.rectangular.as_deref().unwrap_or_default();
+                rectangular_cells(*origin, size, spacing, grid.section, &grid.holes)
+                    .map(GradedCloud::of_one_grid)
+            }
             (Shape::Box { origin, size }, Quadrature::Gauss) => {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)
                     .map(GradedCloud::of_one_grid)

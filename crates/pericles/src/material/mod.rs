@@ -20,12 +20,14 @@ mod law;
 mod polynomial;
 mod power;
 mod surface_correction;
+mod treatment;
 
 pub use composite::{InterfaceRule, PairClasses};
 pub use constants::{
     BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
-pub use law::{BondStretch, LinearBond, PairForce, PairLaw};
+pub use law::{BondStretch, CubicLaw, LinearBond, PairForce, PairLaw};
 pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};
 pub use surface_correction::SurfaceCorrection;
+pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

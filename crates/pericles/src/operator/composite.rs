@@ -75,6 +75,9 @@ impl CompositeBody<'_> {
             (PairLaw::Literal57, 1) => self.list::<LiteralBond, 1>(),
             // The body alone refuses it, with the reason.
             (PairLaw::Literal57, _) => self.body.operator(form),
+            (PairLaw::Treated(..), _) => refuse(
+                "treatments of nonlinear laws are for bodies of one material without surface correction",
+            ),
         }
     }
 

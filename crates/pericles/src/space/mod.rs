@@ -1,7 +1,7 @@
 //! Points in space: clouds, regular grids, regions and named sets.
 //!
 //! A body is a set of points with volumes. [`PointCloud`] holds it as structure of arrays; [`Grid`] makes clouds of cell
-//! centres, [`GradedGrid`] those with smaller cells in parts, [`ListedPoints`] those of points given one by one; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in
+//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in
 //! [`surface`].
 //!
 //! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates handed to regions always have three components,
@@ -13,6 +13,7 @@ mod graded;
 mod grid;
 mod listed;
 mod quadrature;
+mod rectangular;
 mod region;
 pub mod surface;
 
@@ -21,6 +22,7 @@ pub use graded::{Finer, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
 pub use listed::ListedPoints;
 pub use quadrature::gauss_bar;
+pub use rectangular::rectangular_cells;
 pub use region::{Face, Region};
 
 /// A point or vector in space; components beyond the body's dimension are zero.
