@@ -31,6 +31,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         None => lines.extend(material(&deck, &facts)),
     }
     lines.extend(time(&facts));
+    for end in &facts.ends {
+        lines.push(("absorbing end", end.line()));
+    }
     model.integrator.start(&mut model.system, &mut model.state);
     let comparison = Comparison::measure(&deck, &mut model)?;
     if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {

@@ -18,6 +18,7 @@ pub use resources::{Resources, SurfaceReader};
 
 use std::sync::Arc;
 
+use pericles::boundary::absorbing::{EndReport, Side};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
@@ -71,6 +72,8 @@ pub struct Model {
     pub steps: u64,
     /// Where the motion is read.
     pub probes: Vec<PointProbe>,
+    /// The absorbing ends.
+    pub ends: Vec<(Side, EndReport)>,
     /// A known solution to compare with.
     pub exact: Option<ExactReference>,
     /// What is odd.
@@ -138,8 +141,8 @@ impl Deck {
             Some(deck) => self.assemble_surface(deck, &resources, &mut warnings)?,
             None => self.assemble_grid(&mut warnings)?,
         };
-        let density = PointScalar::Uniform(density);
-        let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
+        let uniform = PointScalar::Uniform(density);
+        let mut system = System::new(Arc::clone(&cloud), bonds.operator, uniform)
             .map_err(|error| self.at("material.density", error))?;
         let mut state = self.initial_state(&cloud, &sets)?;
         let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
@@ -156,7 +159,8 @@ impl Deck {
         let exterior = boundary::exterior_frequency(&ends);
         let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
-        self.add_ends(&mut system, ends, &steps, cache)?;
+        let ends = self.add_ends(&mut system, ends, &steps, cache, &mut warnings)?;
+        self.add_damping_layers(&mut system, &constants, density, &steps)?;
         Ok(Model {
             cloud,
             surface,
@@ -172,6 +176,7 @@ impl Deck {
             dt: steps.dt,
             steps: steps.count,
             probes,
+            ends,
             exact,
             warnings,
         })

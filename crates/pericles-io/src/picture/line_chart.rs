@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::bitmap::{Bitmap, INK, SIZES, WHITE};
-use super::clip::{clipped, inside, length_inside};
+use super::bitmap::{Bitmap, SIZES};
+use super::clip::{clipped, inside};
 use super::curve::{Axis, Curve, Pen};
 use super::frame::{Area, AxisText, Frame, Header, Sizes};
-use super::text::{self, Align, Style};
+use super::key::{Key, Pieces};
+use super::text;
 use super::units::quantity;
 use crate::IoError;
 
@@ -107,31 +108,45 @@ impl LineChart {
             .ticks
             .longest(|label| text::width(label, sizes.tick_text));
         right -= (0.5 * overhang - sizes.gap).max(0.0).round();
-        let area = Area {
-            left,
-            top,
-            right,
-            bottom,
+        let frame_to = |right: f64| Frame {
+            area: Area {
+                left,
+                top,
+                right,
+                bottom,
+            },
+            x,
+            y,
         };
-        let frame = Frame { area, x, y };
+        // In pixels, with gaps where there is no number.
+        let pieces_in = |frame: &Frame| -> Vec<Pieces> {
+            let place = |point: &(f64, f64)| {
+                frame.place(point.0 / x_shown.factor, point.1 / y_shown.factor)
+            };
+            let pieces = |curve: &Curve| {
+                let runs = curve.points.split(|point| !usable(point));
+                runs.map(|run| run.iter().map(place).collect()).collect()
+            };
+            self.curves.iter().map(pieces).collect()
+        };
+        let mut frame = frame_to(right);
+        let mut drawn = pieces_in(&frame);
+        let key = Key::new(&self.curves, frame.area.width(), &sizes);
+        let mut key_at = (0.0, 0.0);
+        if let Some(key) = &key {
+            key_at = key.free_place(frame.area, &drawn).unwrap_or_else(|| {
+                // Curves everywhere: beside them.
+                frame = frame_to((right - key.width - sizes.gap).round());
+                drawn = pieces_in(&frame);
+                (frame.area.right + sizes.gap, top)
+            });
+        }
+        let area = frame.area;
 
         let mut bitmap = Bitmap::white(self.width as usize, self.height as usize);
         frame.draw_grid(&mut bitmap, &x_text, &y_text, &sizes);
-        let mut drawn = Vec::new();
-        for (number, curve) in self.curves.iter().enumerate() {
+        for (number, (curve, pieces)) in self.curves.iter().zip(&drawn).enumerate() {
             let pen = Pen::of(number, curve, &sizes);
-            // In pixels, with gaps where there is no number.
-            let mut pieces = vec![Vec::new()];
-            for point in &curve.points {
-                if usable(point) {
-                    let place = frame.place(point.0 / x_shown.factor, point.1 / y_shown.factor);
-                    if let Some(piece) = pieces.last_mut() {
-                        piece.push(place);
-                    }
-                } else {
-                    pieces.push(Vec::new());
-                }
-            }
             if curve.line {
                 let lines = pieces
                     .iter()
@@ -148,10 +163,11 @@ impl LineChart {
                     pen.mark(&mut bitmap, place);
                 }
             }
-            drawn.push(pieces);
         }
         frame.draw_axes(&mut bitmap, &x_text, &y_text, &sizes);
-        self.draw_key(&mut bitmap, area, &drawn, &sizes);
+        if let Some(key) = &key {
+            key.draw(&mut bitmap, key_at, &sizes);
+        }
         self.header.draw(&mut bitmap, left, right, &sizes);
         Ok(bitmap)
     }
@@ -179,68 +195,5 @@ impl LineChart {
             }
         }
         Ok(())
-    }
-
-    /// The key, in the corner where it hides the least of the curves.
-    fn draw_key(
-        &self,
-        bitmap: &mut Bitmap,
-        area: Area,
-        drawn: &[Vec<Vec<(f64, f64)>>],
-        sizes: &Sizes,
-    ) {
-        let named: Vec<_> = (self.curves.iter().enumerate())
-            .filter(|(_, curve)| !curve.name.is_empty())
-            .collect();
-        if named.is_empty() {
-            return;
-        }
-        let (gap, row) = (sizes.gap, 1.5 * sizes.tick_text);
-        let sample = 2.2 * sizes.tick_text;
-        let longest = named
-            .iter()
-            .map(|(_, curve)| text::width(&curve.name, sizes.tick_text))
-            .fold(0.0, f64::max);
-        let room = area.width() - sample - 5.0 * gap;
-        let width = sample + 3.0 * gap + longest.min(room);
-        let height = row * named.len() as f64 + gap;
-        let places = [
-            (area.right - gap - width, area.top + gap),
-            (area.left + gap, area.top + gap),
-            (area.right - gap - width, area.bottom - gap - height),
-            (area.left + gap, area.bottom - gap - height),
-        ];
-        let hidden = |&(left, top): &(f64, f64)| {
-            let area = Area {
-                left,
-                top,
-                right: left + width,
-                bottom: top + height,
-            };
-            let pieces = drawn.iter().flatten();
-            pieces.map(|piece| length_inside(piece, area)).sum::<f64>()
-        };
-        let Some(place) = places
-            .into_iter()
-            .min_by(|a, b| hidden(a).total_cmp(&hidden(b)))
-        else {
-            return;
-        };
-        let corner = (place.0 + width, place.1 + height);
-        bitmap.fill_rectangle(place, corner, WHITE, 0.85);
-        bitmap.outline(place, corner, 1.0, [200, 200, 200]);
-        for (line, (number, curve)) in named.into_iter().enumerate() {
-            let pen = Pen::of(number, curve, sizes);
-            let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
-            let (from, to) = (place.0 + gap, place.0 + gap + sample);
-            if curve.line {
-                pen.stroke(bitmap, vec![vec![(from, y), (to, y)]]);
-            }
-            if curve.markers {
-                pen.mark(bitmap, (0.5 * (from + to), y));
-            }
-            let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, room);
-            text::draw(bitmap, &curve.name, (to + gap, y), style.colour(INK));
-        }
     }
 }

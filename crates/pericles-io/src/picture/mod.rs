@@ -33,6 +33,7 @@ mod colour;
 mod curve;
 mod field;
 mod frame;
+mod key;
 mod line_chart;
 mod plane;
 mod raster;
