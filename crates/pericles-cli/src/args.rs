@@ -2,21 +2,25 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use pericles::family::geodesic::GeodesicMethod;
 use pericles_io::DiskCache;
 
 use crate::exit::Exit;
+use crate::sweep::Axis;
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
 
 const EXAMPLES: &str = "\
 Examples:
+  pericles new                                        example decks, one of which is near your own
   pericles check examples/fracture/branching.toml     what a run would need; runs nothing
   pericles run examples/fracture/branching.toml       results in ./branching, then ./branching-2 …
   pericles run deck.toml --out results --force        results in ./results, replacing earlier ones
   pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
+  pericles run deck.toml --sweep body.spacing=1e-3,2e-3     one run per value, and a table of them
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
   pericles geodesics 'icosphere(4)' --horizon 0.5     how far distances along edges are off
@@ -42,6 +46,8 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// List example decks, or write one as a start
+    New(NewArgs),
     /// Run a deck
     #[command(after_help = "\
 Results go to ./<deck's name>, then to ./<name>-2, -3 …, or to --out. In the folder:
@@ -58,6 +64,19 @@ Results go to ./<deck's name>, then to ./<name>-2, -3 …, or to --out. In the f
 The run goes on from its last checkpoint, bit for bit as if it had never stopped. The deck is the one the
 checkpoint holds, so the file may have changed or gone. Another number of threads gives the same results.")]
     Resume(ResumeArgs),
+    /// Tell what an output folder holds and how the run stands
+    Info(InfoArgs),
+    /// Put a run on one page of HTML: deck, pictures, histories, audit, warnings, machine
+    #[command(
+        after_help = "The page needs no other file and no network, so that it can be mailed."
+    )]
+    Report(ReportArgs),
+    /// Compare two results field by field
+    #[command(after_help = "\
+Compares fields state by state and tables column by column, relative to the largest value of each. The exit status
+is 0 if nothing is missing and nothing differs by more than the tolerance, else 5. With the tolerance 0, the
+default, all numbers must be the same.")]
+    Diff(DiffArgs),
     /// Analyse what the grid and the kernel of a deck do to waves
     #[command(after_help = "\
 Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the folder:
@@ -85,6 +104,29 @@ on processors that add and multiply in separate units the fraction can exceed on
     #[command(after_help = "\
 Studies and their decks are inside the program. The exit status is 0 only if every judged row holds, else 5.")]
     Reproduce(ReproduceArgs),
+    /// Write what completes the command line for a shell
+    #[command(after_help = "\
+Put it where the shell looks, such as
+  pericles completions bash > ~/.local/share/bash-completion/completions/pericles
+  pericles completions zsh > \"${fpath[1]}/_pericles\"
+  pericles completions fish > ~/.config/fish/completions/pericles.fish")]
+    Completions(CompletionsArgs),
+    /// Write the manual page; read it with: pericles man | man -l -
+    Man,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewArgs {
+    /// The example, such as fracture/branching; lists all without one
+    pub(crate) example: Option<String>,
+    /// The file to write; must not exist; `-` is the standard output [default: the example's name]
+    pub(crate) file: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
 }
 
 #[derive(Debug, Args)]
@@ -99,8 +141,14 @@ pub(crate) struct RunArgs {
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+    /// Run the deck once per value of a key: a,b,c or start:stop:step; several times for all combinations.
+    /// Results go to a folder each, with a table of them, in ./<deck's name>-sweep or --out; `resume` goes on
+    #[arg(long, value_name = "KEY=VALUES", conflicts_with = "force")]
+    pub(crate) sweep: Vec<Axis>,
     #[command(flatten)]
     pub(crate) caching: Caching,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
     #[command(flatten)]
     pub(crate) execution: Execution,
 }
@@ -196,7 +244,43 @@ pub(crate) struct ResumeArgs {
     #[command(flatten)]
     pub(crate) caching: Caching,
     #[command(flatten)]
+    pub(crate) limits: Limits,
+    #[command(flatten)]
     pub(crate) execution: Execution,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// The folder of a run
+    pub(crate) dir: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// The folder of a run
+    pub(crate) dir: PathBuf,
+    /// The page [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DiffArgs {
+    /// The folder of a run
+    pub(crate) a: PathBuf,
+    /// The folder of another
+    pub(crate) b: PathBuf,
+    /// Largest difference allowed, relative to the largest value of a field or column
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0, value_parser = tolerance)]
+    pub(crate) tolerance: f64,
+    /// Write the results as JSON to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number >= 0.0);
+    number.ok_or_else(|| "a number of zero or more".to_owned())
 }
 
 #[derive(Debug, Args)]
@@ -261,6 +345,22 @@ impl Caching {
     }
 }
 
+/// What a run may use up.
+#[derive(Debug, Args)]
+pub(crate) struct Limits {
+    /// Stop in time, with a checkpoint, before so much time on the clock has passed, such as 2h, "90 min" or seconds; the exit status is then 7
+    #[arg(long, value_name = "TIME", value_parser = wall_time)]
+    pub(crate) wall_time: Option<Duration>,
+}
+
+fn wall_time(text: &str) -> Result<Duration, String> {
+    let allowed = "a time above zero such as 2h, \"90 min\" or 5400 (seconds)";
+    pericles_deck::seconds(text)
+        .filter(|&seconds| seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| allowed.to_owned())
+}
+
 /// How to compute and how much to say.
 #[derive(Debug, Args)]
 pub(crate) struct Execution {
@@ -280,6 +380,11 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
+    /// The number given, or another.
+    pub(crate) fn count_or(&self, other: usize) -> usize {
+        self.count.map_or(other, NonZeroUsize::get)
+    }
+
     /// Starts the threads; without a number one per core.
     pub(crate) fn start(&self) -> Result<usize, rayon::ThreadPoolBuildError> {
         let count = self.count.map_or(0, NonZeroUsize::get);
@@ -309,6 +414,13 @@ mod tests {
         assert!(parse("pericles reproduce --list").is_ok());
         assert!(parse("pericles reproduce --list fracture/branching").is_err());
         assert!(parse("pericles run a.toml --threads 0").is_err());
+        assert!(parse("pericles run a.toml --wall-time 2h").is_ok());
+        for wrong in ["0", "2m", "-1s", "soon", "1e99h"] {
+            assert!(
+                parse(&format!("pericles resume a --wall-time={wrong}")).is_err(),
+                "{wrong}"
+            );
+        }
         assert!(parse("pericles dispersion a.toml --direction 2,1").is_ok());
         for wrong in ["0,0", "1,x", "1,2,3,4"] {
             assert!(parse(&format!("pericles dispersion a.toml --direction {wrong}")).is_err());

@@ -62,11 +62,9 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     let cases = match &args.case {
         None => Case::all(),
         Some(name) => vec![Case::named(name).ok_or_else(|| {
-            let all: Vec<&str> = Case::all().iter().map(|case| case.name).collect();
-            CliError::UnknownCase {
-                name: name.clone(),
-                allowed: format!("cases: {}", all.join(", ")),
-            }
+            let names: Vec<&str> = Case::all().iter().map(|case| case.name).collect();
+            let all = format!("cases: {}", names.join(", "));
+            CliError::unknown("case", name, names, &all)
         })?],
     };
     let threads = args.threads.start()?;

@@ -66,6 +66,8 @@ pub(crate) struct Checkpoints {
     schedule: Checkpoint,
     deck: DeckText,
     last: Instant,
+    /// How long the last one took to write.
+    cost: Duration,
 }
 
 impl Checkpoints {
@@ -76,7 +78,13 @@ impl Checkpoints {
             schedule,
             deck,
             last: Instant::now(),
+            cost: Duration::ZERO,
         }
+    }
+
+    /// How long the last one took to write; zero before the first.
+    pub(crate) fn cost(&self) -> Duration {
+        self.cost
     }
 
     /// Whether one is due after the present step.
@@ -99,9 +107,11 @@ impl Checkpoints {
     /// # Errors
     /// A file that cannot be written.
     pub(crate) fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, CliError> {
+        let began = Instant::now();
         let container = self.container(simulation)?;
         let path = self.folder.write(simulation.state().step, &container)?;
         self.last = Instant::now();
+        self.cost = self.last - began;
         Ok(path)
     }
 

@@ -54,6 +54,12 @@ pub(crate) enum CliError {
         /// Why.
         reason: String,
     },
+    /// There are no results.
+    #[error("{} is no output folder of a run: it has no run.json", path.display())]
+    NoResults {
+        /// The folder.
+        path: PathBuf,
+    },
     /// There is nothing to resume.
     #[error("{} is no output folder of a run: it has no checkpoints", path.display())]
     #[diagnostic(help("give the folder that `pericles run` made, such as ./branching"))]
@@ -61,23 +67,31 @@ pub(crate) enum CliError {
         /// The folder.
         path: PathBuf,
     },
-    /// A case of `bench` that does not exist.
-    #[error("there is no case \"{name}\"")]
-    UnknownCase {
+    /// A name that nothing has: of a case, a study, an example.
+    #[error("there is no {kind} \"{name}\"")]
+    Unknown {
+        /// What it should name.
+        kind: &'static str,
         /// The name given.
         name: String,
-        /// All cases.
-        #[help]
-        allowed: String,
-    },
-    /// A study of that name does not exist.
-    #[error("there is no study \"{id}\"")]
-    UnknownStudy {
-        /// The name given.
-        id: String,
         /// The nearest name, and where to find the others.
         #[help]
         hint: String,
+    },
+    /// A file of results that is not what Pericles writes.
+    #[error("{} cannot be used: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A file that would be replaced.
+    #[error("{} exists already", path.display())]
+    #[diagnostic(help("give another name, or move the file away"))]
+    FileExists {
+        /// The file.
+        path: PathBuf,
     },
     /// A file that gives no surface.
     #[error(transparent)]
@@ -114,6 +128,34 @@ pub(crate) enum CliError {
 }
 
 impl CliError {
+    /// A name that is none of the allowed ones; `listing` says where all of them are shown.
+    pub(crate) fn unknown(
+        kind: &'static str,
+        name: &str,
+        allowed: impl IntoIterator<Item = impl AsRef<str>>,
+        listing: &str,
+    ) -> Self {
+        let (likeness, nearest) = allowed
+            .into_iter()
+            .map(|word| {
+                (
+                    strsim::jaro_winkler(name, word.as_ref()),
+                    word.as_ref().to_owned(),
+                )
+            })
+            .fold((0.0, String::new()), |a, b| if b.0 > a.0 { b } else { a });
+        Self::Unknown {
+            kind,
+            name: name.to_owned(),
+            // Below this the two have little in common.
+            hint: if likeness > 0.6 {
+                format!("did you mean {nearest}? {listing}")
+            } else {
+                listing.to_owned()
+            },
+        }
+    }
+
     /// Sorts the failure of a run; `left` tells what is left if it became unstable.
     pub(crate) fn of_run(error: SimulationError, left: impl FnOnce() -> String) -> Self {
         match error {
@@ -132,18 +174,20 @@ impl CliError {
     /// The exit status it leads to.
     pub(crate) fn exit(&self) -> Exit {
         match self {
-            Self::Deck(_) | Self::Checkpoint { .. } | Self::NoRun { .. } | Self::Library(_) => {
-                Exit::Input
-            }
-            Self::Mesh(_) | Self::Surface { .. } => Exit::Input,
+            Self::Deck(_)
+            | Self::Checkpoint { .. }
+            | Self::NoRun { .. }
+            | Self::NoResults { .. }
+            | Self::Library(_) => Exit::Input,
+            Self::Mesh(_) | Self::Surface { .. } | Self::Damaged { .. } => Exit::Input,
             Self::UnknownShape { .. } => Exit::Usage,
             Self::Io(error) if error.is_output_problem() => Exit::Output,
             Self::Io(IoError::Shape { .. } | IoError::Unsuitable { .. }) => Exit::Internal,
             Self::Io(_) => Exit::Input,
-            Self::OutExists { .. } => Exit::Output,
+            Self::OutExists { .. } | Self::FileExists { .. } => Exit::Output,
             Self::Unstable { .. } => Exit::Numerical,
             Self::Simulation(SimulationError::Step(_)) => Exit::Numerical,
-            Self::UnknownCase { .. } | Self::UnknownStudy { .. } => Exit::Usage,
+            Self::Unknown { .. } => Exit::Usage,
             Self::Simulation(_) | Self::Threads(_) | Self::Signals(_) | Self::Json(_) => {
                 Exit::Internal
             }

@@ -45,7 +45,7 @@ impl Exit {
             Self::Usage => "wrong command line, or an unknown study",
             Self::Input => "the deck or another input is refused",
             Self::Numerical => "numerical stop: the run became unstable",
-            Self::Comparison => "a comparison failed (reproduce)",
+            Self::Comparison => "a comparison failed (reproduce, diff)",
             Self::Output => "the output cannot be written, is full or in use",
             Self::StoppedEarly => "stopped early at a limit, with a checkpoint",
             Self::Interrupted => "Ctrl-C, with a checkpoint (a second one ends at once)",

@@ -1,27 +1,36 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] on one deck at several values, `info`, `diff` and `report` ([`page`]) on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
 mod args;
 mod bench;
+mod charts;
 mod check;
 mod checkpoint;
 mod console;
+mod deadline;
+mod diff;
 mod dispersion;
 mod error;
 mod exit;
 mod geodesics;
+mod info;
 mod machine;
+mod manual;
+mod new;
+mod page;
 mod prepare;
 mod progress;
 mod refinement;
 mod report;
 mod reproduce;
+mod results;
 mod run;
 mod signals;
 mod summary;
+mod sweep;
 mod units;
 mod waves;
 
@@ -44,10 +53,16 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args),
+        Command::Info(args) => info::info(&args),
+        Command::Report(args) => page::report(&args),
+        Command::Diff(args) => diff::diff(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Dispersion(args) => dispersion::dispersion(&args),
         Command::Geodesics(args) => geodesics::geodesics(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
+        Command::New(args) => new::new(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man => manual::man(),
     };
     let exit = outcome.unwrap_or_else(|error| {
         let exit = error.exit();

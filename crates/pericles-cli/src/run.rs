@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
-use pericles_deck::Deck;
+use pericles_deck::{Deck, Model};
 use pericles_io::{IoError, OutputFolder};
 
-use crate::args::{ResumeArgs, RunArgs};
+use crate::args::{Caching, ResumeArgs, RunArgs};
 use crate::checkpoint::{Checkpoints, DeckText, Stored};
 use crate::console;
+use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::prepare::{self, Facts};
@@ -17,6 +18,7 @@ use crate::progress::Progress;
 use crate::report::{Audit, Report, Status};
 use crate::signals::Signals;
 use crate::summary;
+use crate::sweep;
 use crate::units::{count, quantity};
 
 /// Runs a deck.
@@ -24,6 +26,10 @@ use crate::units::{count, quantity};
 /// # Errors
 /// A deck that is refused, output that cannot be written, an unstable run.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
+    if !args.sweep.is_empty() {
+        return sweep::run(args);
+    }
+    let deadline = Deadline::from_now(args.limits.wall_time);
     args.execution.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
@@ -32,26 +38,13 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         console::note(format_args!("{}: building the model", text.file));
     }
     // The folder is made once nothing in the deck can be wrong any more.
-    let model = prepare::model(&deck, &args.caching)?;
-    let facts = Facts::of(&deck, &model);
+    let modelled = modelled(&deck, &args.caching)?;
     let folder = match &args.out {
-        Some(path) => OutputFolder::create(path, args.force).map_err(|error| match error {
-            IoError::FolderExists { path } => CliError::OutExists { path },
-            other => other.into(),
-        })?,
+        Some(path) => OutputFolder::create(path, args.force).map_err(folder_error)?,
         None => OutputFolder::create_numbered(stem(&args.deck))?,
     };
-    let simulation = prepare::simulation(&deck, model, &folder)?;
-    let report = Report::new(&deck, text.clone(), facts, 0);
-    let session = Session {
-        checkpoints: Checkpoints::new(&folder, deck.checkpoint, text),
-        momentum_at_start: momentum(&simulation),
-        simulation,
-        report,
-        folder,
-        quiet,
-    };
-    session.drive()
+    let session = Session::begun(&deck, text, modelled, folder, quiet)?;
+    session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?)
 }
 
 /// Goes on with a run from its last checkpoint.
@@ -59,63 +52,46 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
 /// # Errors
 /// No usable checkpoint, and what can go wrong with a run.
 pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
+    if sweep::is_sweep(&args.dir) {
+        return sweep::resume(args);
+    }
+    let deadline = Deadline::from_now(args.limits.wall_time);
     args.execution.threads.start()?;
     let quiet = args.execution.quiet;
-    if args.dir.is_dir() && !args.dir.join("checkpoints").is_dir() {
-        let path = args.dir.clone();
-        return Err(CliError::NoRun { path });
-    }
-    let folder = OutputFolder::open(&args.dir)?;
-    if is_finished(&folder) {
-        if !quiet {
-            let path = folder.path().display();
-            console::print(format_args!(
-                "{path}: the run has finished; nothing to resume"
-            ))?;
+    match Session::resumed(&args.dir, &args.caching, quiet)? {
+        Some(session) => session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?),
+        None => {
+            if !quiet {
+                let path = args.dir.display();
+                console::print(format_args!(
+                    "{path}: the run has finished; nothing to resume"
+                ))?;
+            }
+            Ok(Exit::Done)
         }
-        return Ok(Exit::Done);
     }
-    let stored = Stored::latest(&folder)?;
-    let deck = stored.metadata.deck.read()?;
-    let model = prepare::model(&deck, &args.caching)?;
-    let mut facts = Facts::of(&deck, &model);
-    facts.warnings.extend(doubts(&stored, &facts));
-    let mut simulation = prepare::simulation(&deck, model, &folder)?;
-    // The state is still that of the start.
-    let momentum_at_start = momentum(&simulation);
-    simulation
-        .restore(&stored.archive)
-        .map_err(|error| CliError::Checkpoint {
-            path: stored.path.clone(),
-            reason: error.to_string(),
-        })?;
-    let step = simulation.state().step;
-    if !quiet {
-        let path = folder.path().display();
-        let (steps, t) = (count(simulation.steps()), simulation.state().t);
-        let step = count(step);
-        console::note(format_args!(
-            "{path}: going on from step {step} of {steps}, t = {}",
-            quantity(t, "s")
-        ));
+}
+
+/// The model of a deck with the facts about it.
+///
+/// # Errors
+/// A deck that is refused.
+pub(crate) fn modelled(deck: &Deck, caching: &Caching) -> Result<(Model, Facts), CliError> {
+    let model = prepare::model(deck, caching)?;
+    let facts = Facts::of(deck, &model);
+    Ok((model, facts))
+}
+
+/// An error of making a folder, with what the command line can do about it.
+pub(crate) fn folder_error(error: IoError) -> CliError {
+    match error {
+        IoError::FolderExists { path } => CliError::OutExists { path },
+        other => other.into(),
     }
-    let text = stored.metadata.deck;
-    let report = Report::new(&deck, text.clone(), facts, step);
-    let checkpoints = Checkpoints::new(&folder, deck.checkpoint, text);
-    checkpoints.forget_failed();
-    let session = Session {
-        checkpoints,
-        momentum_at_start,
-        simulation,
-        report,
-        folder,
-        quiet,
-    };
-    session.drive()
 }
 
 /// The deck's name without its ending, in the present folder.
-fn stem(deck: &Path) -> PathBuf {
+pub(crate) fn stem(deck: &Path) -> PathBuf {
     match deck.file_stem() {
         Some(stem) => Path::new(".").join(stem),
         None => "./run".into(),
@@ -161,7 +137,7 @@ fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
 }
 
 /// A run in its folder.
-struct Session {
+pub(crate) struct Session {
     simulation: Simulation,
     momentum_at_start: [f64; 3],
     checkpoints: Checkpoints,
@@ -171,17 +147,98 @@ struct Session {
 }
 
 impl Session {
-    fn drive(mut self) -> Result<Exit, CliError> {
+    /// A run at its start.
+    ///
+    /// # Errors
+    /// Sub-folders that cannot be made.
+    pub(crate) fn begun(
+        deck: &Deck,
+        text: DeckText,
+        (model, facts): (Model, Facts),
+        folder: OutputFolder,
+        quiet: bool,
+    ) -> Result<Self, CliError> {
+        let simulation = prepare::simulation(deck, model, &folder)?;
+        Ok(Self {
+            checkpoints: Checkpoints::new(&folder, deck.checkpoint, text.clone()),
+            momentum_at_start: momentum(&simulation),
+            simulation,
+            report: Report::new(deck, text, facts, 0),
+            folder,
+            quiet,
+        })
+    }
+
+    /// A run at its last checkpoint; none if it has finished.
+    ///
+    /// # Errors
+    /// No usable checkpoint, one that does not go with its deck.
+    pub(crate) fn resumed(
+        path: &Path,
+        caching: &Caching,
+        quiet: bool,
+    ) -> Result<Option<Self>, CliError> {
+        if path.is_dir() && !path.join("checkpoints").is_dir() {
+            return Err(CliError::NoRun { path: path.into() });
+        }
+        let folder = OutputFolder::open(path)?;
+        if is_finished(&folder) {
+            return Ok(None);
+        }
+        let stored = Stored::latest(&folder)?;
+        let deck = stored.metadata.deck.read()?;
+        let (model, mut facts) = modelled(&deck, caching)?;
+        facts.warnings.extend(doubts(&stored, &facts));
+        let mut simulation = prepare::simulation(&deck, model, &folder)?;
+        // The state is still that of the start.
+        let momentum_at_start = momentum(&simulation);
+        simulation
+            .restore(&stored.archive)
+            .map_err(|error| CliError::Checkpoint {
+                path: stored.path.clone(),
+                reason: error.to_string(),
+            })?;
+        let step = simulation.state().step;
+        if !quiet {
+            let path = folder.path().display();
+            let (steps, t) = (count(simulation.steps()), simulation.state().t);
+            let step = count(step);
+            console::note(format_args!(
+                "{path}: going on from step {step} of {steps}, t = {}",
+                quantity(t, "s")
+            ));
+        }
+        let text = stored.metadata.deck;
+        let checkpoints = Checkpoints::new(&folder, deck.checkpoint, text.clone());
+        checkpoints.forget_failed();
+        Ok(Some(Self {
+            checkpoints,
+            momentum_at_start,
+            simulation,
+            report: Report::new(&deck, text, facts, step),
+            folder,
+            quiet,
+        }))
+    }
+
+    /// Runs to the end, to a signal or close to the deadline.
+    ///
+    /// # Errors
+    /// Output that cannot be written, an unstable run.
+    pub(crate) fn drive(
+        mut self,
+        deadline: Option<Deadline>,
+        signals: &Signals,
+    ) -> Result<Exit, CliError> {
         if !self.quiet {
             for warning in &self.report.model.warnings {
                 console::note(format_args!("warning: {warning}"));
             }
             summary::opening(&self.report, self.folder.path());
         }
-        let signals = Signals::watch().map_err(CliError::Signals)?;
         self.report.write(&self.folder.file("run.json"))?;
         let began = Instant::now();
-        let ended = self.integrate(&signals);
+        let ended = self.integrate(deadline, signals);
         self.report
             .note_progress(&self.simulation, began.elapsed().as_secs_f64());
         let outcome = match ended {
@@ -194,21 +251,29 @@ impl Session {
                 return Err(error);
             }
         };
-        self.close(outcome, &signals)
+        self.close(outcome, signals)
     }
 
-    fn integrate(&mut self, signals: &Signals) -> Result<Outcome, CliError> {
+    fn integrate(
+        &mut self,
+        mut deadline: Option<Deadline>,
+        signals: &Signals,
+    ) -> Result<Outcome, CliError> {
         if self.simulation.state().step == 0 {
             self.checkpoints.write(&self.simulation)?;
         }
         let (first, steps) = (self.simulation.state().step, self.simulation.steps());
         let mut progress = Progress::new(self.quiet, first, steps);
         let checkpoints = &mut self.checkpoints;
+        if let Some(deadline) = &mut deadline {
+            deadline.begin();
+        }
         let mut trouble = None;
         let outcome = self.simulation.run(|simulation| {
             let state = simulation.state();
             progress.step(state.step, state.t);
-            if signals.asked().is_some() {
+            let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
+            if signals.asked().is_some() || deadline.as_mut().is_some_and(late) {
                 return Control::Stop;
             }
             if checkpoints.is_due(simulation)

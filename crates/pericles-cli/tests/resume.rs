@@ -111,6 +111,19 @@ fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
 }
 
 #[test]
+fn a_run_stops_in_time_and_goes_on_to_the_same_bytes() {
+    let place = with_plate();
+    succeed(place.path(), &format!("{LONG} --out whole"));
+    let late = common::run(place.path(), &format!("{LONG} --out late --wall-time=0.5s"));
+    assert_eq!(late.status.code(), Some(7), "{}", text(&late.stderr));
+    let out = place.path().join("late");
+    assert_eq!(report(&out)["status"], "stopped");
+    assert!(text(&late.stdout).contains("go on with: pericles resume late"));
+    succeed(place.path(), "resume late --wall-time 1h");
+    assert_same_results(&place.path().join("whole"), &out);
+}
+
+#[test]
 fn resuming_at_the_very_start_repeats_nothing() {
     let place = with_plate();
     succeed(place.path(), "run plate.toml --quiet --out whole");

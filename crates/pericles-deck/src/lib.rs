@@ -284,4 +284,4 @@ pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, NamedSet};
 pub use source::Location;
 pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
-pub use time::{Time, TimeStep};
+pub use time::{Time, TimeStep, seconds};

@@ -4,6 +4,7 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::scheme::{self, Scheme};
 use crate::set::SetNames;
+use crate::units;
 
 /// The course of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +29,18 @@ pub enum TimeStep {
     },
     /// This step, s.
     Fixed(f64),
+}
+
+/// Reads a time as decks write it: `"2h"`, `"90 min"`, or a plain number of seconds. None if it is something else.
+///
+/// ```
+/// assert_eq!(pericles_deck::seconds("2h"), Some(7200.0));
+/// assert_eq!(pericles_deck::seconds("2 m"), None);
+/// ```
+pub fn seconds(text: &str) -> Option<f64> {
+    let measure = units::parse(text).ok()?;
+    let dimension = measure.dimension.unwrap_or(Quantity::Time.dimension());
+    (dimension == Quantity::Time.dimension()).then_some(measure.value)
 }
 
 pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {

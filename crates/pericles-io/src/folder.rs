@@ -45,7 +45,7 @@ impl OutputFolder {
     /// Creates the folder `path`, and its parents where they are missing.
     ///
     /// If it exists, `force` decides: without, it is refused; with, the files of an earlier run are removed from it (run.json,
-    /// *.csv, fields.pvd, fields/*.vtu, pictures/*.png, checkpoints/*.chk) and everything else in it stays. A folder that holds
+    /// *.csv, fields.pvd, report.html, fields/*.vtu, pictures/*.png, checkpoints/*.chk) and everything else in it stays. A folder that holds
     /// other files and none of an earlier run is refused even then; tables alone do not make a folder one of Pericles.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<Self, IoError> {
         let path = path.into();
@@ -211,7 +211,7 @@ fn check_ours(path: &Path) -> Result<(), IoError> {
 }
 
 fn is_result(name: &str) -> bool {
-    name == "run.json" || name == "fields.pvd" || has_ending(name, "csv")
+    ["run.json", "fields.pvd", "report.html"].contains(&name) || has_ending(name, "csv")
 }
 
 fn has_ending(name: &str, ending: &str) -> bool {

@@ -3,7 +3,7 @@
 //! | what | for whom | entry |
 //! |---|---|---|
 //! | output folder | one run at a time, locked | [`OutputFolder`] |
-//! | `.vtu` and `.pvd` | ParaView and other viewers | [`VtuFile`], [`PvdSeries`] |
+//! | `.vtu` and `.pvd` | ParaView and other viewers | [`VtuFile`], [`PvdSeries`]; read back by [`read_fields`] |
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
@@ -54,6 +54,8 @@ pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
 pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
-pub use mesh::{MeshError, Place, SURFACE_ENDINGS, read_surface};
+pub use mesh::{
+    FieldColumn, FieldData, MeshError, Place, SURFACE_ENDINGS, read_fields, read_surface,
+};
 pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -171,19 +171,8 @@ fn list() -> Result<Exit, CliError> {
 
 fn find(id: &str) -> Result<&'static Study, CliError> {
     studies().find(|study| study.id == id).ok_or_else(|| {
-        let nearest = studies()
-            .map(|study| (strsim::jaro_winkler(id, study.id), study.id))
-            .fold((0.0, ""), |a, b| if b.0 > a.0 { b } else { a });
         let all = "`pericles reproduce --list` shows all studies";
-        CliError::UnknownStudy {
-            id: id.into(),
-            // Below this the two have little in common.
-            hint: if nearest.0 > 0.6 {
-                format!("did you mean {}? {all}", nearest.1)
-            } else {
-                all.into()
-            },
-        }
+        CliError::unknown("study", id, studies().map(|study| study.id), all)
     })
 }
 
@@ -200,11 +189,11 @@ mod tests {
         for study in studies() {
             assert_eq!(find(study.id).ok().map(|s| s.id), Some(study.id));
         }
-        let Err(CliError::UnknownStudy { hint, .. }) = find("fracture/branch") else {
+        let Err(CliError::Unknown { hint, .. }) = find("fracture/branch") else {
             panic!("found");
         };
         assert!(hint.contains("fracture/branching"), "{hint}");
-        let Err(CliError::UnknownStudy { hint, .. }) = find("zzz") else {
+        let Err(CliError::Unknown { hint, .. }) = find("zzz") else {
             panic!("found");
         };
         assert!(!hint.contains("did you mean"), "{hint}");

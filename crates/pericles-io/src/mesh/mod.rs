@@ -16,6 +16,7 @@
 
 mod bytes;
 mod error;
+mod fields;
 mod gmsh;
 mod obj;
 mod off;
@@ -26,6 +27,7 @@ mod vtk_array;
 mod words;
 
 pub use error::{MeshError, Place};
+pub use fields::{FieldColumn, FieldData, read_fields};
 
 use std::path::Path;
 

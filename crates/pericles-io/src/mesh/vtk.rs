@@ -77,7 +77,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
 }
 
 /// A file in its parts: elements, and data appended to them.
-struct File<'a> {
+pub(super) struct File<'a> {
     content: &'a [u8],
     elements: Vec<Element<'a>>,
     encoding: Encoding,
@@ -128,7 +128,7 @@ impl<'a> Element<'a> {
 }
 
 impl<'a> File<'a> {
-    fn new(content: &'a [u8]) -> Result<Self, Fault> {
+    pub(super) fn new(content: &'a [u8]) -> Result<Self, Fault> {
         let last = b"</VTKFile>";
         if !content
             .windows(last.len())
@@ -198,18 +198,39 @@ impl<'a> File<'a> {
         self.elements.iter().any(|element| element.starts(name))
     }
 
-    /// The first array of this name, or of any, in the first section of this name.
-    fn array(&self, section: &str, name: Option<&str>) -> Result<super::vtk_array::Numbers, Fault> {
-        let what = name.unwrap_or(section);
+    /// The arrays in the first section of this name.
+    fn arrays(&self, section: &str) -> impl Iterator<Item = &Element<'a>> {
         let inside = self
             .elements
             .iter()
-            .skip_while(|element| !element.starts(section));
-        let array = inside
-            .take_while(|element| !element.ends(section))
-            .find(|element| {
-                element.starts("DataArray") && (name.is_none() || element.attribute("Name") == name)
-            });
+            .skip_while(move |element| !element.starts(section));
+        inside
+            .take_while(move |element| !element.ends(section))
+            .filter(|element| element.starts("DataArray"))
+    }
+
+    /// Names and numbers of components of the arrays in the first section of this name.
+    pub(super) fn columns(&self, section: &str) -> impl Iterator<Item = (&'a str, usize)> {
+        self.arrays(section).map(|array| {
+            let components = array.attribute("NumberOfComponents");
+            let components = components.and_then(|count| count.trim().parse().ok());
+            (
+                array.attribute("Name").unwrap_or_default(),
+                components.unwrap_or(1),
+            )
+        })
+    }
+
+    /// The first array of this name, or of any, in the first section of this name.
+    pub(super) fn array(
+        &self,
+        section: &str,
+        name: Option<&str>,
+    ) -> Result<super::vtk_array::Numbers, Fault> {
+        let what = name.unwrap_or(section);
+        let array = self
+            .arrays(section)
+            .find(|element| name.is_none() || element.attribute("Name") == name);
         let Some(array) = array else {
             return Err(Fault::of_file(format!(
                 "there is no array {what} in {section}"

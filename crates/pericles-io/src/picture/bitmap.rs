@@ -1,6 +1,6 @@
 //! A picture in memory: antialiased strokes and convex shapes, and the PNG file.
 
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::{IoError, write_atomically};
@@ -182,18 +182,21 @@ impl Bitmap {
 
     /// Writes the picture, whole or not at all.
     pub(super) fn write_png(&self, path: &Path) -> Result<(), IoError> {
-        write_atomically(path, |out| {
-            let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.set_depth(png::BitDepth::Eight);
-            let encoding = |error| match error {
-                png::EncodingError::IoError(error) => error,
-                other => io::Error::other(other),
-            };
-            let mut writer = encoder.write_header().map_err(encoding)?;
-            writer.write_image_data(&self.rgb).map_err(encoding)?;
-            writer.finish().map_err(encoding)
-        })
+        write_atomically(path, |out| self.encode(out))
+    }
+
+    /// Writes the picture as PNG.
+    pub(super) fn encode(&self, out: impl Write) -> io::Result<()> {
+        let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let encoding = |error| match error {
+            png::EncodingError::IoError(error) => error,
+            other => io::Error::other(other),
+        };
+        let mut writer = encoder.write_header().map_err(encoding)?;
+        writer.write_image_data(&self.rgb).map_err(encoding)?;
+        writer.finish().map_err(encoding)
     }
 }
 

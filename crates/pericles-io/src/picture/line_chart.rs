@@ -77,6 +77,16 @@ impl LineChart {
         self.draw(path)?.write_png(path)
     }
 
+    /// Draws the chart as PNG into memory; `name` stands for it in messages.
+    pub fn to_png(&self, name: &str) -> Result<Vec<u8>, IoError> {
+        let path = Path::new(name);
+        let mut bytes = Vec::new();
+        self.draw(path)?
+            .encode(&mut bytes)
+            .map_err(|error| IoError::writing(path, error))?;
+        Ok(bytes)
+    }
+
     pub(super) fn draw(&self, path: &Path) -> Result<Bitmap, IoError> {
         self.check(path)?;
         let sizes = Sizes::of_width(self.width as usize);

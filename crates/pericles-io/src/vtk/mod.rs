@@ -47,3 +47,12 @@ fn escaped(text: &str) -> String {
     }
     out
 }
+
+/// The text of an attribute that [`escaped`] made.
+fn unescaped(text: &str) -> String {
+    // The ampersand last: what it stands before must not be taken for another mark.
+    text.replace("&quot;", "\"")
+        .replace("&gt;", ">")
+        .replace("&lt;", "<")
+        .replace("&amp;", "&")
+}

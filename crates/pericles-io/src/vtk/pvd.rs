@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::escaped;
+use super::{escaped, unescaped};
 use crate::{IoError, write_atomically};
 
 const START: &str = "<?xml version=\"1.0\"?>\n\
@@ -27,6 +27,25 @@ impl PvdSeries {
         };
         series.write()?;
         Ok(series)
+    }
+
+    /// The outputs of a series: times in seconds, and files relative to the folder of the `.pvd`.
+    pub fn read(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>, IoError> {
+        let path = path.as_ref();
+        let text = fs::read_to_string(path).map_err(|source| IoError::reading(path, source))?;
+        let output = |element: &str| {
+            let time = quoted(element, "timestep=\"")?.parse().ok()?;
+            Some((time, unescaped(quoted(element, "file=\"")?).into()))
+        };
+        let entries = text
+            .split('<')
+            .filter(|entry| entry.starts_with("DataSet "));
+        entries
+            .map(|entry| {
+                let reason = "an output without time or file";
+                output(entry).ok_or_else(|| IoError::damaged(path, reason))
+            })
+            .collect()
     }
 
     /// Opens a series written by Pericles to go on after its first `entries` outputs; later ones are dropped.
@@ -103,6 +122,12 @@ impl PvdSeries {
     }
 }
 
+/// What stands behind an opening up to the next quotation mark.
+fn quoted<'a>(text: &'a str, opening: &str) -> Option<&'a str> {
+    let (_, rest) = text.split_once(opening)?;
+    Some(rest.split_once('"')?.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,6 +153,9 @@ mod tests {
         assert!(text.contains("timestep=\"8e-7\""));
         assert!(text.contains("file=\"fields/fields_000008.vtu\""));
         assert_eq!(text.matches("<DataSet ").count(), 9);
+        let outputs = PvdSeries::read(parts.path()).unwrap();
+        let expected = |k: usize| (k as f64 * 1e-7, PvdSeries::field_file(k).into());
+        assert_eq!(outputs, (0..9).map(expected).collect::<Vec<_>>());
     }
 
     #[test]

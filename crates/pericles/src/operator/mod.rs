@@ -12,43 +12,33 @@
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
 
 mod assemble;
-mod bond_force;
-mod bond_kernels;
+mod damage;
 pub mod function;
 mod graded;
-mod grid_block;
-mod grid_breaking;
-mod grid_build;
-mod grid_force;
-mod grid_kernels;
-mod grid_law;
-mod grid_layout;
-mod grid_operator;
-mod grid_padded;
-mod grid_wanted;
-mod grid_zoned;
+mod grid;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes_x86;
 pub mod linear;
 mod linearisation;
-mod stencil;
+mod list;
+mod rows;
 pub mod surface;
 mod zoned;
 
 use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
-pub use bond_force::{BondForce, Breaking, DamageMeasure};
+pub use damage::{Breaking, DamageMeasure};
 pub use graded::{EndLaw, GradedBody};
-pub use grid_force::GridForce;
-pub use grid_law::{GridLaw, Offset};
+pub use grid::{GridForce, GridLaw, Offset};
 pub use lanes::InstructionSet;
 pub use linear::{
     ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralCubicForce, SpectralForce,
     Symbol, Toeplitz,
 };
 pub use linearisation::Linearisation;
+pub use list::BondForce;
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;

@@ -10,9 +10,8 @@ use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
 use super::law::SurfaceLaw;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
-use crate::operator::bond_force::rows_of_block;
-use crate::operator::bond_kernels::Rows;
 use crate::operator::linear::pool::{Lent, Pool};
+use crate::operator::rows::Rows;
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
 use crate::space::PointCloud;
@@ -93,8 +92,8 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
             components_mut::<C>(out, n),
             &mut nothing,
             &|first, mut out, ()| {
-                if let Some(which) = rows_of_block(on, first, out[0].len()) {
-                    rows(&Rows { first, which }, &mut out);
+                if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
+                    rows(&wanted, &mut out);
                 }
             },
         );

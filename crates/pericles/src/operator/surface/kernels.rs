@@ -5,8 +5,8 @@
 use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
 use crate::family::LANES;
-use crate::operator::bond_kernels::{Rows, Which};
 use crate::operator::lanes::{F64x8, InstructionSet, Lanes, for_each_instruction_set, vector};
+use crate::operator::rows::Rows;
 
 /// Points as rows of x, y, z and nothing.
 pub(super) type Records = [[f64; 4]];
@@ -64,22 +64,6 @@ fn sum<T: Lanes>(lanes: T) -> f64 {
 }
 
 #[inline(always)]
-fn point(which: &Which<'_>, k: usize) -> usize {
-    match which {
-        Which::Range(range) => range.start + k,
-        Which::Set(set) => set[k] as usize,
-    }
-}
-
-#[inline(always)]
-fn count(which: &Which<'_>) -> usize {
-    match which {
-        Which::Range(range) => range.len(),
-        Which::Set(set) => set.len(),
-    }
-}
-
-#[inline(always)]
 fn force_rows_body<T: Lanes, L: SurfaceLaw>(
     law: L,
     bonds: &Bonds<'_>,
@@ -89,8 +73,8 @@ fn force_rows_body<T: Lanes, L: SurfaceLaw>(
 ) {
     let u = bonds.checked(u);
     // No closure here: one that is not inlined would take the baseline's instructions.
-    for k in 0..count(&rows.which) {
-        let i = point(&rows.which, k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
         let mut total = [T::splat(0.0); 3];
         for group in bonds.list.groups(i) {
@@ -117,8 +101,8 @@ fn energy_rows_body<T: Lanes, L: SurfaceLaw>(
     out: &mut [&mut [f64]; 1],
 ) {
     let u = bonds.checked(u);
-    for k in 0..count(&rows.which) {
-        let i = point(&rows.which, k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
         let mut total = T::splat(0.0);
         for group in bonds.list.groups(i) {
@@ -141,8 +125,8 @@ fn tangent_rows_body<T: Lanes, L: SurfaceLaw>(
     out: &mut [&mut [f64]; 3],
 ) {
     let (u, direction) = (bonds.checked(u), bonds.checked(direction));
-    for k in 0..count(&rows.which) {
-        let i = point(&rows.which, k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
         let direction_here: [T; 3] = Bonds::here(direction, i);
         let mut total = [T::splat(0.0); 3];

@@ -1,7 +1,7 @@
 //! For which points of a lattice body an evaluation is wanted, as its loops need it.
 
-use super::On;
-use super::grid_layout::GridLayout;
+use super::layout::GridLayout;
+use crate::operator::On;
 use crate::parallel::runs;
 
 /// The wanted points of an evaluation on a part of the body; made once, set at each evaluation.

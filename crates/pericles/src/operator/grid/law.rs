@@ -1,7 +1,7 @@
 //! Pair laws on a lattice: the same forces as [`PairForce`], without roots and divisions.
 
-use super::lanes::Lanes;
 use crate::material::{BondStretch, LinearBond, PairForce};
+use crate::operator::lanes::Lanes;
 
 /// One bond of the stencil, with everything the loops need of it.
 #[derive(Debug, Clone, Copy)]

@@ -2,26 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::bond_kernels::Tally;
-use super::grid_layout::GridLayout;
+use super::layout::GridLayout;
 use super::stencil::Stencil;
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, Cut, EndRule, LANES};
+use crate::operator::damage::BlockDamage;
 use crate::space::PointCloud;
-
-/// Damage of a block of chunks.
-#[derive(Debug, Clone)]
-pub(super) struct BlockState {
-    /// Bonds left: one byte per chunk and offset, offsets fastest.
-    pub intact: Vec<u8>,
-    pub tally: Tally,
-}
 
 /// All bonds of the geometric families.
 pub(super) fn geometric_blocks<const D: usize>(
     layout: &GridLayout,
     stencil: &Stencil<D>,
-) -> Vec<BlockState> {
+) -> Vec<BlockDamage> {
     (0..layout.blocks())
         .into_par_iter()
         .map(|block| {
@@ -31,10 +23,7 @@ pub(super) fn geometric_blocks<const D: usize>(
                 let bits = |&cell: &[i32; 3]| layout.neighbours(chunk, cell);
                 intact.extend(stencil.cells().iter().map(bits));
             }
-            BlockState {
-                intact,
-                tally: Tally::default(),
-            }
+            BlockDamage::new(intact)
         })
         .collect()
 }
@@ -48,7 +37,7 @@ pub(super) fn cut<const D: usize>(
     layout: &GridLayout,
     stencil: &Stencil<D>,
     (crack, rule): &(Crack, EndRule),
-    blocks: &mut [BlockState],
+    blocks: &mut [BlockDamage],
 ) -> Result<Cut> {
     if crack.dimension() != D {
         return Err(PericlesError::WrongDimension {
@@ -109,7 +98,7 @@ pub(super) fn cut<const D: usize>(
 pub(super) fn precut_bonds<const D: usize>(
     layout: &GridLayout,
     stencil: &Stencil<D>,
-    blocks: &[BlockState],
+    blocks: &[BlockDamage],
 ) -> Vec<(u64, u8)> {
     let m = stencil.len();
     let lost: Vec<Vec<(u64, u8)>> = blocks

@@ -1,11 +1,11 @@
 //! Breaking of a chunk's bonds, decided where the force sweep has seen a large strain.
 
-use super::bond_kernels::{BreakEvent, Tally};
-use super::grid_kernels::{Grid, xi};
-use super::grid_law::{GridLaw, Offset};
-use super::grid_layout::Chunk;
-use super::lanes::Lanes;
+use super::kernels::{Grid, xi};
+use super::law::{GridLaw, Offset};
+use super::layout::Chunk;
 use crate::family::LANES;
+use crate::operator::damage::{BreakEvent, Tally};
+use crate::operator::lanes::Lanes;
 
 /// Breaking as the loops see it.
 pub(super) struct GridBreaking<'a, const D: usize> {

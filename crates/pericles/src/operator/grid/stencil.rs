@@ -1,6 +1,6 @@
 //! The family of a lattice's node, once for all nodes.
 
-use super::grid_law::Offset;
+use super::law::Offset;
 use crate::space::Lattice;
 
 /// The bonds of a node within reach, in ascending order of the neighbour's number; with offset k also its opposite, offset `len() − 1 − k`.

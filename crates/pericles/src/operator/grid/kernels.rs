@@ -4,13 +4,13 @@
 //! and offset says which of the eight bonds are there; it stands for holes, boundaries, pre-cracks and damage alike. Bonds that are not there
 //! are computed from whatever lies at their place and masked out.
 
-use super::bond_kernels::Tally;
-use super::grid_block::{ChunkBlock, scatter};
-use super::grid_breaking::{GridBreaking, break_chunk};
-use super::grid_law::{GridLaw, Offset};
-use super::grid_layout::Chunk;
-use super::lanes::{InstructionSet, Lanes, for_each_instruction_set, vector};
+use super::block::{ChunkBlock, scatter};
+use super::breaking::{GridBreaking, break_chunk};
+use super::law::{GridLaw, Offset};
+use super::layout::Chunk;
 use crate::family::LANES;
+use crate::operator::damage::Tally;
+use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set, vector};
 
 /// Read-only arrays as the loops see them.
 pub(super) struct Grid<'a, const D: usize> {

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::grid_layout::GridLayout;
-use super::grid_wanted::WantedPoints;
+use super::layout::GridLayout;
+use super::wanted::WantedPoints;
 use crate::parallel::components;
 
 /// Bytes of a cache line; numbers loaded across two lines cost twice.

@@ -4,42 +4,16 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bond_kernels::{
-    Bonds, BreakRule, Rows, Tally, Which, accept_rows, energy_rows, force_rows, tangent_rows,
-};
-use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
-use crate::archive::{Archive, Saved, Values};
+use super::kernels::{Bonds, BreakRule, accept_rows, energy_rows, force_rows, tangent_rows};
+use crate::archive::{Archive, Saved};
 use crate::error::Result;
 use crate::family::{BondList, LANES};
 use crate::material::{BondConstants, BondMaterial, PairForce};
+use crate::operator::damage::{self, BlockDamage, Breaking, DamageMeasure};
+use crate::operator::rows::Rows;
+use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::parallel::{BLOCK, components, components_mut, for_each_block, ordered_sum};
 use crate::space::PointCloud;
-
-/// How damage weighs bonds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct DamageMeasure {
-    /// Count bonds instead of weighing them by the volume Vκ they stand for.
-    pub count: bool,
-    /// Let bonds cut by pre-cracks count as broken; else they never belonged to the family.
-    pub count_precut: bool,
-}
-
-/// When and which bonds break.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Breaking<'a> {
-    /// Critical stretch s₀; infinite: never.
-    pub critical_stretch: f64,
-    /// Points whose bonds never break.
-    pub no_fail: &'a [u32],
-}
-
-/// Damage of a block of points.
-#[derive(Debug, Clone)]
-struct BlockState {
-    /// Bonds left, one byte a group.
-    intact: Vec<u8>,
-    tally: Tally,
-}
 
 /// f(x_i) = Σ_j c α κ V_j s n over the bonds of a list: force density, N/m³.
 ///
@@ -54,7 +28,7 @@ pub struct BondForce<L: PairForce, const D: usize> {
     breakable: Option<Vec<u8>>,
     critical_stretch: f64,
     damage: DamageMeasure,
-    blocks: Vec<BlockState>,
+    blocks: Vec<BlockDamage>,
     instruction_set: InstructionSet,
     law: std::marker::PhantomData<L>,
 }
@@ -168,10 +142,7 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
         let blocks = (0..n.div_ceil(BLOCK))
             .map(|b| {
                 let (from, to) = (b * BLOCK, ((b + 1) * BLOCK).min(n));
-                BlockState {
-                    intact: bonds.present()[bonds.start()[from]..bonds.start()[to]].to_vec(),
-                    tally: Tally::default(),
-                }
+                BlockDamage::new(bonds.present()[bonds.start()[from]..bonds.start()[to]].to_vec())
             })
             .collect();
         Self {
@@ -234,14 +205,9 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
             components_mut::<C>(out, n),
             &mut nothing,
             &|first, mut out, ()| {
-                let Some(which) = rows_of_block(on, first, out[0].len()) else {
-                    return;
-                };
-                rows(
-                    &self.blocks[first / BLOCK].intact,
-                    &Rows { first, which },
-                    &mut out,
-                );
+                if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
+                    rows(&self.blocks[first / BLOCK].intact, &wanted, &mut out);
+                }
             },
         );
     }
@@ -273,14 +239,14 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
             components_mut::<D>(out, n),
             &mut blocks,
             &|first, mut out, block| {
-                if let Some(which) = rows_of_block(on, first, n.min(first + BLOCK) - first) {
+                if let Some(wanted) = Rows::of_block(on, first, n.min(first + BLOCK) - first) {
                     accept_rows::<L, D, FORCE>(
                         self.instruction_set,
                         &bonds,
                         &rule,
                         &u,
                         &mut block.intact,
-                        &Rows { first, which },
+                        &wanted,
                         &mut out,
                         &mut block.tally,
                     );
@@ -303,32 +269,10 @@ impl<L: PairForce, const D: usize> BondForce<L, D> {
                 let Some((back, _)) = self.bonds.family(j).find(|&(_, other)| other == here) else {
                     continue;
                 };
-                if !self.is_intact(j, back) {
-                    continue;
-                }
                 let block = j / BLOCK;
                 let group = back / LANES - self.bonds.start()[block * BLOCK];
-                self.blocks[block].intact[group] &= !(1 << (back % LANES));
-                self.blocks[block].tally.broken += 1;
-                self.blocks[block].tally.dissipated += event.dissipated;
+                self.blocks[block].break_other_end(group, back % LANES, &event);
             }
-        }
-    }
-}
-
-/// The wanted points of a block, none if there are none.
-pub(super) fn rows_of_block<'a>(on: &On<'a>, first: usize, len: usize) -> Option<Which<'a>> {
-    let block = first..first + len;
-    match on {
-        On::All => Some(Which::Range(block)),
-        On::Range(range) => {
-            let common = range.start.max(block.start)..range.end.min(block.end);
-            (!common.is_empty()).then_some(Which::Range(common))
-        }
-        On::Set(set) => {
-            let from = set.partition_point(|&i| (i as usize) < block.start);
-            let to = set.partition_point(|&i| (i as usize) < block.end);
-            (from < to).then_some(Which::Set(&set[from..to]))
         }
     }
 }
@@ -414,15 +358,11 @@ impl<L: PairForce, const D: usize> ForceOperator for BondForce<L, D> {
     }
 
     fn dissipated(&self) -> f64 {
-        self.blocks.iter().map(|block| block.tally.dissipated).sum()
+        damage::dissipated(&self.blocks)
     }
 
     fn broken_bonds(&self) -> u64 {
-        self.blocks
-            .iter()
-            .map(|block| block.tally.broken)
-            .sum::<u64>()
-            / 2
+        damage::broken_bonds(&self.blocks)
     }
 
     fn can_break(&self) -> bool {
@@ -560,29 +500,10 @@ impl<L: PairForce, const D: usize> LinearOperator for BondForce<L, D> {
 
 impl<L: PairForce, const D: usize> Saved for BondForce<L, D> {
     fn save(&self, archive: &mut Archive) {
-        let gather = |part: &dyn Fn(&BlockState) -> u64| self.blocks.iter().map(part).collect();
-        let intact = self.blocks.iter().flat_map(|b| b.intact.iter().copied());
-        archive.put("operator/intact", Values::U8(intact.collect()));
-        archive.put("operator/broken", Values::U64(gather(&|b| b.tally.broken)));
-        let dissipated = self.blocks.iter().map(|b| b.tally.dissipated);
-        archive.put("operator/dissipated", Values::F64(dissipated.collect()));
+        damage::save(&self.blocks, "operator", archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let mut intact = vec![0; self.bonds.geometric().len()];
-        let mut broken = vec![0; self.blocks.len()];
-        let mut dissipated = vec![0.0; self.blocks.len()];
-        archive.u8_into("operator/intact", &mut intact)?;
-        archive.u64_into("operator/broken", &mut broken)?;
-        archive.f64_into("operator/dissipated", &mut dissipated)?;
-        let mut rest = &intact[..];
-        for (k, block) in self.blocks.iter_mut().enumerate() {
-            let (own, after) = rest.split_at(block.intact.len());
-            block.intact.copy_from_slice(own);
-            rest = after;
-            block.tally.broken = broken[k];
-            block.tally.dissipated = dissipated[k];
-        }
-        Ok(())
+        damage::restore(&mut self.blocks, "operator", archive)
     }
 }

@@ -1,6 +1,6 @@
 //! Blocks of chunks and those of their points that are wanted.
 
-use super::grid_layout::Chunk;
+use super::layout::Chunk;
 use crate::family::LANES;
 
 /// A block of chunks.

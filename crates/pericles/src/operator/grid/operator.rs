@@ -1,13 +1,14 @@
 //! [`ForceOperator`] for lattice bodies.
 
-use super::grid_force::GridForce;
-use super::grid_kernels::{energy_chunks, force_chunks, tangent_chunks};
-use super::grid_law::GridLaw;
-use super::grid_padded::Padded;
-use super::grid_wanted::WantedPoints;
-use super::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
-use crate::archive::{Archive, Saved, Values};
+use super::force::GridForce;
+use super::kernels::{energy_chunks, force_chunks, tangent_chunks};
+use super::law::GridLaw;
+use super::padded::Padded;
+use super::wanted::WantedPoints;
+use crate::archive::{Archive, Saved};
 use crate::error::Result;
+use crate::operator::damage;
+use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
 
 impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
@@ -84,12 +85,11 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 
     fn dissipated(&self) -> f64 {
-        self.blocks.iter().map(|block| block.tally.dissipated).sum()
+        damage::dissipated(&self.blocks)
     }
 
     fn broken_bonds(&self) -> u64 {
-        let directed: u64 = self.blocks.iter().map(|block| block.tally.broken).sum();
-        directed / 2
+        damage::broken_bonds(&self.blocks)
     }
 
     fn can_break(&self) -> bool {
@@ -188,36 +188,10 @@ impl<L: GridLaw, const D: usize> LinearOperator for GridForce<L, D> {
 
 impl<L: GridLaw, const D: usize> Saved for GridForce<L, D> {
     fn save(&self, archive: &mut Archive) {
-        let intact = self.blocks.iter().flat_map(|block| &block.intact);
-        archive.put(
-            "operator/grid/intact",
-            Values::U8(intact.copied().collect()),
-        );
-        let broken = self.blocks.iter().map(|block| block.tally.broken);
-        archive.put("operator/grid/broken", Values::U64(broken.collect()));
-        let dissipated = self.blocks.iter().map(|block| block.tally.dissipated);
-        archive.put(
-            "operator/grid/dissipated",
-            Values::F64(dissipated.collect()),
-        );
+        damage::save(&self.blocks, "operator/grid", archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let bytes = self.blocks.iter().map(|block| block.intact.len()).sum();
-        let mut intact = vec![0; bytes];
-        let mut broken = vec![0; self.blocks.len()];
-        let mut dissipated = vec![0.0; self.blocks.len()];
-        archive.u8_into("operator/grid/intact", &mut intact)?;
-        archive.u64_into("operator/grid/broken", &mut broken)?;
-        archive.f64_into("operator/grid/dissipated", &mut dissipated)?;
-        let mut rest = &intact[..];
-        for (k, block) in self.blocks.iter_mut().enumerate() {
-            let (own, after) = rest.split_at(block.intact.len());
-            block.intact.copy_from_slice(own);
-            rest = after;
-            block.tally.broken = broken[k];
-            block.tally.dissipated = dissipated[k];
-        }
-        Ok(())
+        damage::restore(&mut self.blocks, "operator/grid", archive)
     }
 }

@@ -2,25 +2,25 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::bond_kernels::Tally;
-use super::grid_block::ChunkBlock;
-use super::grid_breaking::GridBreaking;
-use super::grid_build::{BlockState, bits_of_set, cut, geometric_blocks, precut_bonds};
-use super::grid_kernels::{Grid, accept_chunks};
-use super::grid_law::GridLaw;
-use super::grid_layout::{Chunk, GridLayout};
-use super::grid_padded::Padded;
-use super::grid_wanted::WantedPoints;
-use super::grid_zoned::Partners;
+use super::block::ChunkBlock;
+use super::breaking::GridBreaking;
+use super::build::{bits_of_set, cut, geometric_blocks, precut_bonds};
+use super::kernels::{Grid, accept_chunks};
+use super::law::GridLaw;
+use super::layout::{Chunk, GridLayout};
+use super::padded::Padded;
 use super::stencil::{BondRule, Stencil};
-use super::{DamageMeasure, ForceOperator, InstructionSet, On};
+use super::wanted::WantedPoints;
+use super::zoned::Partners;
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, Cut, EndRule, LANES};
 use crate::material::{BondConstants, BondMaterial};
+use crate::operator::damage::{BlockDamage, Tally, bonds_left};
+use crate::operator::{DamageMeasure, ForceOperator, InstructionSet, On};
 use crate::parallel::{components, components_mut, for_each_part};
 use crate::space::PointCloud;
 
-/// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`super::BondForce`], several times faster.
+/// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
 ///
 /// All nodes share one stencil. Rows along x are taken eight nodes at a time, all offsets in turn, without roots and
 /// divisions while strains are small (see [`GridLaw`]). Holes, boundaries, pre-cracks and damage are one byte per eight nodes and offset.
@@ -68,7 +68,8 @@ pub struct GridForce<L: GridLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) layout: GridLayout,
     pub(super) stencil: Stencil<D>,
-    pub(super) blocks: Vec<BlockState>,
+    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    pub(super) blocks: Vec<BlockDamage>,
     /// Points whose bonds never break, one byte per chunk.
     pub(super) held: Option<Vec<u8>>,
     pub(super) cuts: Vec<Cut>,
@@ -135,7 +136,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
         let layout = GridLayout::new(lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
         let mut blocks = geometric_blocks(&layout, &stencil);
-        if count_bonds(&blocks) == 0 {
+        if bonds_left(&blocks) == 0 {
             return Err(PericlesError::HorizonTooSmall {
                 horizon: material.horizon,
                 spacing,
@@ -151,7 +152,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
             Vec::new()
         };
         Ok(Self {
-            directed_bonds: count_bonds(&blocks),
+            directed_bonds: bonds_left(&blocks),
             held: (!no_fail.is_empty()).then(|| bits_of_set(&layout, no_fail)),
             scratch: Mutex::new(Scratch::new(&layout, &stencil)),
             cloud,
@@ -360,13 +361,8 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
                 let (chunk, lane) = self.layout.chunk_at(there);
                 let block = self.layout.block_of(chunk);
                 let first = self.layout.chunks_of(block).start;
-                let state = &mut self.blocks[block];
-                let intact = &mut state.intact[(chunk - first) * m + self.stencil.opposite(offset)];
-                if *intact >> lane & 1 == 1 {
-                    *intact &= !(1 << lane);
-                    state.tally.broken += 1;
-                    state.tally.dissipated += event.dissipated;
-                }
+                let group = (chunk - first) * m + self.stencil.opposite(offset);
+                self.blocks[block].break_other_end(group, lane, &event);
             }
         }
     }
@@ -399,9 +395,4 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
             }
         }
     }
-}
-
-fn count_bonds(blocks: &[BlockState]) -> u64 {
-    let bytes = blocks.iter().flat_map(|block| &block.intact);
-    bytes.map(|byte| u64::from(byte.count_ones())).sum()
 }

@@ -3,9 +3,11 @@
 //! A point's bonds are taken eight at a time: gather the neighbours, compute the pair force in lanes, mask bonds that do not exist, and
 //! add up. The lanes of the sum are added in a fixed order at the end, so a point's force depends on nothing but its neighbours.
 
-use super::lanes::{F64x8, InstructionSet, for_each_instruction_set, vector};
 use crate::family::LANES;
 use crate::material::PairForce;
+use crate::operator::damage::{BreakEvent, Tally};
+use crate::operator::lanes::{F64x8, InstructionSet, for_each_instruction_set, vector};
+use crate::operator::rows::Rows;
 
 /// The read-only arrays of a bond list as the loops see them.
 pub(super) struct Bonds<'a, const D: usize> {
@@ -19,36 +21,6 @@ pub(super) struct Bonds<'a, const D: usize> {
     pub stiffness: &'a [f64],
     /// Marks of the points whose bonds count; all of them if none.
     pub partners: Option<&'a [bool]>,
-}
-
-/// Rows of a block: its first point, and which of its points are wanted.
-pub(super) struct Rows<'a> {
-    pub first: usize,
-    pub which: Which<'a>,
-}
-
-/// The wanted points of a block, in ascending order.
-pub(super) enum Which<'a> {
-    Range(std::ops::Range<usize>),
-    Set(&'a [u32]),
-}
-
-impl Which<'_> {
-    #[inline(always)]
-    fn len(&self) -> usize {
-        match self {
-            Which::Range(range) => range.len(),
-            Which::Set(set) => set.len(),
-        }
-    }
-
-    #[inline(always)]
-    fn at(&self, k: usize) -> usize {
-        match self {
-            Which::Range(range) => range.start + k,
-            Which::Set(set) => set[k] as usize,
-        }
-    }
 }
 
 impl<const D: usize> Bonds<'_, D> {
@@ -111,8 +83,8 @@ fn force_rows_body<L: PairForce, const D: usize>(
 ) {
     let first_group = bonds.start[rows.first];
     // No closure here: one that is not inlined would take the baseline's instructions.
-    for k in 0..rows.which.len() {
-        let i = rows.which.at(k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mask = intact[group - first_group] & bonds.wanted(group);
@@ -130,25 +102,6 @@ fn force_rows_body<L: PairForce, const D: usize>(
             out[c][i - rows.first] += sum[c].sum();
         }
     }
-}
-
-/// An entry that broke, and the energy it booked.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BreakEvent {
-    pub point: u32,
-    pub entry: usize,
-    pub dissipated: f64,
-}
-
-/// What breaking did to a block.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Tally {
-    /// Σ over directed bonds broken of V/2 times the energy dissipated, J.
-    pub dissipated: f64,
-    /// Directed bonds broken.
-    pub broken: u64,
-    /// The entries broken in the last sweep, if they were asked for.
-    pub events: Vec<BreakEvent>,
 }
 
 /// Breaking as the loops see it.
@@ -175,8 +128,8 @@ fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
 ) {
     let first_group = bonds.start[rows.first];
     let threshold = F64x8([rule.threshold; LANES]);
-    for k in 0..rows.which.len() {
-        let i = rows.which.at(k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mut mask = intact[group - first_group] & bonds.wanted(group);
@@ -259,8 +212,8 @@ fn energy_rows_body<L: PairForce, const D: usize>(
     out: &mut [&mut [f64]; 1],
 ) {
     let first_group = bonds.start[rows.first];
-    for k in 0..rows.which.len() {
-        let i = rows.which.at(k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let mut sum = F64x8([0.0; LANES]);
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mask = intact[group - first_group];
@@ -282,8 +235,8 @@ fn tangent_rows_body<L: PairForce, const D: usize>(
     out: &mut [&mut [f64]; D],
 ) {
     let first_group = bonds.start[rows.first];
-    for k in 0..rows.which.len() {
-        let i = rows.which.at(k);
+    for k in 0..rows.len() {
+        let i = rows.at(k);
         let mut sum = [F64x8([0.0; LANES]); D];
         for group in bonds.start[i]..bonds.start[i + 1] {
             let mask = intact[group - first_group];

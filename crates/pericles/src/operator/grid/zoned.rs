@@ -1,13 +1,13 @@
 //! [`ZonedForce`] for lattice bodies.
 
-use super::grid_block::{ChunkBlock, scatter};
-use super::grid_force::GridForce;
-use super::grid_kernels::{Grid, force_chunks};
-use super::grid_law::GridLaw;
-use super::grid_layout::Chunk;
-use super::lanes::{InstructionSet, Lanes, for_each_instruction_set};
-use super::{Accepted, ForceOperator, On, ZonedForce};
+use super::block::{ChunkBlock, scatter};
+use super::force::GridForce;
+use super::kernels::{Grid, force_chunks};
+use super::law::GridLaw;
+use super::layout::Chunk;
 use crate::family::LANES;
+use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set};
+use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
 
 /// Which points exert a force, one byte per chunk.
 pub(super) struct Partners(Vec<u8>);

@@ -1,0 +1,140 @@
+//! The columns of a table as charts over time: one per unit.
+
+use std::path::Path;
+
+use pericles_io::{Axis, Column, Curve, IoError, LineChart, read_csv};
+
+/// More curves cannot be told apart.
+const MOST_CURVES: usize = 8;
+/// More points than a chart has pixels across show nothing more.
+const MOST_POINTS: usize = 4000;
+
+/// A chart and what it shows.
+pub(crate) struct Chart {
+    /// What its curves have in common: `energy`, or the name of the only one.
+    pub(crate) name: String,
+    /// The chart itself.
+    pub(crate) chart: LineChart,
+}
+
+/// Columns of one unit.
+struct Group<'a> {
+    unit: &'a str,
+    curves: Vec<(&'a Column, Vec<f64>)>,
+}
+
+/// The charts of a table with a column `time`; none of a table without one, or with fewer than two rows.
+///
+/// Columns that never change and counters of steps are left out: a line along the axis says nothing.
+///
+/// # Errors
+/// A table that cannot be read.
+pub(crate) fn of_table(path: &Path) -> Result<Vec<Chart>, IoError> {
+    let table = read_csv(path)?;
+    let Some(time) = table.column("time").filter(|time| time.len() > 1) else {
+        return Ok(Vec::new());
+    };
+    let stride = time.len().div_ceil(MOST_POINTS);
+    let time: Vec<f64> = thinned(time, stride);
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for (column, values) in table.columns.iter().zip(&table.values) {
+        let changes = values.iter().any(|x| *x != values[0] && !x.is_nan());
+        if ["step", "time"].contains(&column.name()) || !changes {
+            continue;
+        }
+        let curve = (column, thinned(values, stride));
+        // Pure numbers have no common scale: a count beside a ratio hides the ratio.
+        let alike = |group: &&mut Group<'_>| {
+            let unit = column.unit();
+            !unit.is_empty() && group.unit == unit && group.curves.len() < MOST_CURVES
+        };
+        match groups.iter_mut().find(alike) {
+            Some(group) => group.curves.push(curve),
+            None => groups.push(Group {
+                unit: column.unit(),
+                curves: vec![curve],
+            }),
+        }
+    }
+    let charts = groups.into_iter().map(|Group { unit, curves }| {
+        let names: Vec<&str> = curves.iter().map(|(column, _)| column.name()).collect();
+        let name = common_words(&names, unit);
+        let axes = (Axis::new("time", "s"), Axis::new(name.clone(), unit));
+        let mut chart = LineChart::new(axes.0, axes.1);
+        let several = curves.len() > 1;
+        for (column, values) in &curves {
+            let label = if several {
+                plain(column.name())
+            } else {
+                String::new()
+            };
+            chart = chart.curve(Curve::line(label, &time, values));
+        }
+        Chart { name, chart }
+    });
+    Ok(charts.collect())
+}
+
+fn thinned(values: &[f64], stride: usize) -> Vec<f64> {
+    values.iter().copied().step_by(stride).collect()
+}
+
+fn plain(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// The words that names end with or begin with in common; if there are none, what the unit measures.
+fn common_words(names: &[&str], unit: &str) -> String {
+    let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('_').collect()).collect();
+    let Some(first) = words.first() else {
+        return String::new();
+    };
+    let shared = |matches: &dyn Fn(&Vec<&str>, usize) -> bool| {
+        (1..=first.len())
+            .take_while(|&count| words.iter().all(|words| matches(words, count)))
+            .count()
+    };
+    let ending = shared(&|words, count| words.ends_with(&first[first.len() - count..]));
+    let beginning = shared(&|words, count| words.starts_with(&first[..count]));
+    match (ending, beginning) {
+        (0, 0) => match unit {
+            "J" => "energy".into(),
+            "N" => "force".into(),
+            "m" => "length".into(),
+            "m/s" => "velocity".into(),
+            _ => "value".into(),
+        },
+        (0, count) => first[..count].join(" "),
+        (count, _) => first[first.len() - count..].join(" "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn charts_are_named_after_what_their_curves_share() {
+        assert_eq!(
+            common_words(&["kinetic_energy", "elastic_energy"], "J"),
+            "energy"
+        );
+        assert_eq!(common_words(&["corner_u_x", "corner_u_y"], "m"), "corner u");
+        assert_eq!(common_words(&["external_work"], "J"), "external work");
+        assert_eq!(common_words(&["work", "drift"], "J"), "energy");
+    }
+
+    #[test]
+    fn units_make_charts_and_what_stands_still_makes_none() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a.csv");
+        let text = "step,time [s],a [J],b [J],c [N],still [N],ratio,count\n0,0,1,2,3,7,0,0\n1,1,2,3,4,7,0.5,9\n";
+        std::fs::write(&path, text).unwrap();
+        let names: Vec<String> = of_table(&path)
+            .unwrap()
+            .into_iter()
+            .map(|chart| chart.name)
+            .collect();
+        assert_eq!(names, ["energy", "c", "ratio", "count"]);
+    }
+}

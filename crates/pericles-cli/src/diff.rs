@@ -1,0 +1,337 @@
+//! `diff`: two results compared field by field and column by column.
+//!
+//! Two values a, b of a field or column differ by |a − b| / s, where s is the largest size of the field at that time, or of the whole column, in either result: what is small against
+//! it is not blown up. Pictures, checkpoints and run.json are left out: they say no more than the numbers, or differ from run to run.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use pericles_io::read_csv;
+use serde::Serialize;
+
+use crate::args::DiffArgs;
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::results::{FieldFile, Results};
+use crate::units::quantity;
+
+/// What two results have in common and how far they are apart.
+#[derive(Debug, Serialize)]
+struct Comparison {
+    a: PathBuf,
+    b: PathBuf,
+    tolerance: f64,
+    rows: Vec<Row>,
+    /// What one of them lacks, and counts or times that differ.
+    unlike: Vec<String>,
+    equal: bool,
+}
+
+/// One field over all times, or one column of a table.
+#[derive(Debug, Clone, Serialize)]
+struct Row {
+    /// `fields` or the table's file.
+    place: String,
+    name: String,
+    /// How many numbers were compared.
+    values: usize,
+    /// How many of them are not the same.
+    different: usize,
+    /// The largest difference over the size of the field or column.
+    relative: f64,
+    /// The largest difference, SI units.
+    absolute: f64,
+    /// Where the relative difference is largest.
+    at: String,
+}
+
+/// Compares two folders.
+///
+/// # Errors
+/// Folders without results, files that are damaged.
+pub(crate) fn diff(args: &DiffArgs) -> Result<Exit, CliError> {
+    let (a, b) = (Results::open(&args.a)?, Results::open(&args.b)?);
+    let mut unlike = Vec::new();
+    let mut rows = compare_fields(&a, &b, &mut unlike)?;
+    rows.extend(compare_tables(&a, &b, &mut unlike)?);
+    let within = |row: &Row| row.relative <= args.tolerance;
+    let equal = unlike.is_empty() && rows.iter().all(within);
+    let comparison = Comparison {
+        a: args.a.clone(),
+        b: args.b.clone(),
+        tolerance: args.tolerance,
+        rows,
+        unlike,
+        equal,
+    };
+    let json_only = args.json.as_deref() == Some(Path::new("-"));
+    if let Some(path) = &args.json {
+        console::write_json(path, &comparison)?;
+    }
+    if !json_only {
+        comparison.print()?;
+    }
+    Ok(if equal { Exit::Done } else { Exit::Comparison })
+}
+
+impl Comparison {
+    fn print(&self) -> Result<(), CliError> {
+        for unlike in &self.unlike {
+            console::print(format_args!("{unlike}"))?;
+        }
+        let different: Vec<&Row> = self.rows.iter().filter(|row| row.different > 0).collect();
+        let width = |text: fn(&Row) -> &str| {
+            different
+                .iter()
+                .map(|row| text(row).len())
+                .max()
+                .unwrap_or(0)
+        };
+        let (places, names) = (width(|row| &row.place), width(|row| &row.name));
+        for row in &different {
+            let beyond = if row.relative > self.tolerance {
+                "beyond"
+            } else {
+                "within"
+            };
+            console::print(format_args!(
+                "{:<places$}  {:<names$}  {:.1e} of the largest, {:.1e} at the most; {} of {} values differ; {} — {beyond} {:.0e}",
+                row.place,
+                row.name,
+                row.relative,
+                row.absolute,
+                row.different,
+                row.values,
+                row.at,
+                self.tolerance
+            ))?;
+        }
+        let values: usize = self.rows.iter().map(|row| row.values).sum();
+        let (fields, same) = (self.rows.len(), self.rows.len() - different.len());
+        let verdict = match (self.equal, different.is_empty()) {
+            (true, true) => "the same, bit for bit",
+            (true, false) => "equal within the tolerance",
+            (false, _) => "different",
+        };
+        console::print(format_args!(
+            "{verdict}: {same} of {fields} fields and columns are the same in all {values} values"
+        ))
+    }
+}
+
+/// Pairs of numbers, gathered into a row.
+struct Tally {
+    row: Row,
+}
+
+impl Tally {
+    fn new(place: &str, name: &str) -> Self {
+        Self {
+            row: Row {
+                place: place.into(),
+                name: name.into(),
+                values: 0,
+                different: 0,
+                relative: 0.0,
+                absolute: 0.0,
+                at: String::new(),
+            },
+        }
+    }
+
+    /// Adds values that share one size; `place` names the k-th of them.
+    fn add(&mut self, a: &[f64], b: &[f64], place: impl Fn(usize) -> String) {
+        let finite = |values: &[f64]| {
+            values
+                .iter()
+                .filter(|x| x.is_finite())
+                .fold(0.0, |most: f64, x| most.max(x.abs()))
+        };
+        let size = finite(a).max(finite(b));
+        self.row.values += a.len().min(b.len());
+        for (k, (&a, &b)) in a.iter().zip(b).enumerate() {
+            // Empty cells, and infinities of one sign, are the same.
+            if a == b || (a.is_nan() && b.is_nan()) {
+                continue;
+            }
+            let absolute = (a - b).abs();
+            let (absolute, relative) = if absolute.is_finite() {
+                (absolute, absolute / size)
+            } else {
+                (f64::INFINITY, f64::INFINITY)
+            };
+            self.row.different += 1;
+            self.row.absolute = self.row.absolute.max(absolute);
+            if relative > self.row.relative {
+                self.row.relative = relative;
+                self.row.at = place(k);
+            }
+        }
+    }
+}
+
+fn compare_fields(
+    a: &Results,
+    b: &Results,
+    unlike: &mut Vec<String>,
+) -> Result<Vec<Row>, CliError> {
+    let (series_a, series_b) = (a.fields()?, b.fields()?);
+    if series_a.len() != series_b.len() {
+        unlike.push(format!(
+            "fields: {} states against {}",
+            series_a.len(),
+            series_b.len()
+        ));
+    }
+    let mut tallies: BTreeMap<String, Tally> = BTreeMap::new();
+    for (one, other) in series_a.iter().zip(&series_b) {
+        if one.time != other.time {
+            unlike.push(format!(
+                "fields: a state at {} against one at {}",
+                quantity(one.time, "s"),
+                quantity(other.time, "s")
+            ));
+            break;
+        }
+        if !compare_state(one, other, &mut tallies, unlike)? {
+            break;
+        }
+    }
+    Ok(tallies.into_values().map(|tally| tally.row).collect())
+}
+
+/// Whether the states are of the same kind, so that later ones are worth a look.
+fn compare_state(
+    one: &FieldFile,
+    other: &FieldFile,
+    tallies: &mut BTreeMap<String, Tally>,
+    unlike: &mut Vec<String>,
+) -> Result<bool, CliError> {
+    let (a, b) = (one.read()?, other.read()?);
+    if a.points.len() != b.points.len() {
+        unlike.push(format!(
+            "fields: {} points against {}",
+            a.points.len() / 3,
+            b.points.len() / 3
+        ));
+        return Ok(false);
+    }
+    let time = quantity(one.time, "s");
+    let mut tally = |name: &str, components: usize, a: &[f64], b: &[f64]| {
+        let tally = tallies
+            .entry(name.to_owned())
+            .or_insert_with(|| Tally::new("fields", name));
+        tally.add(a, b, |k| format!("at t = {time}, point {}", k / components));
+    };
+    tally("Points", 3, &a.points, &b.points);
+    let names = |data: &pericles_io::FieldData| {
+        data.fields
+            .iter()
+            .map(|field| field.name.clone())
+            .collect::<Vec<_>>()
+    };
+    let before = unlike.len();
+    note_missing("fields", &names(&a), &names(&b), unlike);
+    for field in &a.fields {
+        if let Some(twin) = b.field(&field.name) {
+            tally(&field.name, field.components, &field.values, &twin.values);
+        }
+    }
+    Ok(unlike.len() == before)
+}
+
+fn compare_tables(
+    a: &Results,
+    b: &Results,
+    unlike: &mut Vec<String>,
+) -> Result<Vec<Row>, CliError> {
+    let named = |results: &Results| -> BTreeMap<OsString, PathBuf> {
+        let tables = results.tables().into_iter();
+        tables
+            .filter_map(|path| Some((path.file_name()?.to_owned(), path)))
+            .collect()
+    };
+    let (a, b) = (named(a), named(b));
+    let names = |tables: &BTreeMap<OsString, PathBuf>| {
+        tables
+            .keys()
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect::<Vec<_>>()
+    };
+    note_missing("the folder", &names(&a), &names(&b), unlike);
+    let mut rows = Vec::new();
+    for (name, path) in &a {
+        let Some(twin) = b.get(name) else { continue };
+        let file = name.to_string_lossy();
+        let (one, other) = (read_csv(path)?, read_csv(twin)?);
+        if one.rows() != other.rows() {
+            unlike.push(format!(
+                "{file}: {} rows against {}",
+                one.rows(),
+                other.rows()
+            ));
+        }
+        let columns = |data: &pericles_io::CsvData| {
+            data.columns
+                .iter()
+                .map(|column| column.name().to_owned())
+                .collect::<Vec<_>>()
+        };
+        note_missing(&file, &columns(&one), &columns(&other), unlike);
+        for (column, values) in one.columns.iter().zip(&one.values) {
+            if let Some(twin) = other.column(column.name()) {
+                let mut tally = Tally::new(&file, column.name());
+                let common = values.len().min(twin.len());
+                tally.add(&values[..common], &twin[..common], |k| {
+                    format!("row {}", k + 1)
+                });
+                rows.push(tally.row);
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Notes the names that only one of two has.
+fn note_missing(place: &str, a: &[String], b: &[String], unlike: &mut Vec<String>) {
+    for (have, lack, which) in [(a, b, "first"), (b, a, "second")] {
+        for name in have.iter().filter(|name| !lack.contains(name)) {
+            unlike.push(format!("{place}: only the {which} has {name}"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_are_relative_to_the_largest_value() {
+        let mut tally = Tally::new("fields", "Displacement");
+        tally.add(&[1e-3, -2e-3, 0.0], &[1e-3, -2e-3, 4e-9], |k| {
+            format!("{k}")
+        });
+        assert_eq!((tally.row.values, tally.row.different), (3, 1));
+        assert!((tally.row.relative - 2e-6).abs() < 1e-18);
+        assert_eq!((tally.row.absolute, tally.row.at.as_str()), (4e-9, "2"));
+    }
+
+    #[test]
+    fn a_number_that_is_none_differs_from_every_other() {
+        let mut tally = Tally::new("a.csv", "x");
+        let (nan, infinity) = (f64::NAN, f64::INFINITY);
+        tally.add(
+            &[nan, infinity, -infinity],
+            &[nan, infinity, -infinity],
+            |_| String::new(),
+        );
+        assert_eq!(tally.row.different, 0);
+        tally.add(&[nan, infinity, 1.0], &[0.0, -infinity, nan], |_| {
+            String::new()
+        });
+        assert_eq!(tally.row.different, 3);
+        assert_eq!(tally.row.relative, f64::INFINITY);
+    }
+}

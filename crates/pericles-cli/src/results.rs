@@ -1,0 +1,140 @@
+//! The results of a run, read back from its folder.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use pericles_io::{FieldData, IoError, PvdSeries, read_fields};
+use serde_json::Value;
+
+use crate::error::CliError;
+
+/// The folder of a run that was started once.
+pub(crate) struct Results {
+    folder: PathBuf,
+    report: Value,
+}
+
+/// One state among the fields.
+pub(crate) struct FieldFile {
+    /// The time, s.
+    pub(crate) time: f64,
+    /// The file.
+    pub(crate) path: PathBuf,
+}
+
+impl FieldFile {
+    /// Reads the fields.
+    ///
+    /// # Errors
+    /// A file that is gone or damaged.
+    pub(crate) fn read(&self) -> Result<FieldData, CliError> {
+        Ok(read_fields(&self.path)?)
+    }
+}
+
+impl Results {
+    /// Opens a folder.
+    ///
+    /// # Errors
+    /// A folder without `run.json`, or with one that is none.
+    pub(crate) fn open(folder: &Path) -> Result<Self, CliError> {
+        let path = folder.join("run.json");
+        if folder.is_dir() && !path.exists() {
+            return Err(CliError::NoResults {
+                path: folder.into(),
+            });
+        }
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| IoError::reading(&path, error))?;
+        let report = serde_json::from_str(&text).map_err(|error| CliError::Damaged {
+            path,
+            reason: error.to_string(),
+        })?;
+        Ok(Self {
+            folder: folder.into(),
+            report,
+        })
+    }
+
+    /// Where they are.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A value of `run.json` by its JSON pointer, such as `/model/points`.
+    pub(crate) fn value(&self, pointer: &str) -> Option<&Value> {
+        self.report.pointer(pointer)
+    }
+
+    /// A text of `run.json`; empty if there is none.
+    pub(crate) fn text(&self, pointer: &str) -> &str {
+        self.value(pointer)
+            .and_then(Value::as_str)
+            .unwrap_or_default()
+    }
+
+    /// A number of `run.json`.
+    pub(crate) fn number(&self, pointer: &str) -> Option<f64> {
+        self.value(pointer)?.as_f64()
+    }
+
+    /// A count of `run.json`; zero if there is none.
+    pub(crate) fn count(&self, pointer: &str) -> u64 {
+        self.value(pointer)
+            .and_then(Value::as_u64)
+            .unwrap_or_default()
+    }
+
+    /// The texts of a list of `run.json`.
+    pub(crate) fn texts(&self, pointer: &str) -> impl Iterator<Item = &str> {
+        let list = self.value(pointer).and_then(Value::as_array);
+        list.into_iter().flatten().filter_map(Value::as_str)
+    }
+
+    /// The states whose fields were written, in time; none if the deck asked for no fields.
+    ///
+    /// # Errors
+    /// A series that cannot be read.
+    pub(crate) fn fields(&self) -> Result<Vec<FieldFile>, CliError> {
+        let series = self.folder.join("fields.pvd");
+        if !series.exists() {
+            return Ok(Vec::new());
+        }
+        let located = |(time, file): (f64, PathBuf)| FieldFile {
+            time,
+            path: self.folder.join(file),
+        };
+        Ok(PvdSeries::read(series)?.into_iter().map(located).collect())
+    }
+
+    /// The tables, by name.
+    pub(crate) fn tables(&self) -> Vec<PathBuf> {
+        files(&self.folder, "csv")
+    }
+
+    /// The pictures, by name.
+    pub(crate) fn pictures(&self) -> Vec<PathBuf> {
+        files(&self.folder.join("pictures"), "png")
+    }
+
+    /// The steps of the checkpoints.
+    pub(crate) fn checkpoints(&self) -> Vec<u64> {
+        let step = |path: PathBuf| {
+            let stem = path.file_stem()?.to_str()?;
+            stem.strip_prefix("step-")?.parse().ok()
+        };
+        let all = files(&self.folder.join("checkpoints"), "chk");
+        all.into_iter().filter_map(step).collect()
+    }
+}
+
+/// The files of a folder with an ending, sorted; none if there is no such folder.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<_> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension() == Some(OsStr::new(ending)))
+        .collect();
+    paths.sort();
+    paths
+}

@@ -1,0 +1,134 @@
+//! Fields of VTK XML files, read back: to compare runs and to draw them again.
+
+use std::path::Path;
+
+use super::error::{Fault, MeshError};
+use super::vtk::File;
+use crate::IoError;
+
+/// The points of a file with their fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldData {
+    /// The time, s, where the file tells.
+    pub time: Option<f64>,
+    /// x, y, z of every point in turn.
+    pub points: Vec<f64>,
+    /// The fields on the points, in the file's order.
+    pub fields: Vec<FieldColumn>,
+}
+
+/// One field on all points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldColumn {
+    /// Its name.
+    pub name: String,
+    /// 1 for a scalar, 3 for a vector.
+    pub components: usize,
+    /// The components of every point in turn.
+    pub values: Vec<f64>,
+}
+
+impl FieldData {
+    /// The field of this name.
+    pub fn field(&self, name: &str) -> Option<&FieldColumn> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+}
+
+/// Reads the points and point data of a `.vtu` or `.vtp` file.
+///
+/// # Errors
+/// A file that cannot be read; content that is not VTK XML, arrays that are damaged or not as long as the points are many.
+pub fn read_fields(path: impl AsRef<Path>) -> Result<FieldData, MeshError> {
+    let path = path.as_ref();
+    let content = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
+    parse(&content).map_err(|Fault { place, reason }| MeshError::Content {
+        path: path.into(),
+        place,
+        reason,
+    })
+}
+
+fn parse(content: &[u8]) -> Result<FieldData, Fault> {
+    let file = File::new(content)?;
+    let points = file.array("Points", None)?.real();
+    let count = points.len() / 3;
+    let mut fields = Vec::new();
+    for (name, components) in file.columns("PointData") {
+        let values = file.array("PointData", Some(name))?.real();
+        if components == 0 || Some(values.len()) != count.checked_mul(components) {
+            return Err(Fault::of_file(format!(
+                "{name} has {} numbers; {count} points of {components} components need {}",
+                values.len(),
+                count.saturating_mul(components)
+            )));
+        }
+        fields.push(FieldColumn {
+            name: name.to_owned(),
+            components,
+            values,
+        });
+    }
+    let time = file.array("FieldData", Some("TimeValue")).ok();
+    Ok(FieldData {
+        time: time.and_then(|time| time.real().first().copied()),
+        points,
+        fields,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{VtkField, VtuFile};
+
+    #[test]
+    fn what_was_written_comes_back() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a.vtu");
+        // Components one after the other, as Pericles keeps them.
+        let (x, damage, u) = (
+            [0.0, 1.0, 2.0, 0.5, 0.25, 0.125],
+            [0.0, 0.5, 1.0],
+            [1e-9, 2e-9, 3e-9, 4.0, 5.0, 6.0],
+        );
+        VtuFile::new(2, &x)
+            .time(1.5e-6)
+            .field(VtkField::scalar("Damage", &damage))
+            .field(VtkField::vector("Displacement", &u))
+            .write(&path)
+            .unwrap();
+        let data = read_fields(&path).unwrap();
+        assert_eq!(data.time, Some(1.5e-6));
+        assert_eq!(
+            data.points,
+            [0.0, 0.5, 0.0, 1.0, 0.25, 0.0, 2.0, 0.125, 0.0]
+        );
+        assert_eq!(data.field("Damage").unwrap().values, damage);
+        let displacement = data.field("Displacement").unwrap();
+        assert_eq!(displacement.components, 3);
+        assert_eq!(
+            displacement.values,
+            [1e-9, 4.0, 0.0, 2e-9, 5.0, 0.0, 3e-9, 6.0, 0.0]
+        );
+        assert!(data.field("Velocity").is_none());
+    }
+
+    #[test]
+    fn a_file_cut_short_is_refused_at_every_length() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a.vtu");
+        let (x, damage) = ([0.0, 1.0, 2.0], [0.0, 0.5, 1.0]);
+        let file = VtuFile::new(1, &x).field(VtkField::scalar("Damage", &damage));
+        file.write(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        for length in 0..whole.len() - 1 {
+            assert!(
+                parse(&whole[..length]).is_err(),
+                "{length} of {}",
+                whole.len()
+            );
+        }
+        assert!(parse(&whole).is_ok());
+    }
+}

@@ -1,0 +1,17 @@
+//! The force of a lattice body by one stencil for all nodes.
+
+mod block;
+mod breaking;
+mod build;
+mod force;
+mod kernels;
+mod law;
+mod layout;
+mod operator;
+mod padded;
+mod stencil;
+mod wanted;
+mod zoned;
+
+pub use force::GridForce;
+pub use law::{GridLaw, Offset};
