@@ -248,6 +248,7 @@ fn add_pictures(
             title: deck.title.clone().unwrap_or_default(),
             view: picture.view,
             surface: surface.cloned(),
+            steady: false,
         };
         // Two pictures of one field get two names.
         let uses = uses.entry(what.name()).or_default();
@@ -256,10 +257,11 @@ fn add_pictures(
             1 => what.name(),
             number => format!("{}_{number}", what.name()),
         };
-        simulation.observe(
-            picture.schedule,
-            Box::new(Pictures::new(&place, stem, what)),
-        );
+        let mut pictures = Pictures::new(&place, stem, what);
+        if picture.animation {
+            pictures = pictures.animated();
+        }
+        simulation.observe(picture.schedule, Box::new(pictures));
     }
     Ok(())
 }

@@ -183,15 +183,19 @@ fn surface_of(
     names: &SetNames,
 ) -> Option<SurfaceDeck> {
     root.forbid("crack", "surfaces have no pre-cracks");
-    let method = root.table_or_empty("geodesics").and_then(surface::method);
+    let geodesics = root
+        .table_or_empty("geodesics")
+        .and_then(surface::geodesics);
     let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
+    let (method, ball) = geodesics?;
     Some(SurfaceDeck {
         shape: read.shape.clone()?,
         areas: read.areas?,
         material,
         no_fail,
         inclusions,
-        method: method?,
+        method,
+        ball,
     })
 }
 

@@ -182,6 +182,8 @@
 //! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density
 //! scale = 1                              # default: factor of the displacement
 //! range = [0, 1]                         # of the colour bar; default: that of the field
+//! animation = false                      # default; true: at the end all of them in one animated PNG, ten a second; all then show the box of the body at rest and a
+//!                                        #   tenth around it. Give it a `range` too, or the colours change their meaning from picture to picture
 //! count = 4                              # default
 //!
 //! [checkpoint]
@@ -207,6 +209,7 @@
 //!
 //! [geodesics]
 //! method = "exact"                       # default; or edge, edge-diagonals, steiner(1) to steiner(32)
+//! ball = "geodesic"                      # default: bonds within the horizon along the surface; or euclid: on the straight line, with distances along the surface
 //!
 //! [material]
 //! model = "power"                        # default, the only one: κ |η|^(p−2) η / d^(2+αp)

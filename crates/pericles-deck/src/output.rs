@@ -53,6 +53,8 @@ pub struct Picture {
     pub range: Option<[f64; 2]>,
     /// The direction from which a body in space is seen; if none, from the front right and above.
     pub view: Option<Point>,
+    /// Whether all of them are put into an animation at the end.
+    pub animation: bool,
     /// When it is drawn.
     pub schedule: Schedule,
 }
@@ -212,6 +214,7 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         }
         Some(None)
     };
+    let animation = table.or("animation", false, |item| item.boolean());
     let schedule = schedule(&table, Schedule::Count(4));
     table.finish();
     let (field, component) = field?;
@@ -221,6 +224,7 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         scale: scale?,
         range: range?,
         view: view?,
+        animation: animation?,
         schedule: schedule?,
     })
 }

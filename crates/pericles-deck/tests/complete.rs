@@ -202,6 +202,7 @@ fn conditions_time_and_output_arrive() {
         scale: 1.0,
         range: Some([0.0, 1.0]),
         view: None,
+        animation: false,
         schedule: Schedule::Count(2),
     };
     let uplift = Picture {
@@ -210,6 +211,7 @@ fn conditions_time_and_output_arrive() {
         scale: 10.0,
         range: Some([-1e-3, 1e-3]),
         view: None,
+        animation: true,
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(

@@ -171,6 +171,7 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has it"]),
     wrong("fields =", "picture = [{ field = \"Displacement_z\" }]\nfields =", (38, 22), "\"Displacement_z\"", &["unknown field `Displacement_z`", "\"Displacement_x\""]),
     wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
+    wrong("fields =", "picture = [{ field = \"Damage\", animation = 12 }]\nfields =", (38, 44), "12", &["true or false"]),
     // What the library refuses.
     wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),
     wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "must exceed"]),
@@ -267,6 +268,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("radius = 1\n", "radius = 1\nspacing = 1\n", (5, 1), "spacing", &["unknown key `spacing`", "`areas`"]),
     wrong("radius = 1\n", "radius = 1\nareas = \"barycentre\"\n", (5, 9), "\"barycentre\"", &["did you mean `barycentric`?"]),
     wrong("\"edge\"", "\"edges\"", (7, 10), "\"edges\"", &["exact, edge, edge-diagonals, steiner(1)"]),
+    wrong("method = \"edge\"", "method = \"edge\"\nball = \"euclidean\"", (8, 8), "\"euclidean\"", &["did you mean `euclid`?", "\"geodesic\""]),
     wrong("alpha = 0.5", "alpha = 1", (12, 9), "1", &["above 0 and below 1"]),
     wrong("alpha = 0.5", "alpha = 0", (12, 9), "0", &["above 0 and below 1"]),
     wrong("alpha = 0.5\n", "", (9, 1), "[material]", &["[material] lacks `alpha`"]),
@@ -329,6 +331,12 @@ fn what_surfaces_do_not_have_is_refused_when_they_are_built() {
     for (replace, by, at, says) in [
         ("traction", "body_force", "plate.toml:21:", "`traction`"),
         ("dt = 0.1\n", "", "plate.toml:23:", "give dt"),
+        (
+            "\"icosphere\"\nlevel = 2\nradius = 1\n\n[geodesics]",
+            "\"ellipsoid\"\nlevel = 2\nhalf_axes = [1, 1, 0.1]\n\n[geodesics]\nball = \"euclid\"",
+            "plate.toml:7:8",
+            "joins opposite walls",
+        ),
     ] {
         let deck = Deck::parse(&SURFACE.replace(replace, by), "plate.toml", &[]).unwrap();
         let message = deck.build().map(|_| ()).unwrap_err().to_string();

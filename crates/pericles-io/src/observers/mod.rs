@@ -8,7 +8,7 @@
 //! | [`Cracks`] | `cracks.csv` | crack tips |
 //! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
 //! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, concentrations of energy |
-//! | [`Pictures`] | `pictures/Damage-000000.png` … | a field as a picture |
+//! | [`Pictures`] | `pictures/Damage-000000.png` …, `pictures/Damage.apng` | a field as a picture, and all of them as an animation |
 //!
 //! What they write depends on the states they are shown alone: no clock, path or number of threads enters a file. Each remembers in a checkpoint how
 //! much it has written ([`Saved`](pericles::Saved)); restored, it cuts its files back to that and goes on, so that the files of a stopped and resumed

@@ -4,6 +4,7 @@
 //!   lengths in a fitting unit. A body in the plane has axes; a body in space is seen in parallel projection along a chosen
 //!   direction, nearer cells in front; a bar is drawn as a curve over its length.
 //! * [`LineChart`]: named curves, with markers, dashes and logarithmic axes where wanted.
+//! * [`write_animation`]: pictures one after another in one file.
 //!
 //! Quantities come in SI units and are shown with the SI prefix that suits their size. The bytes of a picture depend on its data
 //! alone. Text is set in the font inside the crate (DejaVu Sans), lines and glyphs are antialiased; nothing of the system is used.
@@ -27,6 +28,7 @@
 //!     .unwrap();
 //! ```
 
+mod animation;
 mod bitmap;
 mod clip;
 mod colour;
@@ -42,6 +44,7 @@ mod text;
 mod ticks;
 mod units;
 
+pub use animation::write_animation;
 pub use colour::ColourMap;
 pub use curve::{Axis, Curve};
 pub use field::{CellSize, FieldPicture};

@@ -27,4 +27,12 @@ pub trait Observer: Saved {
     /// # Errors
     /// Whatever keeps the observer from doing its work; the run then stops.
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError>;
+
+    /// Hears that the run has come to its end; not of a run that is stopped, which may go on.
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from doing its work.
+    fn finish(&mut self) -> Result<(), ObserveError> {
+        Ok(())
+    }
 }

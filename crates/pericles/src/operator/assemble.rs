@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use super::{
-    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, ForceOperator,
-    GaussForce, GridForce, GridLaw, SpectralCubicForce, SpectralForce,
+    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, FastLaw, ForceOperator,
+    GaussForce, GridForce, SpectralCubicForce, SpectralForce,
 };
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
 use crate::material::{
-    BondConstants, BondMaterial, BondStretch, GreenBond, LinearBond, LiteralBond, PairForce,
-    PairLaw,
+    BondConstants, BondMaterial, BondStretch, GreenBond, LinearBond, LiteralBond, PairLaw,
 };
 use crate::space::PointCloud;
 
@@ -210,7 +209,7 @@ impl BondBody<'_> {
     }
 
     /// Laws that only the list computes.
-    fn listed<L: PairForce, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+    fn listed<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
         let refuse = |form: BondForm, reason| {
             Err(PericlesError::FormNotUsable {
                 form: form.name(),
@@ -238,7 +237,7 @@ impl BondBody<'_> {
         }
     }
 
-    fn operator_of<L: GridLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+    fn operator_of<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
         let form = match form {
             BondForm::Fastest => self.fastest_form(),
             chosen => chosen,
@@ -275,7 +274,7 @@ impl BondBody<'_> {
     ///
     /// # Errors
     /// See [`GridForce::new`].
-    pub fn grid<L: GridLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
         GridForce::new(
             self.cloud.clone(),
             self.material,
@@ -290,7 +289,7 @@ impl BondBody<'_> {
     ///
     /// # Errors
     /// A horizon that reaches no neighbour, an unusable crack.
-    pub fn list<L: PairForce, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+    pub fn list<L: FastLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self

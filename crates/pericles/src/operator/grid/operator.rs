@@ -2,16 +2,16 @@
 
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, tangent_chunks};
-use super::law::GridLaw;
 use super::padded::Padded;
 use super::wanted::WantedPoints;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
 use crate::operator::damage;
+use crate::operator::fast_law::FastLaw;
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
 
-impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }
@@ -142,6 +142,12 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
         self.instruction_set
     }
 
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+    }
+
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
     }
@@ -155,7 +161,7 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 }
 
-impl<L: GridLaw, const D: usize> GridForce<L, D> {
+impl<L: FastLaw, const D: usize> GridForce<L, D> {
     /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
     fn for_each_block(
         &self,
@@ -179,14 +185,14 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
     }
 }
 
-impl<L: GridLaw, const D: usize> LinearOperator for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.add_force(0.0, u, On::All, out);
     }
 }
 
-impl<L: GridLaw, const D: usize> Saved for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
     fn save(&self, archive: &mut Archive) {
         damage::save(&self.blocks, "operator/grid", archive);
     }
