@@ -213,7 +213,10 @@ fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             let ratio = THICKNESS / length;
             let case = format!("{ratio} wavelengths deep, {degrees}°: reflected amplitude");
             found.push(share);
-            rows.push(Row::new(case, "", Some(share)));
+            let row = Row::new(case, "", Some(share));
+            // Three wavelengths deep and up to 45° the layer keeps what it is asked for.
+            let kept = ratio >= 3.0 && degrees <= 45.0;
+            rows.push(if kept { row.within(0.0, ASKED) } else { row });
         }
         let name = format!("{} wavelengths deep", THICKNESS / length);
         chart = chart.curve(Curve::line(name, &ANGLES, &found));
