@@ -146,9 +146,10 @@ impl Deck {
         let time = root
             .required("time")
             .and_then(|item| time::read(item.table()?, &names));
-        let output = root
-            .table_or_empty("output")
-            .and_then(|table| output::read(table, frame.dimension));
+        let output = root.table_or_empty("output").and_then(|table| {
+            let driven = prescribe.iter().flatten().any(Prescribe::moves);
+            output::read(table, frame.dimension, driven)
+        });
         let checkpoint = root
             .table_or_empty("checkpoint")
             .and_then(output::checkpoint);

@@ -18,6 +18,8 @@ pub struct Output {
     pub cracks: CrackOutput,
     /// Precision of numbers in field files.
     pub precision: Precision,
+    /// Rate ν of the bound of the energy in the history, 1/s; none if it is not wanted.
+    pub energy_bound: Option<f64>,
     /// Pictures.
     pub pictures: Vec<Picture>,
 }
@@ -76,7 +78,8 @@ impl Default for Checkpoint {
     }
 }
 
-pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output> {
+/// `driven`: whether supports move.
+pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> Option<Output> {
     let fields = scheduled(&table, "fields", 20);
     let history = scheduled(&table, "history", 200);
     let cracks = cracks(&table, history);
@@ -85,6 +88,15 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output>
         "precision",
         &[("double", Precision::Double), ("single", Precision::Single)],
     );
+    if driven {
+        table.forbid(
+            "energy_bound",
+            "supports that move do work which the bound does not know",
+        );
+    }
+    let energy_bound = table.maybe("energy_bound", |item| {
+        item.positive(Quantity::Time).map(f64::recip)
+    });
     let pictures: Vec<Option<Picture>> = table
         .tables("picture")
         .into_iter()
@@ -96,6 +108,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output>
         history: history?,
         cracks: cracks?,
         precision: precision?,
+        energy_bound: energy_bound?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
     })
 }

@@ -378,6 +378,7 @@ pub(crate) fn no_grid() -> Body {
         state: StressState::Spatial,
         periodic: false,
         quadrature: Quadrature::Midpoint,
+        rectangular: None,
     }
 }
 

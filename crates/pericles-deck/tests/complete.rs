@@ -54,6 +54,7 @@ fn every_entry_arrives() {
         state,
         periodic: false,
         quadrature: Quadrature::Midpoint,
+        rectangular: None,
     };
     assert_eq!(deck.body, body);
 
@@ -219,6 +220,7 @@ fn conditions_time_and_output_arrive() {
         Output {
             fields: Schedule::Interval(0.5e-6),
             history: Schedule::Every(20),
+            energy_bound: None,
             cracks: CrackOutput {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,

@@ -58,6 +58,6 @@ pub use mesh::{
     FieldColumn, FieldData, MeshError, Place, SURFACE_ENDINGS, read_fields, read_surface,
 };
 pub use picture::{
-    Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
+    Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
-    BondConstants, BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, GreenBond,
-    LinearBond, LiteralBond, Modulus, PairLaw, StressState,
+    BondConstants, BondMaterial, BondStretch, Calibration, CubicLaw, ElasticModulus, Fracture,
+    GreenBond, LinearBond, LiteralBond, Modulus, PairLaw, StressState, Trapezoidal, Treated,
+    Treatment,
 };
 use pericles::operator::{BondForce, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
@@ -124,6 +125,9 @@ fn operator<L: FastLaw, const D: usize>(
     (Box::new(operator), constants)
 }
 
+/// One of the laws that bars alone have.
+const TREATED: PairLaw = PairLaw::Treated(CubicLaw::GreenStrain, Treatment::Trapezoidal);
+
 fn build(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
@@ -140,6 +144,8 @@ fn build(
         (PairLaw::GreenStrain, 2) => operator::<GreenBond, 2>(cloud, material, state),
         (PairLaw::GreenStrain, _) => operator::<GreenBond, 3>(cloud, material, state),
         (PairLaw::Literal57, _) => operator::<LiteralBond, 1>(cloud, material, state),
+        (TREATED, _) => operator::<Treated<GreenBond, Trapezoidal>, 1>(cloud, material, state),
+        (law, _) => panic!("{law:?} is not in the table"),
     }
 }
 
@@ -186,8 +192,17 @@ fn rotation(dimension: usize) -> [[f64; 3]; 3] {
 
 /// Calls `check` for every law × state × influence × correction × body.
 fn for_each_case(check: impl Fn(&str, &Arc<PointCloud>, &BondMaterial, StressState)) {
-    for law in [PairLaw::Linear, PairLaw::BondStretch, PairLaw::GreenStrain] {
+    let laws = [
+        PairLaw::Linear,
+        PairLaw::BondStretch,
+        PairLaw::GreenStrain,
+        TREATED,
+    ];
+    for law in laws {
         for state in STATES {
+            if law == TREATED && state.dimension() > 1 {
+                continue;
+            }
             for jitter in [0.0, 0.003] {
                 let cloud = body(state.dimension(), jitter);
                 for influence in influences() {

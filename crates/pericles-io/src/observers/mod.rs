@@ -3,7 +3,7 @@
 //! | observer | files | content |
 //! |---|---|---|
 //! | [`FieldSeries`] | `fields.pvd`, `fields/fields_000000.vtu` … | all fields on the points |
-//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds |
+//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; where there are such, the distance from a known solution, a bound of the energy, inner iterations |
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
 //! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
@@ -48,8 +48,8 @@
 //! # }
 //! ```
 
+mod columns;
 mod cracks;
-mod errors;
 mod fields;
 mod history;
 mod pictures;
@@ -58,8 +58,8 @@ mod reactions;
 mod surface;
 mod table;
 
+pub use columns::{EnergyBoundColumns, ErrorColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
-pub use errors::Errors;
 pub use fields::FieldSeries;
 pub use history::History;
 pub use pictures::{PictureOf, Pictures};

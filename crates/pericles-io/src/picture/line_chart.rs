@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::bitmap::{Bitmap, SIZES};
-use super::clip::{clipped, inside};
+use super::backdrop::Backdrop;
+use super::bitmap::{Bitmap, INK, SIZES, WHITE};
+use super::clip::{clipped, inside, length_inside};
 use super::curve::{Axis, Curve, Pen};
-use super::frame::{Area, AxisText, Frame, Header, Sizes};
-use super::key::{Key, Pieces};
-use super::text;
+use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
+use super::text::{self, Align, Style};
 use super::units::quantity;
 use crate::IoError;
 
@@ -19,6 +19,7 @@ pub struct LineChart {
     y: Axis,
     header: Header,
     curves: Vec<Curve>,
+    backdrop: Option<Backdrop>,
     width: u32,
     height: u32,
 }
@@ -31,6 +32,7 @@ impl LineChart {
             y,
             header: Header::default(),
             curves: Vec::new(),
+            backdrop: None,
             width: 1200,
             height: 750,
         }
@@ -55,6 +57,13 @@ impl LineChart {
     /// Adds a curve.
     pub fn curve(mut self, curve: Curve) -> Self {
         self.curves.push(curve);
+        self
+    }
+
+    /// Puts a map of numbers beneath the curves. The axes should have the map's range.
+    pub fn backdrop(mut self, backdrop: Backdrop) -> Self {
+        self.header.bar_label.clone_from(&backdrop.name);
+        self.backdrop = Some(backdrop);
         self
     }
 
@@ -108,6 +117,15 @@ impl LineChart {
         };
         let left = sizes.beside(&y_text.ticks).round();
         let mut right = (f64::from(self.width) - 2.0 * sizes.gap).round();
+        let bar = self.backdrop.as_ref().map(|backdrop| {
+            let bar = backdrop.bar();
+            let ticks = bar.ticks(bottom - top, &sizes);
+            (backdrop, bar, ticks)
+        });
+        let end = right;
+        if let Some((_, _, ticks)) = &bar {
+            right = (f64::from(self.width) - ColourBar::room(ticks, &sizes)).round();
+        }
         let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
         let x_text = AxisText {
             ticks: x.ticks(wanted),
@@ -117,46 +135,39 @@ impl LineChart {
         let overhang = x_text
             .ticks
             .longest(|label| text::width(label, sizes.tick_text));
-        right -= (0.5 * overhang - sizes.gap).max(0.0).round();
-        let frame_to = |right: f64| Frame {
-            area: Area {
-                left,
-                top,
-                right,
-                bottom,
-            },
-            x,
-            y,
-        };
-        // In pixels, with gaps where there is no number.
-        let pieces_in = |frame: &Frame| -> Vec<Pieces> {
-            let place = |point: &(f64, f64)| {
-                frame.place(point.0 / x_shown.factor, point.1 / y_shown.factor)
-            };
-            let pieces = |curve: &Curve| {
-                let runs = curve.points.split(|point| !usable(point));
-                runs.map(|run| run.iter().map(place).collect()).collect()
-            };
-            self.curves.iter().map(pieces).collect()
-        };
-        let mut frame = frame_to(right);
-        let mut drawn = pieces_in(&frame);
-        let key = Key::new(&self.curves, frame.area.width(), &sizes);
-        let mut key_at = (0.0, 0.0);
-        if let Some(key) = &key {
-            key_at = key.free_place(frame.area, &drawn).unwrap_or_else(|| {
-                // Curves everywhere: beside them.
-                frame = frame_to((right - key.width - sizes.gap).round());
-                drawn = pieces_in(&frame);
-                (frame.area.right + sizes.gap, top)
-            });
+        if bar.is_none() {
+            right -= (0.5 * overhang - sizes.gap).max(0.0).round();
         }
-        let area = frame.area;
+        let area = Area {
+            left,
+            top,
+            right,
+            bottom,
+        };
+        let frame = Frame { area, x, y };
 
         let mut bitmap = Bitmap::white(self.width as usize, self.height as usize);
         frame.draw_grid(&mut bitmap, &x_text, &y_text, &sizes);
-        for (number, (curve, pieces)) in self.curves.iter().zip(&drawn).enumerate() {
+        if let Some((backdrop, bar, ticks)) = &bar {
+            let factors = [x_shown.factor, y_shown.factor];
+            backdrop.draw(&mut bitmap, &frame, bar, factors);
+            bar.draw(&mut bitmap, area, ticks, &sizes);
+        }
+        let mut drawn = Vec::new();
+        for (number, curve) in self.curves.iter().enumerate() {
             let pen = Pen::of(number, curve, &sizes);
+            // In pixels, with gaps where there is no number.
+            let mut pieces = vec![Vec::new()];
+            for point in &curve.points {
+                if usable(point) {
+                    let place = frame.place(point.0 / x_shown.factor, point.1 / y_shown.factor);
+                    if let Some(piece) = pieces.last_mut() {
+                        piece.push(place);
+                    }
+                } else {
+                    pieces.push(Vec::new());
+                }
+            }
             if curve.line {
                 let lines = pieces
                     .iter()
@@ -173,12 +184,12 @@ impl LineChart {
                     pen.mark(&mut bitmap, place);
                 }
             }
+            drawn.push(pieces);
         }
         frame.draw_axes(&mut bitmap, &x_text, &y_text, &sizes);
-        if let Some(key) = &key {
-            key.draw(&mut bitmap, key_at, &sizes);
-        }
-        self.header.draw(&mut bitmap, left, right, &sizes);
+        self.draw_key(&mut bitmap, area, &drawn, &sizes);
+        let end = if bar.is_some() { end } else { right };
+        self.header.draw(&mut bitmap, left, end, &sizes);
         Ok(bitmap)
     }
 
@@ -193,6 +204,17 @@ impl LineChart {
                 ),
             });
         }
+        if let Some(backdrop) = &self.backdrop {
+            let (expected, given) = backdrop.lengths();
+            if expected != given {
+                return Err(IoError::Shape {
+                    path: path.to_path_buf(),
+                    what: "numbers of the backdrop".into(),
+                    expected,
+                    given,
+                });
+            }
+        }
         for curve in &self.curves {
             let (expected, given) = curve.lengths;
             if expected != given {
@@ -205,5 +227,68 @@ impl LineChart {
             }
         }
         Ok(())
+    }
+
+    /// The key, in the corner where it hides the least of the curves.
+    fn draw_key(
+        &self,
+        bitmap: &mut Bitmap,
+        area: Area,
+        drawn: &[Vec<Vec<(f64, f64)>>],
+        sizes: &Sizes,
+    ) {
+        let named: Vec<_> = (self.curves.iter().enumerate())
+            .filter(|(_, curve)| !curve.name.is_empty())
+            .collect();
+        if named.is_empty() {
+            return;
+        }
+        let (gap, row) = (sizes.gap, 1.5 * sizes.tick_text);
+        let sample = 2.2 * sizes.tick_text;
+        let longest = named
+            .iter()
+            .map(|(_, curve)| text::width(&curve.name, sizes.tick_text))
+            .fold(0.0, f64::max);
+        let room = area.width() - sample - 5.0 * gap;
+        let width = sample + 3.0 * gap + longest.min(room);
+        let height = row * named.len() as f64 + gap;
+        let places = [
+            (area.right - gap - width, area.top + gap),
+            (area.left + gap, area.top + gap),
+            (area.right - gap - width, area.bottom - gap - height),
+            (area.left + gap, area.bottom - gap - height),
+        ];
+        let hidden = |&(left, top): &(f64, f64)| {
+            let area = Area {
+                left,
+                top,
+                right: left + width,
+                bottom: top + height,
+            };
+            let pieces = drawn.iter().flatten();
+            pieces.map(|piece| length_inside(piece, area)).sum::<f64>()
+        };
+        let Some(place) = places
+            .into_iter()
+            .min_by(|a, b| hidden(a).total_cmp(&hidden(b)))
+        else {
+            return;
+        };
+        let corner = (place.0 + width, place.1 + height);
+        bitmap.fill_rectangle(place, corner, WHITE, 0.85);
+        bitmap.outline(place, corner, 1.0, [200, 200, 200]);
+        for (line, (number, curve)) in named.into_iter().enumerate() {
+            let pen = Pen::of(number, curve, sizes);
+            let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
+            let (from, to) = (place.0 + gap, place.0 + gap + sample);
+            if curve.line {
+                pen.stroke(bitmap, vec![vec![(from, y), (to, y)]]);
+            }
+            if curve.markers {
+                pen.mark(bitmap, (0.5 * (from + to), y));
+            }
+            let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, room);
+            text::draw(bitmap, &curve.name, (to + gap, y), style.colour(INK));
+        }
     }
 }

@@ -4,12 +4,14 @@
 //! asked for, once per snapshot.
 
 mod crack;
+mod energy_inequality;
 mod probe;
 mod schedule;
 mod snapshot;
 mod surface;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
+pub use energy_inequality::EnergyInequality;
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
 pub use snapshot::{Energies, Field, Snapshot, StartEnergy};

@@ -9,7 +9,8 @@ use super::{
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
 use crate::material::{
-    BondConstants, BondMaterial, BondStretch, GreenBond, LinearBond, LiteralBond, PairLaw,
+    BondConstants, BondMaterial, BondStretch, CubicLaw, GreenBond, LinearBond, LiteralBond,
+    PairLaw, SecondOrder, Trapezoidal, Treated, Treatment,
 };
 use crate::space::PointCloud;
 
@@ -180,6 +181,12 @@ impl BondBody<'_> {
             (PairLaw::GreenStrain, 2) => self.listed::<GreenBond, 2>(form),
             (PairLaw::GreenStrain, 3) => self.listed::<GreenBond, 3>(form),
             (PairLaw::Literal57, 1) => self.listed::<LiteralBond, 1>(form),
+            (PairLaw::Treated(law, treatment), 1) => self.treated(law, treatment, form),
+            (PairLaw::Treated(..), dimension) => Err(PericlesError::WrongDimension {
+                what: "a treatment of a nonlinear law",
+                needed: "1",
+                dimension,
+            }),
             (PairLaw::Literal57, dimension) => Err(PericlesError::WrongDimension {
                 what: "the law of equation 57 as printed",
                 needed: "1",
@@ -206,6 +213,28 @@ impl BondBody<'_> {
             cuts: Vec::new(),
             form: BondForm::Spectral,
         })
+    }
+
+    fn treated(
+        &self,
+        law: CubicLaw,
+        treatment: Treatment,
+        form: BondForm,
+    ) -> Result<AssembledBonds> {
+        match (law, treatment) {
+            (CubicLaw::GreenStrain, Treatment::SecondOrder) => {
+                self.listed::<Treated<GreenBond, SecondOrder>, 1>(form)
+            }
+            (CubicLaw::GreenStrain, Treatment::Trapezoidal) => {
+                self.listed::<Treated<GreenBond, Trapezoidal>, 1>(form)
+            }
+            (CubicLaw::Literal57, Treatment::SecondOrder) => {
+                self.listed::<Treated<LiteralBond, SecondOrder>, 1>(form)
+            }
+            (CubicLaw::Literal57, Treatment::Trapezoidal) => {
+                self.listed::<Treated<LiteralBond, Trapezoidal>, 1>(form)
+            }
+        }
     }
 
     /// Laws that only the list computes.

@@ -1,7 +1,9 @@
 //! Pair laws in the operators' loops: the same forces as [`PairForce`], without roots and divisions where that is possible.
 
 use super::lanes::Lanes;
-use crate::material::{BondStretch, GreenBond, LinearBond, LiteralBond, PairForce};
+use crate::material::{
+    BondStretch, CubicBond, CubicFactor, GreenBond, LinearBond, LiteralBond, PairForce, Treated,
+};
 
 /// What stays of eight bonds while their points move.
 #[derive(Debug, Clone, Copy)]
@@ -49,6 +51,8 @@ pub trait FastLaw: PairForce {
 impl FastLaw for GreenBond {}
 
 impl FastLaw for LiteralBond {}
+
+impl<L: CubicBond, T: CubicFactor> FastLaw for Treated<L, T> {}
 
 /// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)), ascending: the polynomial through its values at the seven Chebyshev nodes of
 /// |t| ≤ 0.02, computed with 50 digits; relative error below 8e-15 there.

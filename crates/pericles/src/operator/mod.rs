@@ -205,6 +205,11 @@ pub trait LinearOperator: Send + Sync {
     /// `out` = force density at `u`.
     fn apply_into(&self, u: &[f64], out: &mut [f64]);
 
+    /// The largest |i − j| of unknowns that act on each other, where it is known and the matrix a band; bars without periodic ends are.
+    fn half_bandwidth(&self) -> Option<usize> {
+        None
+    }
+
     /// The operator as one whose eigenvectors are known, if it is one.
     fn as_diagonal(&self) -> Option<&dyn function::Diagonal> {
         None

@@ -80,6 +80,8 @@ pub struct GridForce<L: FastLaw, const D: usize> {
     pub(super) damage: DamageMeasure,
     /// Work arrays, locked for the length of an evaluation.
     pub(super) scratch: Mutex<Scratch<D>>,
+    /// A second vector in padded rows, made by the first tangent.
+    pub(super) direction: Mutex<Option<Padded<D>>>,
     pub(super) instruction_set: InstructionSet,
     pub(super) law: std::marker::PhantomData<L>,
 }
@@ -155,6 +157,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             directed_bonds: bonds_left(&blocks),
             held: (!no_fail.is_empty()).then(|| bits_of_set(&layout, no_fail)),
             scratch: Mutex::new(Scratch::new(&layout, &stencil)),
+            direction: Mutex::new(None),
             cloud,
             layout,
             stencil,

@@ -1,5 +1,7 @@
 //! [`ForceOperator`] for lattice bodies.
 
+use std::sync::PoisonError;
+
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, tangent_chunks};
 use super::padded::Padded;
@@ -75,13 +77,21 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 
     fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        let mut padded = Padded::new(&self.layout, self.stencil.farthest_shift());
+        let spare = || {
+            self.direction
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        let idle = spare().take();
+        let mut padded =
+            idle.unwrap_or_else(|| Padded::new(&self.layout, self.stencil.farthest_shift()));
         padded.fill(&self.layout, direction);
         let direction = self.grid(&padded);
         out.fill(0.0);
         self.sweep::<D>(u, &On::All, out, |grid, block, intact, out| {
             tangent_chunks::<L, D>(self.instruction_set, grid, &direction, block, intact, out);
         });
+        *spare() = Some(padded);
     }
 
     fn dissipated(&self) -> f64 {
@@ -189,6 +199,10 @@ impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.add_force(0.0, u, On::All, out);
+    }
+
+    fn half_bandwidth(&self) -> Option<usize> {
+        (D == 1).then(|| self.stencil.farthest(0))
     }
 }
 

@@ -168,6 +168,11 @@ impl<L: FastLaw, const D: usize> LinearOperator for BondForce<L, D> {
         out.fill(0.0);
         self.add_force(0.0, u, On::All, out);
     }
+
+    fn half_bandwidth(&self) -> Option<usize> {
+        let of_point = |i: usize| self.bonds.family(i).map(move |(_, j)| i.abs_diff(j));
+        (D == 1).then(|| (0..self.points()).flat_map(of_point).max().unwrap_or(0))
+    }
 }
 
 impl<L: FastLaw, const D: usize> Saved for BondForce<L, D> {
