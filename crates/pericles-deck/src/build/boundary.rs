@@ -146,7 +146,6 @@ impl Deck {
         &self,
         system: &mut System,
         constants: &BondConstants,
-        density: f64,
         steps: &Steps,
     ) -> Result<(), DeckError> {
         for (k, boundary) in self.boundaries.iter().enumerate() {
@@ -165,7 +164,9 @@ impl Deck {
                 let reason = "a closed surface has no sides".into();
                 return Err(refuse(PericlesError::BadDampingLayer { reason }));
             }
-            let speed = (self.body.state.longitudinal_modulus(constants.young) / density).sqrt();
+            // Of the first material, where there are several.
+            let modulus = self.body.state.longitudinal_modulus(constants.young);
+            let speed = (modulus / system.density().at(0)).sqrt();
             let profile = DampingProfile::of_reflection(thickness, reflection, power, speed);
             let frequency = steps.frequency.map(|frequency| frequency.estimate);
             let layer = DampingLayer::new(system, face, profile, steps.dt, frequency);
