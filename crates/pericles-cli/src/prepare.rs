@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use pericles::Simulation;
 use pericles::cache::{Cache, NoCache};
-use pericles::observe::{CrackTracker, Schedule, SurfaceMeasure};
+use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
 use pericles_deck::{Deck, ExactReference, Model, Precision, Resources};
 use pericles_io::observers::{
-    Cracks, Errors, FieldSeries, History, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
+    Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, History, InnerColumns, PictureOf,
+    Pictures, Probes, Reactions, SurfaceCourse,
 };
 use pericles_io::{DiskCache, OutputFolder, read_surface};
 use serde::Serialize;
@@ -137,11 +138,16 @@ pub(crate) fn simulation(
     let surface = model.surface.clone();
     let mut simulation = model.simulation();
 
-    let history = folder.file("history.csv");
-    let history = match simulation.integrator().inner_iterations() {
-        Some(_) => History::with_inner_iterations(history, dimension),
-        None => History::new(history, dimension),
-    };
+    let mut history = History::new(folder.file("history.csv"), dimension);
+    if simulation.integrator().inner_iterations().is_some() {
+        history = history.with(InnerColumns);
+    }
+    if let Some(ExactReference { solution, points }) = exact {
+        history = history.with(ErrorColumns::new(solution, points));
+    }
+    if let Some(rate) = output.energy_bound {
+        history = history.with(EnergyBoundColumns(EnergyInequality::new(rate)));
+    }
     simulation.observe(output.history, Box::new(history));
     if let Some(reactions) = reactions {
         simulation.observe(output.history, Box::new(reactions));
@@ -149,10 +155,6 @@ pub(crate) fn simulation(
     if !probes.is_empty() {
         let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
         simulation.observe(output.history, Box::new(probes));
-    }
-    if let Some(ExactReference { solution, points }) = exact {
-        let errors = Errors::new(folder.file("errors.csv"), solution, points);
-        simulation.observe(output.history, Box::new(errors));
     }
     if can_break && !cracks.is_empty() {
         let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);
@@ -197,6 +199,7 @@ fn add_pictures(
             title: deck.title.clone().unwrap_or_default(),
             view: picture.view,
             surface: surface.cloned(),
+            steady: false,
         };
         // Two pictures of one field get two names.
         let uses = uses.entry(what.name()).or_default();
@@ -205,10 +208,11 @@ fn add_pictures(
             1 => what.name(),
             number => format!("{}_{number}", what.name()),
         };
-        simulation.observe(
-            picture.schedule,
-            Box::new(Pictures::new(&place, stem, what)),
-        );
+        let mut pictures = Pictures::new(&place, stem, what);
+        if picture.animation {
+            pictures = pictures.animated();
+        }
+        simulation.observe(picture.schedule, Box::new(pictures));
     }
     Ok(())
 }

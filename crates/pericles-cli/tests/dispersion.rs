@@ -61,3 +61,31 @@ fn directions_and_refusals() {
         2
     );
 }
+
+#[test]
+fn cells_longer_along_one_axis() {
+    let place = tempfile::tempdir().unwrap();
+    let text = PLATE
+        .replace("spacing = \"1 mm\"", "spacing = [\"1 mm\", \"0.75 mm\"]")
+        .replace("cells = 1", "depth = \"1 mm\"");
+    fs::write(place.path().join("plate.toml"), text).unwrap();
+    succeed(place.path(), "dispersion plate.toml --quiet --out slender");
+    let folder = place.path().join("slender");
+    let read = |name: &str| pericles_io::read_csv(folder.join(name)).unwrap();
+    let curves = read("curves.csv");
+    let largest = |name: &str| -> f64 {
+        let column = curves.column(name).unwrap();
+        column.iter().copied().fold(0.0, f64::max)
+    };
+    // The zone ends at π over each spacing.
+    assert!((largest("k_x") / (std::f64::consts::PI / 1e-3) - 1.0).abs() < 1e-12);
+    assert!((largest("k_y") / (std::f64::consts::PI / 0.75e-3) - 1.0).abs() < 1e-12);
+    assert!(largest("omega_x") > 0.0 && largest("omega_y") > 0.0);
+    // Bonds up to three of the larger spacings and half a cell, one of each pair.
+    let bonds = read("classes.csv");
+    let length = bonds.column("length").unwrap();
+    let reach = 3e-3 + 0.5 * 0.75f64.sqrt() * 1e-3;
+    assert!(length.iter().all(|r| *r <= reach) && length.len() > 14);
+    // The slender cells run, too.
+    succeed(place.path(), "run plate.toml --quiet --out run");
+}

@@ -177,7 +177,7 @@ fn peak(t: &[f64], y: &[f64]) -> f64 {
 #[test]
 fn the_spectral_pulse_is_exact() {
     let (_place, out) = check("wave", "spectral");
-    let errors = table(&out, "errors.csv");
+    let errors = table(&out, "history.csv");
     assert!(*errors.column("error_so_far").unwrap().last().unwrap() < 1e-13);
 }
 
@@ -193,6 +193,15 @@ fn gauss_nodes_by_the_midpoint_rule_keep_their_energy() {
 #[test]
 fn waves_in_the_periodic_plate() {
     let (_place, out) = check("wave", "plate");
+    // The bound of the energy holds.
+    let history = table(&out, "history.csv");
+    let column = |name: &str| history.column(name).unwrap();
+    let (bound, margin) = (column("energy_bound"), column("energy_margin"));
+    assert!(margin.iter().all(|margin| *margin >= 0.0));
+    let (kinetic, elastic) = (column("kinetic_energy"), column("elastic_energy"));
+    let (last, end) = (bound.len() - 1, bound[bound.len() - 1]);
+    let rest = end - margin[last] - kinetic[last] - elastic[last];
+    assert!(end > 0.0 && rest.abs() < 1e-12 * end, "{rest:e}");
     // Loads are booked along the cubic through both ends of a step.
     let report = report(&out);
     assert!(report["audit"]["balance_over_work"].as_f64().unwrap().abs() < 1e-3);

@@ -4,7 +4,7 @@ use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region, Shape};
 
 use crate::quantity::Quantity;
-use crate::reader::Table;
+use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
 use crate::surface::{self, SurfaceKind, SurfaceShape, VertexAreas};
 
@@ -21,6 +21,8 @@ pub struct Body {
     pub periodic: bool,
     /// Where the points of a cell are.
     pub quadrature: Quadrature,
+    /// Spacing along each axis, m, of a box whose cells are no squares or cubes; the grid's is then the largest.
+    pub rectangular: Option<Vec<f64>>,
 }
 
 /// Where the points of a cell are.
@@ -102,9 +104,14 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     if let Some(Kind::Surface(kind)) = kind {
         return surface(table, kind, read);
     }
-    read.frame.spacing = table
+    let spacings = table
         .required("spacing")
-        .and_then(|item| item.positive(Quantity::Length));
+        .and_then(|item| spacings(&item, kind));
+    read.frame.spacing = spacings
+        .as_ref()
+        .map(|all| all.iter().copied().fold(0.0, f64::max));
+    let rectangular = spacings.filter(|all| all.iter().any(|dx| *dx != all[0]));
+    read.frame.cells = rectangular.is_none();
     let Some(kind) = kind else {
         // Without the shape nobody knows which other keys belong here.
         return read;
@@ -123,9 +130,17 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .into_iter()
         .map(|part| finer(part, read.frame))
         .collect();
-    let rules = rules(&table, kind, holes.is_empty() && finer.is_empty());
+    let plain = rectangular.is_none();
+    if !plain && !finer.is_empty() {
+        table.forbid("refine", "only cells of one size can be divided");
+    }
+    let rules = rules(&table, kind, plain && holes.is_empty() && finer.is_empty());
     table.finish();
-    read.body = assemble(&read, outline, section, holes, finer, rules);
+    let body = assemble(&read, outline, section, holes, finer, rules);
+    read.body = body.map(|body| Body {
+        rectangular,
+        ..body
+    });
     read
 }
 
@@ -143,6 +158,24 @@ fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead 
     read.body = Some(surface::no_grid());
     read.surface = Some(SurfaceRead { shape, areas });
     read
+}
+
+/// One spacing, or one for each axis of a box.
+fn spacings(item: &Item<'_>, kind: Option<Kind>) -> Option<Vec<f64>> {
+    if !item.is_list() {
+        return item.positive(Quantity::Length).map(|dx| vec![dx]);
+    }
+    let kind = kind?;
+    if !matches!(kind, Kind::Plate | Kind::Block) {
+        item.out_of_range("one length: only plates and blocks have a spacing for each axis");
+        return None;
+    }
+    let entries = item.exactly(kind.dimension(), "a length, or one for each axis")?;
+    let lengths: Vec<Option<f64>> = entries
+        .iter()
+        .map(|entry| entry.positive(Quantity::Length))
+        .collect();
+    lengths.into_iter().collect()
 }
 
 fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
@@ -188,12 +221,13 @@ fn assemble(
         state: read.state?,
         periodic,
         quadrature,
+        rectangular: None,
     })
 }
 
 /// Periodicity and the place of points in their cells.
 fn rules(table: &Table<'_>, kind: Kind, whole: bool) -> Option<(bool, Quadrature)> {
-    const BOX: &str = "only a bar, plate or block without holes has opposite faces that can be one";
+    const BOX: &str = "only a bar, plate or block of equal cells without holes has opposite faces that can be one";
     const BAR: &str = "only the cells of a bar without holes, and with two ends, have Gauss nodes";
     let periodic = if matches!(kind, Kind::Bar | Kind::Plate | Kind::Block) && whole {
         table.or("periodic", false, |item| item.boolean())

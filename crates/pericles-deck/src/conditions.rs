@@ -48,6 +48,14 @@ pub struct Prescribe {
     pub until: Option<f64>,
 }
 
+impl Prescribe {
+    /// Whether anything but rest is prescribed.
+    pub fn moves(&self) -> bool {
+        let mut amplitudes = self.amplitude.iter().flatten();
+        amplitudes.any(|amplitude| amplitude.number() != Some(0.0))
+    }
+}
+
 /// A load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {

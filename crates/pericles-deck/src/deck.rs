@@ -146,9 +146,10 @@ impl Deck {
         let time = root
             .required("time")
             .and_then(|item| time::read(item.table()?, &names));
-        let output = root
-            .table_or_empty("output")
-            .and_then(|table| output::read(table, frame.dimension));
+        let output = root.table_or_empty("output").and_then(|table| {
+            let driven = prescribe.iter().flatten().any(Prescribe::moves);
+            output::read(table, frame.dimension, driven)
+        });
         let checkpoint = root
             .table_or_empty("checkpoint")
             .and_then(output::checkpoint);
@@ -183,15 +184,19 @@ fn surface_of(
     names: &SetNames,
 ) -> Option<SurfaceDeck> {
     root.forbid("crack", "surfaces have no pre-cracks");
-    let method = root.table_or_empty("geodesics").and_then(surface::method);
+    let geodesics = root
+        .table_or_empty("geodesics")
+        .and_then(surface::geodesics);
     let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
+    let (method, ball) = geodesics?;
     Some(SurfaceDeck {
         shape: read.shape.clone()?,
         areas: read.areas?,
         material,
         no_fail,
         inclusions,
-        method: method?,
+        method,
+        ball,
     })
 }
 

@@ -15,6 +15,8 @@ pub(crate) struct Setting {
     pub(crate) state: Option<StressState>,
     /// m
     pub(crate) spacing: Option<f64>,
+    /// Whether all cells are squares or cubes of one size.
+    pub(crate) cells: bool,
     /// m
     pub(crate) horizon: Option<f64>,
     pub(crate) correction: Option<VolumeCorrection>,
@@ -88,6 +90,14 @@ fn function(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
         }
         Form::Tabulated => tabulated(table, setting),
         Form::Cosines => cosines(table, setting),
+        Form::Classes | Form::Tuned if !setting.cells => {
+            if let Some(item) = table.optional("function") {
+                item.out_of_range(
+                    "a function of the length: classes of bonds belong to square and cubic cells, one `spacing` for all axes",
+                );
+            }
+            None
+        }
         Form::Classes => classes(table, setting),
         Form::Tuned => tuned(table, setting),
     }

@@ -55,7 +55,8 @@
 //! origin = ["0 mm", "0 mm"]              # their lower corner; default 0
 //! # disc, ball: centre [center], default 0; radius          disc: inner_radius, optional
 //! # cylinder: base (centre of the lower base), default 0; axis, default "z"; radius; inner_radius, optional; height
-//! spacing = "0.25 mm"                    # [dx] size of the cells
+//! spacing = "0.25 mm"                    # [dx] size of the cells; plates and blocks also ["0.25 mm", "0.2 mm"], one for each axis: bonds are then a list, modulus is the continuum's,
+//!                                         # and horizon_ratio counts the largest
 //! plane = "strain"                       # 2D only, and needed there: stress | strain
 //! thickness = "1 mm"                     # 2D only; default 1 m
 //! # area = "1 mm2"                       # 1D only; default 1 m²
@@ -72,6 +73,8 @@
 //! [material]
 //! name = "soda-lime glass"               # for people; optional
 //! model = "bond-stretch"                 # default; or linear, green-strain (force by the Green strain of bonds), literal57 (bars: a softening law as printed by Coclite et al. 2020)
+//! # treatment = "exact"                 # green-strain and literal57: default; on bars also taylor-1, taylor-2, taylor-3 (the polynomial of that order in the relative
+//! #                                        displacement; three is exact) or trapezoidal (the mean of the tangents at rest and in place)
 //! density = "2440 kg/m3"                 # [rho]
 //! youngs_modulus = "72 GPa"              # [E], or bulk_modulus [K], or shear_modulus [G]: exactly one
 //! poisson_ratio = 0.25                   # [nu] optional; checked against the only one that bonds can have
@@ -134,7 +137,7 @@
 //! name = "middle"
 //! at = ["50 mm", "20 mm"]                # the nearest point; or set = "top", the mean over a set
 //!
-//! # [exact]                                # a bar whose solution is known: the distance from it goes to errors.csv, as often as the history; optional
+//! # [exact]                                # a bar whose solution is known: the history gets columns with the distance from it; optional
 //! # solution = "nonlocal-pulse"            # u = amplitude exp(−((x − centre)/width)²) at rest, on the line with a Gaussian micromodulus; or
 //! # width = "1 m"                          #   local-pulse (the same on the local string), stretched-bar (strain, length: held at 0, free at length),
 //! # amplitude = "1 m"                      #   bar-mode (amplitude, length)
@@ -148,6 +151,7 @@
 //! safety = 0.95                          # default; only with "auto"
 //! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, newmark, discrete-gradient, implicit-midpoint, trapezoidal, trigonometric
 //! # implicit-midpoint, trapezoidal, trigonometric: stable for any dt, which must be given
+//! # implicit-midpoint, trapezoidal: linear_solver = "fastest" (default) | "direct" | "conjugate-gradients", of linear bodies
 //! # trigonometric: functions = "fastest" (default) | "chebyshev" | "fourier" | "lanczos" | "eigenvectors"; loads = "gauss" (default, order 4) | "midpoint";
 //! #   regularisation = 0 (default; 1/s², never needed)
 //! # rk3, rk3-mts: alpha = 0.75
@@ -164,6 +168,8 @@
 //!
 //! [output]                               # schedules: interval = time | every = steps | count = number over the run
 //! fields = { count = 20 }                # default; or "never"
+//! # energy_bound = "46 us"                # adds to the history what kinetic plus elastic energy cannot exceed under the loads, e(0) exp(t/τ) + τ/2 ∫ exp((t−s)/τ) ‖b‖² ds, for
+//! #                                        this τ (best: the time that is looked at), and the margin to it; not with supports that move
 //! history = { count = 200 }              # default; or "never". Reactions follow it too
 //! cracks = { threshold = 0.35 }          # default threshold of damage; schedule by default that of the history; or "never"
 //! precision = "double"                   # default; or single: numbers in field files
@@ -171,6 +177,8 @@
 //! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density
 //! scale = 1                              # default: factor of the displacement
 //! range = [0, 1]                         # of the colour bar; default: that of the field
+//! animation = false                      # default; true: at the end all of them in one animated PNG, ten a second; all then show the box of the body at rest and a
+//!                                        #   tenth around it. Give it a `range` too, or the colours change their meaning from picture to picture
 //! count = 4                              # default
 //!
 //! [checkpoint]
@@ -196,6 +204,7 @@
 //!
 //! [geodesics]
 //! method = "exact"                       # default; or edge, edge-diagonals, steiner(1) to steiner(32)
+//! ball = "geodesic"                      # default: bonds within the horizon along the surface; or euclid: on the straight line, with distances along the surface
 //!
 //! [material]
 //! model = "power"                        # default, the only one: κ |η|^(p−2) η / d^(2+αp)

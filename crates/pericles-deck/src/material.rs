@@ -3,7 +3,8 @@
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+    BondMaterial, Calibration, CubicLaw, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+    Treatment,
 };
 use pericles::operator::{BondForm, DamageMeasure};
 
@@ -53,6 +54,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             ("literal57", PairLaw::Literal57),
         ],
     );
+    let law = treated(&table, law);
     let density = table
         .required("density")
         .and_then(|item| item.positive(Quantity::Density));
@@ -75,6 +77,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             dimension,
             state: body.state,
             spacing: body.frame.spacing,
+            cells: body.frame.cells,
             horizon,
             correction: volume_correction,
         },
@@ -117,6 +120,44 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         inclusions: inclusions.into_iter().collect::<Option<_>>()?,
         damage: damage?,
         form: form?,
+    })
+}
+
+/// The law as it is taken.
+fn treated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Exact,
+        FirstOrder,
+        As(Treatment),
+    }
+    let cubic = match law? {
+        PairLaw::GreenStrain => CubicLaw::GreenStrain,
+        PairLaw::Literal57 => CubicLaw::Literal57,
+        other => {
+            table.forbid(
+                "treatment",
+                "it belongs to model = \"green-strain\" or \"literal57\"",
+            );
+            return Some(other);
+        }
+    };
+    let treatment = table.choice_or_first(
+        "treatment",
+        "treatment",
+        &[
+            ("exact", Kind::Exact),
+            ("taylor-1", Kind::FirstOrder),
+            ("taylor-2", Kind::As(Treatment::SecondOrder)),
+            // The law itself.
+            ("taylor-3", Kind::Exact),
+            ("trapezoidal", Kind::As(Treatment::Trapezoidal)),
+        ],
+    );
+    Some(match treatment? {
+        Kind::Exact => law?,
+        Kind::FirstOrder => PairLaw::Linear,
+        Kind::As(treatment) => PairLaw::Treated(cubic, treatment),
     })
 }
 

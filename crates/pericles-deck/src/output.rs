@@ -18,6 +18,8 @@ pub struct Output {
     pub cracks: CrackOutput,
     /// Precision of numbers in field files.
     pub precision: Precision,
+    /// Rate ν of the bound of the energy in the history, 1/s; none if it is not wanted.
+    pub energy_bound: Option<f64>,
     /// Pictures.
     pub pictures: Vec<Picture>,
 }
@@ -53,6 +55,8 @@ pub struct Picture {
     pub range: Option<[f64; 2]>,
     /// The direction from which a body in space is seen; if none, from the front right and above.
     pub view: Option<Point>,
+    /// Whether all of them are put into an animation at the end.
+    pub animation: bool,
     /// When it is drawn.
     pub schedule: Schedule,
 }
@@ -74,7 +78,8 @@ impl Default for Checkpoint {
     }
 }
 
-pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output> {
+/// `driven`: whether supports move.
+pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> Option<Output> {
     let fields = scheduled(&table, "fields", 20);
     let history = scheduled(&table, "history", 200);
     let cracks = cracks(&table, history);
@@ -83,6 +88,15 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output>
         "precision",
         &[("double", Precision::Double), ("single", Precision::Single)],
     );
+    if driven {
+        table.forbid(
+            "energy_bound",
+            "supports that move do work which the bound does not know",
+        );
+    }
+    let energy_bound = table.maybe("energy_bound", |item| {
+        item.positive(Quantity::Time).map(f64::recip)
+    });
     let pictures: Vec<Option<Picture>> = table
         .tables("picture")
         .into_iter()
@@ -94,6 +108,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Output>
         history: history?,
         cracks: cracks?,
         precision: precision?,
+        energy_bound: energy_bound?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
     })
 }
@@ -212,6 +227,7 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         }
         Some(None)
     };
+    let animation = table.or("animation", false, |item| item.boolean());
     let schedule = schedule(&table, Schedule::Count(4));
     table.finish();
     let (field, component) = field?;
@@ -221,6 +237,7 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         scale: scale?,
         range: range?,
         view: view?,
+        animation: animation?,
         schedule: schedule?,
     })
 }

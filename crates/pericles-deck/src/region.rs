@@ -29,7 +29,7 @@ pub(crate) struct Frame {
     pub(crate) dimension: Option<usize>,
     /// Spacing, m.
     pub(crate) spacing: Option<f64>,
-    /// Whether there are cells to count.
+    /// Whether there are cells to count, all of one size.
     pub(crate) cells: bool,
 }
 
@@ -219,7 +219,7 @@ fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
         .and_then(|(kind, item)| match kind {
             "depth" => item.positive(Quantity::Length),
             _ if !frame.cells => {
-                item.out_of_range("a `depth` instead: this body has no cells to count");
+                item.out_of_range("a `depth` instead: this body has no cells of one size to count");
                 None
             }
             _ => Some(item.positive(Quantity::Number)? * frame.spacing?),

@@ -1,8 +1,8 @@
 //! The scheme of `[time]` and its parameters.
 
 use pericles::time::{
-    Follow, FunctionMethod, ImplicitRule, Interpolant, LoadRule, NewmarkOptions, Predictor,
-    TrigonometricOptions,
+    Follow, FunctionMethod, ImplicitRule, Interpolant, LinearSolver, LoadRule, NewmarkOptions,
+    Predictor, TrigonometricOptions,
 };
 
 use crate::newmark;
@@ -46,7 +46,12 @@ pub enum Scheme {
         interface: Interface,
     },
     /// The implicit midpoint or the trapezoidal rule.
-    Implicit(ImplicitRule),
+    Implicit {
+        /// Which.
+        rule: ImplicitRule,
+        /// Of the steps of linear bodies.
+        solver: LinearSolver,
+    },
     /// The exact flow of the linear part.
     Trigonometric(TrigonometricOptions),
     /// Newmark's method.
@@ -153,6 +158,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             "functions",
             "loads",
             "regularisation",
+            "linear_solver",
         ]
         .into_iter()
         .chain(newmark::KEYS)
@@ -217,6 +223,19 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         }
         Some(None)
     };
+    let solver = if matches!(kind, Kind::Implicit(_)) {
+        table.choice_or_first(
+            "linear_solver",
+            "linear solver",
+            &LinearSolver::ALL.map(|solver| (solver.name(), solver)),
+        )
+    } else {
+        table.forbid(
+            "linear_solver",
+            "it belongs to scheme = \"implicit-midpoint\" or \"trapezoidal\"",
+        );
+        Some(LinearSolver::default())
+    };
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
     if let Some(options) = exact? {
         return Some(Scheme::Trigonometric(options));
@@ -225,7 +244,10 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         return Some(Scheme::Newmark(options));
     }
     Some(match (kind, fine, interface) {
-        (Kind::Implicit(rule), ..) => Scheme::Implicit(rule),
+        (Kind::Implicit(rule), ..) => Scheme::Implicit {
+            rule,
+            solver: solver?,
+        },
         (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
             alpha,
             fine,

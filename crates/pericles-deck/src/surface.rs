@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use pericles::family::geodesic::GeodesicMethod;
+use pericles::family::geodesic::{Ball, GeodesicMethod};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PowerMaterial, StressState,
     SurfaceBond,
@@ -32,6 +32,8 @@ pub struct SurfaceDeck {
     pub inclusions: Vec<Inclusion>,
     /// How distances along the surface are found.
     pub method: GeodesicMethod,
+    /// Which vertices are bonded.
+    pub ball: Ball,
 }
 
 /// Where a surface comes from.
@@ -258,7 +260,7 @@ pub(crate) fn areas(table: &Table<'_>) -> Option<VertexAreas> {
 }
 
 /// `[geodesics]`.
-pub(crate) fn method(table: Table<'_>) -> Option<GeodesicMethod> {
+pub(crate) fn geodesics(table: Table<'_>) -> Option<(GeodesicMethod, Ball)> {
     let method = match table.optional("method") {
         None => {
             let method = GeodesicMethod::default();
@@ -273,8 +275,13 @@ pub(crate) fn method(table: Table<'_>) -> Option<GeodesicMethod> {
             method
         }),
     };
+    let ball = table.choice_or_first(
+        "ball",
+        "ball",
+        &[("geodesic", Ball::Geodesic), ("euclid", Ball::Euclid)],
+    );
     table.finish();
-    method
+    Some((method?, ball?))
 }
 
 /// `[material]` of a surface.
@@ -371,6 +378,7 @@ pub(crate) fn no_grid() -> Body {
         state: StressState::Spatial,
         periodic: false,
         quadrature: Quadrature::Midpoint,
+        rectangular: None,
     }
 }
 

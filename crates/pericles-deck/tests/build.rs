@@ -1,5 +1,8 @@
 //! From decks to models.
 
+mod common;
+
+use common::WAVE;
 use pericles::operator::BondForm;
 use pericles::time::State;
 use pericles_deck::{Deck, DeckError, Model};
@@ -553,34 +556,16 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
     assert!(two > 0.98 * plain, "{two} {plain}");
 }
 
-/// A pulse on a ring of Gaussian bonds.
-const RING: &str = r#"
-[body]
-shape = "bar"
-length = 20
-origin = -10
-spacing = 0.1
-periodic = true
-[material]
-model = "linear"
-density = 1
-youngs_modulus = 1
-horizon = "infinite"
-influence = { function = "gaussian", length = 1, acts_on = "displacement" }
-[exact]
-solution = "nonlocal-pulse"
-width = 1
-amplitude = 1
-[time]
-end = 3
-dt = 1
-scheme = "trigonometric"
-"#;
+/// A pulse on a ring of Gaussian bonds, all of it compared with the solution.
+fn ring() -> String {
+    WAVE.replace("bonds = \"spectral\"\n", "")
+        .replace("window = 3\n", "")
+}
 
 #[test]
 fn forms_of_linear_bodies() {
     let with = |change: &[(&str, &str)]| {
-        let mut text = RING.to_owned();
+        let mut text = ring();
         for (from, to) in change {
             assert!(text.contains(from));
             text = text.replace(from, to);
@@ -603,7 +588,7 @@ fn forms_of_linear_bodies() {
     // Schemes with two steps take the force apart by points.
     let two = [
         ("periodic = true", ""),
-        ("dt = 1\n", "dt = 0.5\nratio = 2\nfine = \"all\"\n"),
+        ("dt = 0.5\n", "dt = 0.5\nratio = 2\nfine = \"all\"\n"),
         ("\"trigonometric\"", "\"respa\""),
     ];
     assert_eq!(form(&two), "grid");
@@ -611,12 +596,12 @@ fn forms_of_linear_bodies() {
     assert_eq!((gauss.form.name(), gauss.cloud.len()), ("convolution", 400));
     assert_eq!(gauss.integrator.name(), "trigonometric");
     // Seven lengths.
-    assert_eq!(parse(RING).material.bonds.horizon, 7.0);
+    assert_eq!(parse(&ring()).material.bonds.horizon, 7.0);
 }
 
 #[test]
 fn a_short_period_is_warned_of() {
-    let warned = build(&RING.replace("length = 20\norigin = -10", "length = 10\norigin = -5"));
+    let warned = build(&ring().replace("length = 20\norigin = -10", "length = 10\norigin = -5"));
     let [warning] = &warned.warnings[..] else {
         panic!("{:?}", warned.warnings)
     };
@@ -626,9 +611,9 @@ fn a_short_period_is_warned_of() {
     );
     assert_eq!(
         (warning.location().line(), warning.location().column()),
-        (7, 12)
+        (6, 12)
     );
-    let window = build(&RING.replace("amplitude = 1", "amplitude = 1\nwindow = 3"));
+    let window = build(&ring().replace("amplitude = 1", "amplitude = 1\nwindow = 3"));
     assert!(window.warnings.is_empty());
     let reference = window.exact.unwrap();
     assert_eq!(reference.points.len(), 60);
@@ -955,5 +940,56 @@ end = "1 ms"
     let error = Deck::parse(&cells, "ball.toml", &[])
         .unwrap_err()
         .to_string();
-    assert!(error.contains("no cells to count"), "{error}");
+    assert!(error.contains("no cells of one size"), "{error}");
+}
+
+#[test]
+fn cells_of_two_lengths_carry_uniform_strain() {
+    let text = r#"
+[body]
+shape = "plate"
+size = ["12 mm", "9 mm"]
+spacing = ["1 mm", "0.75 mm"]
+plane = "stress"
+[material]
+model = "linear"
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+[time]
+end = "1 us"
+"#;
+    let model = build(text);
+    assert_eq!(model.form.name(), "list");
+    assert_eq!(model.cloud.len(), 144);
+    let (n, x, y) = (144, model.cloud.axis(0), model.cloud.axis(1));
+    let strain = [1e-3, -2e-3, 5e-4];
+    let u: Vec<f64> = (0..n)
+        .map(|i| strain[0] * x[i] + strain[2] * y[i])
+        .chain((0..n).map(|i| strain[2] * x[i] + strain[1] * y[i]))
+        .collect();
+    let mut force = vec![0.0; 2 * n];
+    model.system.force_density_into(0.0, &u, &mut force);
+    let inside = |i: &usize| (3.7e-3..8.3e-3).contains(&x[*i]) && (3.7e-3..5.3e-3).contains(&y[*i]);
+    let largest = force.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+    let inner = (0..n).filter(inside);
+    let rest = inner
+        .clone()
+        .fold(0.0f64, |m, i| m.max(force[i].abs().max(force[n + i].abs())));
+    assert!(
+        inner.count() > 4 && rest < 1e-11 * largest,
+        "{rest:e} {largest:e}"
+    );
+    // The dispersion tool sees the same bonds.
+    let deck = parse(text);
+    let spacing = deck.bond_lattice(&model).unwrap().spacing();
+    assert_eq!(spacing, [1e-3, 0.75e-3, 0.0]);
+    let classes = text.replace(
+        "horizon_ratio = 3",
+        "horizon_ratio = 3\ninfluence = { function = \"tuned\" }",
+    );
+    let message = Deck::parse(&classes, "deck.toml", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("square and cubic cells"), "{message}");
 }

@@ -54,6 +54,7 @@ fn every_entry_arrives() {
         state,
         periodic: false,
         quadrature: Quadrature::Midpoint,
+        rectangular: None,
     };
     assert_eq!(deck.body, body);
 
@@ -202,6 +203,7 @@ fn conditions_time_and_output_arrive() {
         scale: 1.0,
         range: Some([0.0, 1.0]),
         view: None,
+        animation: false,
         schedule: Schedule::Count(2),
     };
     let uplift = Picture {
@@ -210,6 +212,7 @@ fn conditions_time_and_output_arrive() {
         scale: 10.0,
         range: Some([-1e-3, 1e-3]),
         view: None,
+        animation: true,
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(
@@ -217,6 +220,7 @@ fn conditions_time_and_output_arrive() {
         Output {
             fields: Schedule::Interval(0.5e-6),
             history: Schedule::Every(20),
+            energy_bound: None,
             cracks: CrackOutput {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,

@@ -1,5 +1,8 @@
 //! Wrong decks: every one names the line, the column, what stands there and what is allowed.
 
+mod common;
+
+use common::WAVE;
 use miette::Diagnostic;
 use pericles_deck::{Deck, DeckError, Fault};
 use proptest::prelude::*;
@@ -123,6 +126,12 @@ const WRONG: &[Wrong] = &[
     wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks `ratio`"]),
     wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks one of", "`ball`"]),
     wrong("[material]", "[[body.refine]]\nall = true\nratio = 1\n[material]", (11, 9), "1", &["from 2 to 16"]),
+    // Spacings by axis.
+    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", 0]", (6, 23), "0", &["a positive number"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\"]", (6, 11), "[\"0.25", &["has 1 entry", "a length, or one for each axis"]),
+    wrong("spacing = \"0.25 mm\"\nplane", "periodic = true\nspacing = [\"0.25 mm\", \"0.2 mm\"]\nplane", (6, 1), "periodic", &["no place", "of equal cells"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["only cells of one size"]),
+    wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no cells of one size"]),
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),
@@ -141,6 +150,7 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "dt = \"automatic\"", (35, 6), "\"automatic\"", &["unknown time step `automatic`", "allowed: \"auto\""]),
     wrong("dt = \"auto\"", "safety = 1.5", (35, 10), "1.5", &["`1.5` is out of range", "above 0 and at most 1"]),
     wrong("\"0.75 mm\"", "\"0.1 mm\"", (12, 11), "\"0.1 mm\"", &["at least one spacing"]),
+    wrong("horizon = \"0.75 mm\"", "horizon_ratio = 0.5", (12, 17), "0.5", &["a number of at least 1"]),
     wrong("{ interval = \"0.5 us\" }", "{ every = 0 }", (38, 20), "0", &["`0` is out of range", "whole number of at least 1"]),
     wrong("{ interval = \"0.5 us\" }", "{ every = 1.5 }", (38, 20), "1.5", &["whole number"]),
     wrong("{ interval = \"0.5 us\" }", "{ interval = 1, every = 2 }", (38, 34), "2", &["`interval` and `every` are given together in [output.fields]", "`count`"]),
@@ -164,6 +174,7 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has it"]),
     wrong("fields =", "picture = [{ field = \"Displacement_z\" }]\nfields =", (38, 22), "\"Displacement_z\"", &["unknown field `Displacement_z`", "\"Displacement_x\""]),
     wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
+    wrong("fields =", "picture = [{ field = \"Damage\", animation = 12 }]\nfields =", (38, 44), "12", &["true or false"]),
     // What the library refuses.
     wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),
     wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "must exceed"]),
@@ -171,34 +182,6 @@ const WRONG: &[Wrong] = &[
     wrong("\"2440 kg/m3\"", "\"2440 kg/m3", (10, 22), "", &["not valid TOML"]),
     wrong("shape = \"plate\"", "shape = \"plate\"\nshape = \"bar\"", (5, 1), "shape", &["duplicate key"]),
 ];
-
-/// A right deck of a wave on a ring.
-const WAVE: &str = r#"[body]
-shape = "bar"
-length = 20
-origin = -10
-spacing = 0.1
-periodic = true
-
-[material]
-model = "linear"
-density = 1
-youngs_modulus = 1
-horizon = "infinite"
-influence = { function = "gaussian", length = 1, acts_on = "displacement" }
-bonds = "spectral"
-
-[exact]
-solution = "nonlocal-pulse"
-width = 1
-amplitude = 1
-window = 3
-
-[time]
-end = 3
-dt = 0.5
-scheme = "trigonometric"
-"#;
 
 #[rustfmt::skip]
 const WRONG_WAVES: &[Wrong] = &[
@@ -219,6 +202,13 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("dt = 0.5\nscheme = \"trigonometric\"", "dt = 1.5\nscheme = \"velocity-verlet\"", (24, 6), "1.5", &["the time step 1.5e0 s is unstable", "allow_unstable"]),
     wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (14, 9), "\"convolution\"", &["pre-cracks cut single bonds"]),
     wrong("bonds = \"spectral\"\n", "[[material.inclusion]]\nset = \"all\"\nstiffness = 2\n", (8, 1), "[material]", &["parts of other stiffness"]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"trapezoidal\"\nlinear_solver = \"lu\"", (26, 17), "\"lu\"", &["unknown linear solver `lu`", "\"direct\"", "\"conjugate-gradients\""]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nlinear_solver = \"direct\"", (26, 1), "linear_solver", &["belongs to scheme = \"implicit-midpoint\""]),
+    wrong("model = \"linear\"", "model = \"linear\"\ntreatment = \"taylor-2\"", (10, 1), "treatment", &["belongs to model = \"green-strain\""]),
+    wrong("model = \"linear\"", "model = \"green-strain\"\ntreatment = \"taylor\"", (10, 13), "\"taylor\"", &["unknown treatment `taylor`", "did you mean `taylor-1`?"]),
+    wrong("[time]", "[output]\nenergy_bound = 0\n[time]", (23, 16), "0", &["a positive number"]),
+    wrong("[time]", "[output]\nenergy_bound = 3\n[[prescribe]]\nset = \"all\"\nvelocity = 1\n[time]", (23, 1), "energy_bound", &["supports that move"]),
+    wrong("periodic = true", "quadrature = \"gauss\"\nrefine = [{ all = true, ratio = 2 }]", (6, 1), "quadrature", &["`quadrature` has no place in [body]"]),
     wrong("window = 3", "window = 0", (20, 10), "0", &["a positive number"]),
     wrong("solution = \"nonlocal-pulse\"", "solution = \"pulse\"", (17, 12), "\"pulse\"", &["unknown exact solution `pulse`", "\"local-pulse\""]),
 ];
@@ -260,6 +250,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("radius = 1\n", "radius = 1\nspacing = 1\n", (5, 1), "spacing", &["unknown key `spacing`", "`areas`"]),
     wrong("radius = 1\n", "radius = 1\nareas = \"barycentre\"\n", (5, 9), "\"barycentre\"", &["did you mean `barycentric`?"]),
     wrong("\"edge\"", "\"edges\"", (7, 10), "\"edges\"", &["exact, edge, edge-diagonals, steiner(1)"]),
+    wrong("method = \"edge\"", "method = \"edge\"\nball = \"euclidean\"", (8, 8), "\"euclidean\"", &["did you mean `euclid`?", "\"geodesic\""]),
     wrong("alpha = 0.5", "alpha = 1", (12, 9), "1", &["above 0 and below 1"]),
     wrong("alpha = 0.5", "alpha = 0", (12, 9), "0", &["above 0 and below 1"]),
     wrong("alpha = 0.5\n", "", (9, 1), "[material]", &["[material] lacks `alpha`"]),
@@ -322,6 +313,12 @@ fn what_surfaces_do_not_have_is_refused_when_they_are_built() {
     for (replace, by, at, says) in [
         ("traction", "body_force", "plate.toml:21:", "`traction`"),
         ("dt = 0.1\n", "", "plate.toml:23:", "give dt"),
+        (
+            "\"icosphere\"\nlevel = 2\nradius = 1\n\n[geodesics]",
+            "\"ellipsoid\"\nlevel = 2\nhalf_axes = [1, 1, 0.1]\n\n[geodesics]\nball = \"euclid\"",
+            "plate.toml:7:8",
+            "joins opposite walls",
+        ),
     ] {
         let deck = Deck::parse(&SURFACE.replace(replace, by), "plate.toml", &[]).unwrap();
         let message = deck.build().map(|_| ()).unwrap_err().to_string();

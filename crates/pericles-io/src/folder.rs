@@ -16,11 +16,13 @@ use crate::atomic::{folder_of, is_unfinished, remove_unfinished};
 
 const LOCK: &str = ".lock";
 
-/// The sub-folders of a run and the ending of the files Pericles writes there.
-const SUBFOLDERS: [(&str, &str); 3] = [
-    ("fields", "vtu"),
-    ("pictures", "png"),
-    ("checkpoints", "chk"),
+const PICTURES: &str = "pictures";
+
+/// The sub-folders of a run and the endings of the files Pericles writes there.
+const SUBFOLDERS: [(&str, &[&str]); 3] = [
+    ("fields", &["vtu"]),
+    (PICTURES, &["png", "apng"]),
+    ("checkpoints", &["chk"]),
 ];
 
 /// The folder of one run, locked against other runs while this value lives.
@@ -148,13 +150,13 @@ impl OutputFolder {
                 remove(&self.path.join(&entry.name))?;
             }
         }
-        for (subfolder, ending) in SUBFOLDERS {
+        for (subfolder, endings) in SUBFOLDERS {
             let place = self.path.join(subfolder);
             if !place.is_dir() {
                 continue;
             }
             for entry in entries(&place)? {
-                if entry.is_file && (has_ending(&entry.name, ending) || is_unfinished(&entry.name))
+                if entry.is_file && (has_one_of(&entry.name, endings) || is_unfinished(&entry.name))
                 {
                     remove(&place.join(&entry.name))?;
                 }
@@ -190,12 +192,12 @@ fn check_ours(path: &Path) -> Result<(), IoError> {
     let mut ours = all
         .iter()
         .any(|entry| entry.is_file && (entry.name == "run.json" || entry.name == "fields.pvd"));
-    for (subfolder, ending) in SUBFOLDERS {
+    for (subfolder, endings) in SUBFOLDERS {
         let place = path.join(subfolder);
-        if !ours && ending != "png" && place.is_dir() {
+        if !ours && subfolder != PICTURES && place.is_dir() {
             ours = entries(&place)?
                 .iter()
-                .any(|entry| entry.is_file && has_ending(&entry.name, ending));
+                .any(|entry| entry.is_file && has_one_of(&entry.name, endings));
         }
     }
     let empty = all
@@ -211,13 +213,12 @@ fn check_ours(path: &Path) -> Result<(), IoError> {
 }
 
 fn is_result(name: &str) -> bool {
-    ["run.json", "fields.pvd", "report.html"].contains(&name) || has_ending(name, "csv")
+    ["run.json", "fields.pvd", "report.html"].contains(&name) || has_one_of(name, &["csv"])
 }
 
-fn has_ending(name: &str, ending: &str) -> bool {
-    Path::new(name)
-        .extension()
-        .is_some_and(|found| found == ending)
+fn has_one_of(name: &str, endings: &[&str]) -> bool {
+    let found = Path::new(name).extension();
+    found.is_some_and(|found| endings.iter().any(|ending| found == *ending))
 }
 
 fn remove(path: &Path) -> Result<(), IoError> {
@@ -270,6 +271,7 @@ mod tests {
             "fields.pvd",
             "fields/fields_000000.vtu",
             "pictures/a.png",
+            "pictures/a.apng",
             "checkpoints/step-000000000001.chk",
             "fields/.fields_000001.vtu.7-0.part",
         ];

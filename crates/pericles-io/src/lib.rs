@@ -57,5 +57,7 @@ pub use folder::OutputFolder;
 pub use mesh::{
     FieldColumn, FieldData, MeshError, Place, SURFACE_ENDINGS, read_fields, read_surface,
 };
-pub use picture::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity};
+pub use picture::{
+    Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
+};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -1,24 +1,20 @@
 //! Our side of the comparison in `benches/lammps`, run by its script.
 //!
-//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS` prints cells and force
-//! densities of a deformed block, `i j k fx fy fz` a line.
+//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|list]` prints cells and force
+//! densities of a deformed block, `i j k fx fy fz` a line; `fracture CELLS STEPS [grid|list]` one line of JSON on a block torn in two.
+
+mod clock;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use pericles::bench::{Case, Timing, run, run_by_clock};
+use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::material::StressState;
 use pericles::operator::{BondBody, BondForm, DamageMeasure, On};
+use pericles::time::{Integrator, State, VelocityVerlet};
 
-/// CPU time of all threads of this process, s.
-fn cpu_seconds() -> f64 {
-    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten();
-    let nanoseconds = tasks.flatten().filter_map(|task| {
-        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse::<f64>().ok()
-    });
-    1e-9 * nanoseconds.sum::<f64>()
-}
+use clock::cpu_seconds;
 
 fn time(case: &Case, rounds: usize) -> pericles::Result<()> {
     let wall = run(case, rounds)?;
@@ -50,12 +46,8 @@ fn displacement(cell: [f64; 3], length: f64, spacing: f64) -> [f64; 3] {
     ]
 }
 
-fn forces(cells: usize) -> pericles::Result<()> {
-    let case = Case {
-        name: "forces",
-        cells: vec![cells; 3],
-        form: BondForm::Fastest,
-    };
+fn forces(cells: usize, form: BondForm) -> pericles::Result<()> {
+    let case = Case::new("forces", vec![cells; 3], form);
     let cloud = case.cloud()?;
     let material = case.material();
     let body = BondBody {
@@ -87,6 +79,55 @@ fn forces(cells: usize) -> pericles::Result<()> {
     Ok(())
 }
 
+/// The block of `in.fracture`, torn in two by its end layers: CPU nanoseconds per step and bond there was at the start, and the mean damage.
+fn fracture(cells: usize, steps: usize, form: BondForm) -> pericles::Result<()> {
+    let case = Case {
+        critical_stretch: 0.002,
+        ..Case::new("fracture", vec![cells; 3], form)
+    };
+    let (mut system, moving) = case.system()?;
+    let cloud = Arc::clone(system.cloud());
+    let (n, spacing) = (cloud.len(), cloud.spacing());
+    let mut state = State::at_rest(moving.u.len());
+    let layer = |from: usize, to: usize| -> Vec<u32> {
+        let cell = |i: u32| (cloud.point(i as usize)[0] / spacing) as usize;
+        (0..n as u32)
+            .filter(|&i| (from..to).contains(&cell(i)))
+            .collect()
+    };
+    for (name, points, speed) in [
+        ("left", layer(0, 3), -5.0),
+        ("right", layer(cells - 3, cells), 5.0),
+    ] {
+        system.add_motion(PrescribedMotion::new(
+            name.to_owned(),
+            points,
+            MotionKind::Velocity,
+            [Some(speed), Some(0.0), Some(0.0)],
+            TimeFunction::Constant,
+            &state.u,
+            n,
+        ))?;
+    }
+    let bonds = system.operator().directed_bonds();
+    let mut verlet = VelocityVerlet;
+    verlet.start(&mut system, &mut state);
+    let begin = cpu_seconds();
+    for step in 1..=steps {
+        verlet.step(&mut system, &mut state, 1e-7 * step as f64)?;
+    }
+    let time = (cpu_seconds() - begin) / steps as f64;
+    let mut damage = vec![0.0; n];
+    system.operator().damage_into(&mut damage);
+    println!(
+        "{{\"directed_bonds\":{bonds},\"cpu_ns\":{},\"broken\":{},\"damage\":{}}}",
+        1e9 * time / bonds as f64,
+        system.operator().broken_bonds(),
+        damage.iter().sum::<f64>() / n as f64
+    );
+    Ok(())
+}
+
 fn main() -> pericles::Result<()> {
     // Cargo adds --bench.
     let words: Vec<String> = std::env::args()
@@ -99,8 +140,13 @@ fn main() -> pericles::Result<()> {
             .and_then(|word| word.parse().ok())
             .unwrap_or(default)
     };
+    let form = |k: usize| match words.get(k).map(String::as_str) {
+        Some("list") => BondForm::List,
+        _ => BondForm::Grid,
+    };
     match words.first().map(String::as_str) {
-        Some("forces") => forces(number(1, 20)),
+        Some("forces") => forces(number(1, 20), form(2)),
+        Some("fracture") => fracture(number(1, 40), number(2, 300), form(3)),
         Some("time") => match words.get(1).and_then(|name| Case::named(name)) {
             Some(case) => time(&case, number(2, 5)),
             None => {
@@ -112,7 +158,9 @@ fn main() -> pericles::Result<()> {
             }
         },
         _ => {
-            println!("time CASE ROUNDS | forces CELLS; see benches/lammps");
+            println!(
+                "time CASE ROUNDS | forces CELLS [grid|list] | fracture CELLS STEPS [grid|list]; see benches/lammps"
+            );
             Ok(())
         }
     }

@@ -12,11 +12,7 @@ fn cases() -> Vec<(String, Case)> {
     let mut cases = Vec::new();
     for cells in [vec![200_000], vec![256; 2], vec![30; 3]] {
         for form in [BondForm::Grid, BondForm::List] {
-            let case = Case {
-                name: "",
-                cells: cells.clone(),
-                form,
-            };
+            let case = Case::new("", cells.clone(), form);
             cases.push((format!("{}d-{form:?}", cells.len()).to_lowercase(), case));
         }
     }
@@ -65,11 +61,7 @@ fn operators(criterion: &mut Criterion) {
 fn search(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("search");
     group.sample_size(10);
-    let case = Case {
-        name: "",
-        cells: vec![30; 3],
-        form: BondForm::List,
-    };
+    let case = Case::new("", vec![30; 3], BondForm::List);
     let cloud = case.cloud().expect("the case is sound");
     let reach = case.material().horizon;
     group.throughput(Throughput::Elements(

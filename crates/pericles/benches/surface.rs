@@ -1,46 +1,77 @@
 //! The force of a surface: a sphere of 10 242 vertices, 6.4 million directed bonds, for each power and instruction set.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p pericles --bench surface`: time per directed bond and thread. The last case reads as many bytes as the bonds take, for comparison.
+//! `RAYON_NUM_THREADS=1 cargo bench -p pericles --bench surface`: CPU time per directed bond, and the rate at which the bonds are read, beside the rate at which
+//! this machine reads as many bytes and does nothing else. All cases are taken in turn, round after round, so that they meet the same load.
+
+mod clock;
 
 use std::hint::black_box;
 use std::sync::Arc;
+use std::time::Instant;
 
-use criterion::{BenchmarkId, Criterion, Throughput};
+use clock::cpu_seconds;
+use pericles::bench::read;
 use pericles::family::geodesic::{GeodesicMethod, geodesic_pairs};
 use pericles::material::{PowerMaterial, SurfaceBond};
-use pericles::operator::surface::{
-    DisplacementBond, Exponent, HalfInteger, SurfaceBody, SurfaceForce,
-};
+use pericles::operator::surface::{DisplacementBond, Exponent, HalfInteger, SurfaceBody};
 use pericles::operator::{ForceOperator, InstructionSet, On};
 use pericles::space::PointCloud;
 use pericles::space::surface::{AreaRule, Surface};
+use rayon::prelude::*;
 
-fn force<E: Exponent>(
-    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
-    make: &dyn Fn(DisplacementBond<E>) -> SurfaceForce<DisplacementBond<E>>,
-    exponent: E,
-) {
-    for set in InstructionSet::available() {
-        let operator = make(DisplacementBond(exponent)).with_instruction_set(set);
-        let entries = 3 * operator.points();
-        let u: Vec<f64> = (0..entries).map(|k| (k as f64 * 0.37).sin()).collect();
-        let mut out = vec![0.0; entries];
-        group.throughput(Throughput::Elements(operator.directed_bonds()));
-        group.bench_function(
-            BenchmarkId::new(format!("p = {}", exponent.p()), set.name()),
-            |b| {
-                b.iter(|| operator.add_force(0.0, black_box(&u), On::All, &mut out));
-            },
-        );
+const ROUNDS: usize = 15;
+
+/// Passes that are timed together: a pass takes some milliseconds, about as long as the clock's step.
+const PASSES: usize = 10;
+
+struct Case<'a> {
+    name: String,
+    work: Box<dyn FnMut() + 'a>,
+    /// CPU and wall time of a pass, s.
+    times: Vec<[f64; 2]>,
+}
+
+impl<'a> Case<'a> {
+    fn new(name: String, work: impl FnMut() + 'a) -> Self {
+        let (work, times) = (Box::new(work), Vec::new());
+        Self { name, work, times }
+    }
+
+    fn time(&mut self) {
+        let (cpu, wall) = (cpu_seconds(), Instant::now());
+        (0..PASSES).for_each(|_| (self.work)());
+        let times = [cpu_seconds() - cpu, wall.elapsed().as_secs_f64()];
+        self.times.push(times.map(|time| time / PASSES as f64));
+    }
+
+    fn sorted(&self, clock: usize) -> Vec<f64> {
+        let mut times: Vec<f64> = self.times.iter().map(|times| times[clock]).collect();
+        times.sort_by(f64::total_cmp);
+        times
     }
 }
 
+fn forces<E: Exponent>(body: &SurfaceBody<'_>, exponent: E) -> Vec<Case<'static>> {
+    let case = |set: InstructionSet| {
+        let operator = body
+            .force(DisplacementBond(exponent))
+            .with_instruction_set(set);
+        let entries = 3 * operator.points();
+        let u: Vec<f64> = (0..entries).map(|k| (k as f64 * 0.37).sin()).collect();
+        let mut out = vec![0.0; entries];
+        let work = move || operator.add_force(0.0, black_box(&u), On::All, &mut out);
+        Case::new(format!("p = {}, {}", exponent.p(), set.name()), work)
+    };
+    let fast = |set: &InstructionSet| *set != InstructionSet::Baseline;
+    let sets = InstructionSet::available();
+    sets.into_iter().filter(fast).map(case).collect()
+}
+
 fn main() {
-    let mut criterion = Criterion::default().sample_size(10).configure_from_args();
     let surface = Surface::icosphere(5, 1.0).expect("a sphere").renumbered();
     let areas = surface.vertex_areas(AreaRule::Barycentric);
     let cloud = Arc::new(PointCloud::of_surface(&surface, areas).expect("positive areas"));
-    let pairs = geodesic_pairs(&surface, 0.5, GeodesicMethod::Edge).expect("neighbours");
+    let pairs = geodesic_pairs(&surface, 0.5, GeodesicMethod::Exact).expect("neighbours");
     let material = PowerMaterial {
         density: 1.0,
         kappa: 1.0,
@@ -59,14 +90,33 @@ fn main() {
         stiffness: &[],
         no_fail: &[],
     };
-    let mut group = criterion.benchmark_group("surface");
-    force(&mut group, &|law| body.force(law), HalfInteger::<0, 0>);
-    force(&mut group, &|law| body.force(law), HalfInteger::<2, 0>);
-    force(&mut group, &|law| body.force(law), HalfInteger::<0, 1>);
-    force(&mut group, &|law| body.force(law), HalfInteger::<2, 1>);
-    let numbers = vec![1.0_f64; pairs.len() * 12 / 8];
-    group.bench_function("reading 12 bytes a bond", |b| {
-        b.iter(|| black_box(&numbers).iter().sum::<f64>());
-    });
-    group.finish();
+    let bonds = pairs.len() as f64;
+    let bytes = 12.0 * bonds;
+    let numbers = vec![1.0_f64; (bytes / 8.0) as usize];
+    let set = InstructionSet::detect();
+    let mut cases = vec![Case::new("reading 12 bytes a bond".into(), || {
+        let parts = black_box(&numbers).par_chunks(1 << 16);
+        black_box(parts.map(|part| read(set, part)).sum::<f64>());
+    })];
+    cases.extend(forces(&body, HalfInteger::<0, 0>));
+    cases.extend(forces(&body, HalfInteger::<2, 0>));
+    cases.extend(forces(&body, HalfInteger::<0, 1>));
+    cases.extend(forces(&body, HalfInteger::<2, 1>));
+    for _ in 0..ROUNDS {
+        cases.iter_mut().for_each(Case::time);
+    }
+    let threads = rayon::current_num_threads();
+    println!("{bonds} directed bonds, {threads} threads; ns per directed bond, {ROUNDS} rounds");
+    println!("{:<24} CPU best  median  GB/s best  wall best", "");
+    for case in &cases {
+        let (cpu, wall) = (case.sorted(0), case.sorted(1));
+        println!(
+            "{:<24} {:>8.3} {:>7.3} {:>10.1} {:>10.3}",
+            case.name,
+            1e9 * cpu[0] / bonds,
+            1e9 * cpu[ROUNDS / 2] / bonds,
+            1e-9 * bytes / cpu[0] * threads as f64,
+            1e9 * wall[0] / bonds
+        );
+    }
 }

@@ -27,6 +27,7 @@ use crate::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
 use crate::operator::lanes::for_each_instruction_set;
+use crate::operator::prefetch::prefetch;
 use crate::operator::{BondBody, BondForm, DamageMeasure, InstructionSet};
 use crate::space::{Grid, PointCloud, Shape};
 use crate::system::{PointScalar, System};
@@ -41,6 +42,12 @@ pub struct Case {
     pub cells: Vec<usize>,
     /// Form of the operator.
     pub form: BondForm,
+    /// What the loops are compiled for, if the machine has it.
+    pub instruction_set: InstructionSet,
+    /// Critical stretch; no case that is timed by name reaches it.
+    pub critical_stretch: f64,
+    /// Every point is moved off its lattice node, so that no two bonds are alike.
+    pub moved: bool,
 }
 
 /// Spacing of all cases, m.
@@ -52,19 +59,38 @@ const DENSITY: f64 = 2235.0;
 impl Case {
     /// All cases that have names.
     pub fn all() -> Vec<Self> {
-        let case = |name, cells: &[usize], form| Self {
-            name,
-            cells: cells.to_vec(),
-            form,
+        let case = |name, cells: &[usize], form| Self::new(name, cells.to_vec(), form);
+        let narrow = |case| Self {
+            instruction_set: InstructionSet::Avx2,
+            ..case
+        };
+        let moved = Self {
+            moved: true,
+            ..case("block-46-moved", &[46; 3], BondForm::List)
         };
         vec![
             case("block-46", &[46; 3], BondForm::Grid),
+            narrow(case("block-46-avx2", &[46; 3], BondForm::Grid)),
             case("block-46-list", &[46; 3], BondForm::List),
+            narrow(case("block-46-list-avx2", &[46; 3], BondForm::List)),
+            moved,
             case("block-100", &[100; 3], BondForm::Grid),
             case("plate-512", &[512; 2], BondForm::Grid),
             case("plate-512-list", &[512; 2], BondForm::List),
             case("bar-1e6", &[1_000_000], BondForm::Grid),
         ]
+    }
+
+    /// A box of cells on its lattice, with the best instructions of the machine.
+    pub fn new(name: &'static str, cells: Vec<usize>, form: BondForm) -> Self {
+        Self {
+            name,
+            cells,
+            form,
+            instruction_set: InstructionSet::detect(),
+            critical_stretch: 0.015,
+            moved: false,
+        }
     }
 
     /// The case of this name.
@@ -87,10 +113,20 @@ impl Case {
             section: if self.cells.len() == 3 { 1.0 } else { SPACING },
             holes: vec![],
         };
-        Ok(Arc::new(grid.points()?))
+        let points = grid.points()?;
+        if !self.moved {
+            return Ok(Arc::new(points));
+        }
+        let moved = |(k, x): (usize, &f64)| x + 0.3 * SPACING * (1e3 * (k as f64).sin()).sin();
+        Ok(Arc::new(PointCloud::new(
+            points.dimension(),
+            points.positions().iter().enumerate().map(moved).collect(),
+            points.volumes().to_vec(),
+            points.section(),
+        )?))
     }
 
-    /// Glass with a horizon of 3.015 spacings, linear partial volumes and a critical stretch that is never reached.
+    /// Glass with a horizon of 3.015 spacings, linear partial volumes and the case's critical stretch.
     pub fn material(&self) -> BondMaterial {
         BondMaterial {
             law: PairLaw::BondStretch,
@@ -102,7 +138,7 @@ impl Case {
             horizon: 3.015 * SPACING,
             influence: Influence::default(),
             volume_correction: VolumeCorrection::Linear,
-            fracture: Fracture::CriticalStretch(0.015),
+            fracture: Fracture::CriticalStretch(self.critical_stretch),
         }
     }
 
@@ -127,7 +163,8 @@ impl Case {
             stiffness: &[],
             damage: DamageMeasure::default(),
         };
-        let operator = body.operator(self.form)?.operator;
+        let mut operator = body.operator(self.form)?.operator;
+        operator.use_instruction_set(self.instruction_set);
         let n = cloud.len();
         let mut start = State::at_rest(n * cloud.dimension());
         for i in 0..n {
@@ -307,6 +344,41 @@ for_each_instruction_set! {
     ) = multiply_add_body on lanes
 }
 
+/// The sum of numbers, read as fast as the memory gives them: eight chains of eight, and lines asked for ahead. Loops over stored bonds are set against it.
+pub fn read(set: InstructionSet, numbers: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    sum_numbers(set, numbers, &mut sum);
+    sum
+}
+
+#[inline(always)]
+fn sum_numbers_body<T: crate::operator::lanes::Lanes>(numbers: &[f64], sum: &mut f64) {
+    const AHEAD: usize = 4 * ROW;
+    let mut sums = [T::splat(0.0); ROW / LANES];
+    for (row, part) in numbers.chunks_exact(ROW).enumerate() {
+        for k in 0..ROW / LANES {
+            prefetch(numbers, row * ROW + AHEAD + k * LANES);
+            sums[k] = sums[k] + T::load(part, k * LANES);
+        }
+    }
+    for k in 0..ROW / LANES {
+        for number in sums[k].to_array() {
+            *sum += number;
+        }
+    }
+    for number in numbers.chunks_exact(ROW).remainder() {
+        *sum += number;
+    }
+}
+
+/// Numbers in a row of [`read`].
+const ROW: usize = 64;
+
+for_each_instruction_set! {
+    /// Adds the numbers up.
+    fn sum_numbers [] <> (numbers: &[f64], sum: &mut f64) = sum_numbers_body on lanes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -319,6 +391,14 @@ mod tests {
         assert_eq!(system.operator().directed_bonds(), 11_006_544);
         // (48 · 122)/(46 · 113.08)
         assert!((idle_lanes(&case, 11_006_544) - 1.126).abs() < 1e-3);
+    }
+
+    #[test]
+    fn every_number_is_read() {
+        let numbers: Vec<f64> = (1..=1000).map(f64::from).collect();
+        for set in InstructionSet::available() {
+            assert_eq!(read(set, &numbers), 500_500.0);
+        }
     }
 
     #[test]

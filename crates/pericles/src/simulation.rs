@@ -148,7 +148,7 @@ impl Simulation {
 
     /// Runs to the end, or until `control` says stop; `control` is asked after every step.
     ///
-    /// Observers see the initial state of a fresh run, every state their schedule names, and the last.
+    /// Observers see the initial state of a fresh run, every state their schedule names, and the last; then they hear that the run has come to its end.
     ///
     /// # Errors
     /// Instability, a failing integrator, a failing observer. The state is then the one at which it happened.
@@ -173,6 +173,10 @@ impl Simulation {
             if !last && control(self) == Control::Stop {
                 return Ok(Outcome::Stopped);
             }
+        }
+        for scheduled in &mut self.observers {
+            let finished = scheduled.observer.finish();
+            finished.map_err(SimulationError::Observe)?;
         }
         Ok(Outcome::Finished)
     }

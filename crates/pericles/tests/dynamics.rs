@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
-use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, PairForce, StressState};
-use pericles::operator::{Accepted, BondForce, DamageMeasure, ForceOperator, On};
+use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, StressState};
+use pericles::operator::{Accepted, BondForce, DamageMeasure, FastLaw, ForceOperator, On};
 use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
 use pericles::{Archive, Control, Outcome, Saved, Simulation, SimulationError, System};
@@ -30,7 +30,7 @@ fn material(horizon: f64, fracture: Fracture) -> BondMaterial {
     )
 }
 
-fn operator<L: PairForce, const D: usize>(
+fn operator<L: FastLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,

@@ -9,7 +9,7 @@ use pericles::material::{
     StressState,
 };
 use pericles::operator::{
-    Accepted, BondBody, BondForce, BondForm, DamageMeasure, ForceOperator, GridForce, GridLaw,
+    Accepted, BondBody, BondForce, BondForm, DamageMeasure, FastLaw, ForceOperator, GridForce,
     InstructionSet, On,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
@@ -145,7 +145,7 @@ fn state(dimension: usize) -> StressState {
 }
 
 /// Both operators of a body; the cuts of both are compared.
-fn pair<L: GridLaw, const D: usize>(
+fn pair<L: FastLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     cracks: &[(Crack, EndRule)],
@@ -198,7 +198,7 @@ fn assert_close(a: &[f64], b: &[f64], tolerance: f64, what: &str) {
 }
 
 /// Force, energy, tangent, bound and damage of both forms.
-fn compare<L: GridLaw, const D: usize>(
+fn compare<L: FastLaw, const D: usize>(
     name: &str,
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
@@ -316,7 +316,7 @@ fn archive(simulation: &Simulation) -> Archive {
     archive
 }
 
-fn breaks_alike<L: GridLaw, const D: usize>(cloud: &Arc<PointCloud>, measure: DamageMeasure) {
+fn breaks_alike<L: FastLaw, const D: usize>(cloud: &Arc<PointCloud>, measure: DamageMeasure) {
     let material = material(
         Influence::default(),
         VolumeCorrection::Extended,

@@ -16,10 +16,10 @@ use pericles::operator::{
 };
 use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{
-    FunctionMethod, Implicit, ImplicitRule, Integrator, LoadRule, State, Trigonometric,
-    TrigonometricOptions, VelocityVerlet,
+    FunctionMethod, Implicit, ImplicitRule, Integrator, LinearSolver, LoadRule, State,
+    Trigonometric, TrigonometricOptions, VelocityVerlet,
 };
-use pericles::{PointScalar, System};
+use pericles::{PointScalar, Saved, System};
 
 const UNIT_LINE: LineSolution = LineSolution {
     young: 1.0,
@@ -681,4 +681,107 @@ fn schemes_say_what_they_cannot_do() {
         .err()
         .unwrap();
     assert!(gauss.to_string().contains("Gauss nodes"), "{gauss}");
+}
+
+/// A bar of Gaussian bonds whose left end is moved.
+fn driven_bar(form: BondForm) -> System {
+    let cloud = cells(-6.0, &[12.0], 0.1);
+    let n = cloud.len();
+    let mut body = system(&cloud, bonds(&cloud, &gaussian(), form));
+    let pulse = TimeFunction::Pulse {
+        start: 0.0,
+        duration: 2.0,
+    };
+    let motion = PrescribedMotion::new(
+        "left".into(),
+        (0..3).collect(),
+        MotionKind::Displacement,
+        [Some(0.2), None, None],
+        pulse,
+        &vec![0.0; n],
+        n,
+    );
+    body.add_motion(motion).unwrap();
+    body
+}
+
+#[test]
+fn a_factor_solves_what_conjugate_gradients_solve() {
+    for form in [BondForm::Grid, BondForm::List, BondForm::Convolution] {
+        for rule in [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal] {
+            let run = |solver| {
+                let mut body = driven_bar(form);
+                let mut scheme = Implicit::with_solver(rule, solver, &body).unwrap();
+                assert_eq!(scheme.is_direct(0.3, &body), solver == LinearSolver::Direct);
+                let state = start(&body, 0.1);
+                steps(&mut body, &mut scheme, state, 0.3, 40)
+            };
+            let direct = run(LinearSolver::Direct);
+            let iterated = run(LinearSolver::ConjugateGradients);
+            assert!(distance(&direct.u, &iterated.u) < 1e-13);
+            assert!(distance(&direct.v, &iterated.v) < 1e-12);
+        }
+    }
+    // Two nodes in a cell, and a full matrix.
+    let cloud = Arc::new(gauss_bar(-3.0, 6.0, 0.2, 1.0).unwrap());
+    let plate = cells(0.0, &[1.0, 0.8], 0.2);
+    let stretch = material(PairLaw::Linear, 0.4, Influence::default());
+    for (cloud, material) in [(&cloud, &gaussian()), (&plate, &stretch)] {
+        let run = |solver| {
+            let mut body = system(cloud, bonds(cloud, material, BondForm::Fastest));
+            let mut scheme = Implicit::with_solver(ImplicitRule::Midpoint, solver, &body).unwrap();
+            let state = start(&body, 0.1);
+            steps(&mut body, &mut scheme, state, 0.3, 20)
+        };
+        let direct = run(LinearSolver::Direct);
+        let iterated = run(LinearSolver::ConjugateGradients);
+        assert!(distance(&direct.u, &iterated.u) < 1e-13);
+    }
+}
+
+#[test]
+fn the_factor_is_taken_where_it_is_cheaper() {
+    let stretch = |m: f64| material(PairLaw::Linear, m, Influence::default());
+    let direct = |cloud: &Arc<PointCloud>, horizon: f64, dt: f64| {
+        let body = system(cloud, bonds(cloud, &stretch(horizon), BondForm::Fastest));
+        let scheme = Implicit::new(ImplicitRule::Midpoint, &body).unwrap();
+        scheme.is_direct(dt, &body)
+    };
+    let bar = cells(0.0, &[400.0], 0.1);
+    assert!(direct(&bar, 0.3, 0.1) && direct(&bar, 0.3, 100.0));
+    // A band so wide that transforms and few iterations win, but for very large steps.
+    assert!(!direct(&bar, 100.0, 1.0) && direct(&bar, 10.0, 1e3));
+    let block = cells(0.0, &[8.0, 8.0, 8.0], 0.5);
+    assert!(!direct(&block, 1.5, 0.1));
+}
+
+#[test]
+fn a_run_by_a_factor_goes_on_where_it_stopped() {
+    let dt = 0.1 + 1.0 / 3.0;
+    let march = |body: &mut System, scheme: &mut Implicit, state: &mut State, to: u64| {
+        while state.step < to {
+            let t = (state.step + 1) as f64 * dt;
+            scheme.step(body, state, t).unwrap();
+        }
+    };
+    let scheme = |body: &System| {
+        Implicit::with_solver(ImplicitRule::Midpoint, LinearSolver::Direct, body).unwrap()
+    };
+    let mut body = driven_bar(BondForm::Grid);
+    let mut whole = scheme(&body);
+    let mut state = start(&body, 0.1);
+    whole.start(&mut body, &mut state);
+    march(&mut body, &mut whole, &mut state, 7);
+    let mut archive = pericles::Archive::default();
+    whole.save(&mut archive);
+    let (mut resumed, mut again) = (scheme(&body), state.clone());
+    resumed.restore(&archive).unwrap();
+    march(&mut body, &mut whole, &mut state, 20);
+    march(
+        &mut driven_bar(BondForm::Grid),
+        &mut resumed,
+        &mut again,
+        20,
+    );
+    assert_eq!(state, again);
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pericles::analysis::tuning::BondClass;
-use pericles::analysis::{Contour, ContourPoint, PolarSpeeds, verlet_frequency};
+use pericles::analysis::{BondLattice, Contour, ContourPoint, PolarSpeeds, verlet_frequency};
 use pericles_io::{Axis, Cell, Column, CsvTable, Curve, LineChart};
 
 use crate::error::CliError;
@@ -22,7 +22,8 @@ pub(crate) struct Curves<'a> {
 }
 
 impl Curves<'_> {
-    fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
+    /// Frequency of the continuum, 1/s.
+    pub(crate) fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
         let wave_number = point.k.iter().map(|k| k * k).sum::<f64>().sqrt();
         let speed = self.targets.get(branch).copied().flatten();
         speed.map_or(f64::NAN, |speed| speed * wave_number)
@@ -78,11 +79,25 @@ impl Curves<'_> {
         Ok(self.chart(title).write(path)?)
     }
 
-    /// The chart, for adding more curves.
-    pub(crate) fn chart(&self, title: &str) -> LineChart {
+    /// What is along the axis.
+    pub(crate) fn along(&self) -> String {
         let mut names = vec![self.contour.segments[0].ends[0]];
         names.extend(self.contour.segments.iter().map(|segment| segment.ends[1]));
-        let along = format!("arc length along {}", names.join("–"));
+        format!("arc length along {}", names.join("–"))
+    }
+
+    /// Abscissas and time-discrete frequencies of a branch.
+    pub(crate) fn discrete_branch(&self, branch: usize) -> (Vec<f64>, Vec<f64>) {
+        let place = |point: &ContourPoint| {
+            let omega = self.discrete(point.branches[branch].omega());
+            (point.abscissa, omega)
+        };
+        self.points.iter().map(place).unzip()
+    }
+
+    /// The chart, for adding more curves.
+    pub(crate) fn chart(&self, title: &str) -> LineChart {
+        let along = self.along();
         let x: Vec<f64> = self.points.iter().map(|point| point.abscissa).collect();
         let mut chart =
             LineChart::new(Axis::new(along, "rad/m"), Axis::new("ω", "rad/s")).title(title);
@@ -164,6 +179,20 @@ pub(crate) fn write_classes(
         cells.push(class.length.into());
         cells.push((class.multiplicity as i64).into());
         cells.extend(tables.iter().map(|(_, alpha)| Cell::from(alpha[number])));
+        csv.append(&cells)?;
+    }
+    Ok(csv.flush()?)
+}
+
+/// One bond of each pair ±ξ, for lattices whose axes are not alike.
+pub(crate) fn write_bonds(path: &Path, lattice: &BondLattice) -> Result<(), CliError> {
+    let mut columns = ["i", "j", "k"].map(Column::integer).to_vec();
+    columns.push(Column::real("length", "m"));
+    columns.push(Column::real("stiffness_over_density", "m/s2"));
+    let mut csv = CsvTable::create(path, &columns)?;
+    for bond in lattice.bonds() {
+        let mut cells: Vec<Cell> = bond.offset.map(|c| i64::from(c).into()).to_vec();
+        cells.extend([bond.length, bond.stiffness].map(Cell::from));
         csv.append(&cells)?;
     }
     Ok(csv.flush()?)

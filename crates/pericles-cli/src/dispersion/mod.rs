@@ -16,7 +16,7 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::units::{percent, quantity, significant};
-use curves::{Curves, STEPS, write_classes, write_polar};
+use curves::{Curves, STEPS, write_bonds, write_classes, write_polar};
 use spectrum::write_spectrum;
 
 /// Analyses the lattice of a deck and writes curves, polar plot, classes and a summary.
@@ -27,7 +27,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
     let model = deck.build()?;
-    let lattice = BondLattice::of_body(&model.cloud, &deck.material.bonds, &model.constants)?;
+    let lattice = deck.bond_lattice(&model)?;
     let folder = match &args.out {
         Some(path) => OutputFolder::create(path, false).map_err(|error| match error {
             IoError::FolderExists { path } => CliError::OutExists { path },
@@ -76,8 +76,10 @@ struct Analysis {
     contour: Contour,
     points: Vec<pericles::analysis::ContourPoint>,
     stability: Stability,
-    /// Of the branches, m/s.
+    /// Of the branches, m/s; none where a branch changes its nature from segment to segment.
     targets: Vec<Option<f64>>,
+    /// Of pressure and shear waves in the continuum, m/s.
+    speeds: Vec<f64>,
     /// Speed of the bar wave √(E/ρ), m/s.
     bar: f64,
     dt: f64,
@@ -91,21 +93,24 @@ impl Analysis {
         };
         let bar = (model.constants.young / deck.material.bonds.density).sqrt();
         let speeds = continuum_speeds(deck.body.state);
-        let targets = (0..lattice.dimension())
+        let speeds: Vec<f64> = (0..lattice.dimension())
             .map(|branch| {
                 let speed = if branch == 0 {
                     speeds.pressure
                 } else {
                     speeds.shear
                 };
-                Some(speed * bar)
+                speed * bar
             })
             .collect();
+        let followed = lattice.is_cubic() || args.direction.is_some();
+        let targets = speeds.iter().map(|speed| followed.then_some(*speed));
         Self {
             points: trace(&lattice, &contour, STEPS),
             stability: stability(&lattice),
             contour,
-            targets,
+            targets: targets.collect(),
+            speeds,
             bar,
             dt: model.dt,
             lattice,
@@ -123,6 +128,9 @@ impl Analysis {
 
     /// α of each class as the deck has it, with its bonds' share κ.
     fn write_classes(&self, deck: &Deck, folder: &OutputFolder) -> Result<(), CliError> {
+        if !self.lattice.is_cubic() {
+            return write_bonds(&folder.file("classes.csv"), &self.lattice);
+        }
         let model = scaling_model(deck)?;
         let material = &deck.material.bonds;
         let spacing = deck.body.grid.spacing;
@@ -189,8 +197,9 @@ impl Analysis {
             .collect();
         (0..self.lattice.dimension())
             .map(|branch| {
-                let target = self.targets[branch].unwrap_or(f64::NAN);
-                let ratios = all.iter().map(|row| row.speeds[branch] / target);
+                let ratios = all
+                    .iter()
+                    .map(|row| row.speeds[branch] / self.speeds[branch]);
                 ratios.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
                     [low.min(x), high.max(x)]
                 })
@@ -208,7 +217,7 @@ impl Analysis {
             "spacing": self.lattice.spacing(),
             "horizon": deck.material.bonds.horizon,
             "bar_wave_speed": self.bar,
-            "continuum_speeds": self.targets,
+            "continuum_speeds": self.speeds,
             "long_wave_speed_ratios": self.anisotropy(),
             "stable": found.is_stable(),
             "smallest_omega_squared_over_k_squared": found.smallest,
@@ -259,7 +268,7 @@ impl Analysis {
                 names[branch],
                 significant(low, 5),
                 significant(high, 5),
-                self.targets[branch].unwrap_or(f64::NAN)
+                self.speeds[branch]
             ))?;
         }
         if let Some(wavelength) = self.resolved(0.01) {

@@ -3,16 +3,13 @@
 use std::path::Path;
 
 use pericles::analysis::spectrum::MeasuredSpectrum;
-use pericles_io::{Cell, CellSize, Column, CsvTable, Curve, FieldPicture};
+use pericles_io::{Axis, Backdrop, Cell, Column, CsvTable, Curve, LineChart};
 
 use super::curves::Curves;
 use crate::error::CliError;
-use crate::units::significant;
 
 /// Rows of a map: lines are put together to no more than these.
 const ROWS: usize = 240;
-/// Width of a map over its height, in the units of its own axes.
-const SHAPE: f64 = 1.4;
 /// Power below this share of the largest is shown as this.
 const FLOOR: f64 = 1e-8;
 
@@ -26,14 +23,9 @@ pub(crate) fn write_spectrum(
     for (branch, name) in curves.contour.branches.iter().enumerate() {
         let map = Map::of(spectrum, branch);
         map.write(&folder(&format!("spectrum_{name}.csv")), spectrum, branch)?;
-        map.draw(
-            &folder(&format!("spectrum_{name}.png")),
-            &format!(
-                "{title}, branch {name}: x is k over {}, y is ω over {}",
-                significant(curves.contour.length() / SHAPE, 4) + " rad/m",
-                significant(map.top * spectrum.line, 4) + " rad/s",
-            ),
-        )?;
+        let title = format!("{title}: measured power of branch {name}");
+        let chart = map.chart(spectrum, branch, curves).title(title);
+        chart.write(folder(&format!("spectrum_{name}.png")))?;
     }
     write_peaks(&folder("peaks.csv"), spectrum, curves)?;
     let mut chart = curves.chart(&format!("{title}: measured peaks on the curves"));
@@ -77,12 +69,8 @@ struct Map {
     /// Lines in a band.
     lines: usize,
     bands: usize,
-    /// Lines in all.
-    top: f64,
     /// Largest power in each band, wave by wave.
     power: Vec<f64>,
-    /// Band of the analysis, wave by wave.
-    expected: Vec<usize>,
 }
 
 impl Map {
@@ -103,15 +91,10 @@ impl Map {
                 })
             })
             .collect();
-        let expected = branches()
-            .map(|b| (b.expected / spectrum.line / lines as f64) as usize)
-            .collect();
         Self {
             lines,
             bands,
-            top: (bands * lines) as f64,
             power,
-            expected,
         }
     }
 
@@ -137,37 +120,46 @@ impl Map {
         Ok(table.flush()?)
     }
 
-    /// Decibels below the largest power of each wave, the curve of the analysis in the brightest colour. Axes count waves and
-    /// bands, scaled to a handy shape.
-    fn draw(&self, path: &Path, title: &str) -> Result<(), CliError> {
-        let waves = self.expected.len();
-        let (width, height) = (SHAPE / waves as f64, 1.0 / self.bands as f64);
-        let mut positions = Vec::with_capacity(2 * self.power.len());
-        for entry in 0..self.power.len() {
-            positions.push((entry / self.bands) as f64 * width);
-        }
-        for entry in 0..self.power.len() {
-            positions.push((entry % self.bands) as f64 * height);
-        }
+    /// Decibels below the largest power of each wave, and the time-discrete curve of the analysis on it.
+    fn chart(&self, spectrum: &MeasuredSpectrum, branch: usize, curves: &Curves<'_>) -> LineChart {
+        let abscissa: Vec<f64> = spectrum.waves.iter().map(|wave| wave.abscissa).collect();
+        let top = (self.bands * self.lines) as f64 * spectrum.line;
         let mut values = Vec::with_capacity(self.power.len());
-        for (wave, powers) in self.power.chunks(self.bands).enumerate() {
+        for powers in self.power.chunks(self.bands) {
             let largest = powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-            for (band, power) in powers.iter().enumerate() {
-                let on_curve = band == self.expected[wave];
-                let level = (power / largest).max(FLOOR).log10() * 10.0;
-                values.push(if on_curve { 10.0 } else { level });
-            }
+            let level = |power: &f64| (power / largest).max(FLOOR).log10() * 10.0;
+            values.extend(powers.iter().map(level));
         }
-        FieldPicture::new(
-            2,
-            &positions,
-            &values,
-            CellSize::Block([width, height, height]),
+        let ends = column_ends(&abscissa);
+        let map = Backdrop::new(&ends, (0.0, top), self.bands, &values)
+            .label("power below the largest of each wave, dB", "")
+            .range(10.0 * FLOOR.log10(), 0.0);
+        let range = (ends[0], ends[ends.len() - 1]);
+        let (x, y) = curves.discrete_branch(branch);
+        LineChart::new(
+            Axis::new(curves.along(), "rad/m").range(range.0, range.1),
+            Axis::new("ω", "rad/s").range(0.0, top),
         )
-        .label("power, dB; 10: curve of the analysis", "")
-        .range(10.0 * FLOOR.log10(), 10.0)
-        .title(title)
-        .write(path)?;
-        Ok(())
+        .backdrop(map)
+        .curve(
+            Curve::line("analysis, with the step", &x, &y)
+                .dashed()
+                .colour(ANALYSIS),
+        )
     }
+}
+
+/// The curve on the map: told from all its colours.
+const ANALYSIS: [u8; 3] = [255, 70, 50];
+
+/// Ends of columns in the middle between their places.
+fn column_ends(places: &[f64]) -> Vec<f64> {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else {
+        return vec![0.0, 1.0];
+    };
+    let between = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let mut ends = vec![*first];
+    ends.extend(between);
+    ends.push(*last);
+    ends
 }

@@ -18,10 +18,23 @@ const TOLERANCE: f64 = 0.05;
 const SHARE: f64 = 0.05;
 
 impl Deck {
+    /// The bonds of a point inside the body: what plane waves know of it.
+    ///
+    /// # Errors
+    /// A body whose points lie on no regular grid.
+    pub fn bond_lattice(&self, model: &Model) -> pericles::Result<BondLattice> {
+        let (material, constants) = (&self.material.bonds, &model.constants);
+        match &self.body.rectangular {
+            Some(spacing) => {
+                BondLattice::of_material(spacing, self.body.grid.section, material, constants)
+            }
+            None => BondLattice::of_body(&model.cloud, material, constants),
+        }
+    }
+
     /// Warns of loads, motions and initial values whose waves the grid distorts. Bodies that lie on no grid are not judged.
     pub fn judge_waves(&self, model: &Model) -> Vec<Warning> {
-        let material = &self.material.bonds;
-        let Ok(lattice) = BondLattice::of_body(&model.cloud, material, &model.constants) else {
+        let Ok(lattice) = self.bond_lattice(model) else {
             return Vec::new();
         };
         let carried = Carried::of(&lattice, TOLERANCE);
@@ -47,7 +60,10 @@ impl Deck {
             judge(&"initial".into(), what, share.unwrap_or(0.0));
         }
         let end = model.steps as f64 * model.dt;
-        let in_time = |g: &dyn Fn(f64) -> f64| time_content(g, end, carried.frequency);
+        let in_time = |g: &dyn Fn(f64) -> f64, start: f64| {
+            let start = start.clamp(0.0, end);
+            time_content(|t| g(start + t), end - start, carried.frequency)
+        };
         for (k, load) in self.loads.iter().enumerate() {
             let (LoadAmplitude::BodyForce(field)
             | LoadAmplitude::Traction {
@@ -58,15 +74,15 @@ impl Deck {
                 let acts = (from..=until).contains(&t);
                 f64::from(u8::from(acts)) * load.function.value(t) * course(field, t)
             };
-            judge(&Path::from("load").index(k), "load", in_time(&g));
+            judge(&Path::from("load").index(k), "load", in_time(&g, from));
         }
         for (k, motion) in self.prescribe.iter().enumerate() {
             // A motion sends out its velocity.
-            let moves = motion.amplitude.iter().flatten();
-            if moves.clone().all(|entry| entry.number() == Some(0.0)) {
+            if !motion.moves() {
                 continue;
             }
-            let varies = moves.clone().any(Component::depends_on_time);
+            let mut amplitudes = motion.amplitude.iter().flatten();
+            let varies = amplitudes.any(Component::depends_on_time);
             let constant = motion.function == TimeFunction::Constant && !varies;
             if constant && motion.kind == MotionKind::Displacement {
                 continue;
@@ -88,7 +104,7 @@ impl Deck {
             judge(
                 &Path::from("prescribe").index(k),
                 "prescribed motion",
-                in_time(&g),
+                in_time(&g, 0.0),
             );
         }
         warnings

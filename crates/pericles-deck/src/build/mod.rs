@@ -22,7 +22,9 @@ use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm};
 use pericles::space::surface::Surface;
-use pericles::space::{GradedCloud, GradedGrid, PointCloud, PointSet, Shape, gauss_bar};
+use pericles::space::{
+    GradedCloud, GradedGrid, PointCloud, PointSet, Shape, gauss_bar, rectangular_cells,
+};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
@@ -259,6 +261,11 @@ impl Deck {
         };
         let grid = &graded.grid;
         let points = match (&grid.shape, self.body.quadrature) {
+            (Shape::Box { origin, size }, _) if self.body.rectangular.is_some() => {
+                let spacing = self.body.rectangular.as_deref().unwrap_or_default();
+                rectangular_cells(*origin, size, spacing, grid.section, &grid.holes)
+                    .map(GradedCloud::of_one_grid)
+            }
             (Shape::Box { origin, size }, Quadrature::Gauss) => {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)
                     .map(GradedCloud::of_one_grid)

@@ -44,9 +44,10 @@ impl Deck {
             Scheme::MultiTimeStep4 { fine, interface } => {
                 self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
             }
-            Scheme::Implicit(rule) => {
-                Box::new(Implicit::new(*rule, system).map_err(|error| self.at_scheme(error))?)
-            }
+            Scheme::Implicit { rule, solver } => Box::new(
+                Implicit::with_solver(*rule, *solver, system)
+                    .map_err(|error| self.at_scheme(error))?,
+            ),
             Scheme::Trigonometric(options) => Box::new(
                 Trigonometric::new(*options, system).map_err(|error| self.at_scheme(error))?,
             ),

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use pericles::PericlesError;
 use pericles::cache::Cache;
-use pericles::family::geodesic::geodesic_pairs_cached;
 use pericles::operator::ForceOperator;
 use pericles::operator::surface::SurfaceBody;
 use pericles::space::PointCloud;
@@ -67,9 +66,12 @@ impl Deck {
         sets: &Sets,
         cache: &dyn Cache,
     ) -> Result<Box<dyn ForceOperator>, DeckError> {
-        let pairs = geodesic_pairs_cached(surface, deck.material.horizon, deck.method, cache)
+        let pairs = deck
+            .ball
+            .pairs(surface, deck.material.horizon, deck.method, cache)
             .map_err(|error| match error {
                 PericlesError::HorizonTooSmall { .. } => self.at("material.horizon", error),
+                PericlesError::Folded { .. } => self.at("geodesics.ball", error),
                 _ => self.at("geodesics", error),
             })?;
         let no_fail = self.union_of(sets, &deck.no_fail)?;

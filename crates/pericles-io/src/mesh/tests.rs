@@ -519,6 +519,23 @@ fn points_written_by_our_own_writer_are_read_back() {
     assert_eq!(mesh.positions, expected);
 }
 
+#[test]
+fn a_surface_written_by_our_own_writer_is_read_back() {
+    let sphere = Surface::icosphere(3, 0.7).unwrap();
+    let x = sphere.positions();
+    let positions: Vec<f64> = (0..3).flat_map(|c| x.iter().map(move |x| x[c])).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sphere.vtu");
+    VtuFile::new(3, &positions)
+        .triangles(sphere.triangles())
+        .field(VtkField::scalar("Height", &positions[2 * x.len()..]))
+        .write(&path)
+        .unwrap();
+    let read = read_surface(&path).unwrap();
+    assert_eq!(read.positions(), x);
+    assert_eq!(read.triangles(), sphere.triangles());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]

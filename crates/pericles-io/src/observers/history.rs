@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles::{Archive, Result, Saved};
 
+use super::HistoryColumns;
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
@@ -12,25 +13,16 @@ use crate::csv::{Cell, Column};
 ///
 /// Columns: step, time, kinetic, elastic and dissipated energy, external work (loads and supports, since the start), the correction by which the
 /// energy that the time scheme itself conserves differs, the balance (the sum of the energies and the correction, less the work and the energy at the
-/// start; zero if nothing is lost), momentum along each axis of the body, broken bonds.
+/// start; zero if nothing is lost), momentum along each axis of the body, broken bonds, and what is added by [`History::with`].
 pub struct History {
     table: ObserverTable,
     dimension: usize,
-    inner: bool,
+    more: Vec<Box<dyn HistoryColumns>>,
 }
 
 impl History {
     /// A history of a body of this dimension.
     pub fn new(path: impl Into<PathBuf>, dimension: usize) -> Self {
-        Self::with_columns(path.into(), dimension, false)
-    }
-
-    /// The same for a scheme with inner iterations, which adds two columns: the iterations of the last step, and the last change of the velocity.
-    pub fn with_inner_iterations(path: impl Into<PathBuf>, dimension: usize) -> Self {
-        Self::with_columns(path.into(), dimension, true)
-    }
-
-    fn with_columns(path: PathBuf, dimension: usize, inner: bool) -> Self {
         let mut columns = step_and_time();
         for name in [
             "kinetic_energy",
@@ -46,15 +38,19 @@ impl History {
             columns.push(Column::real(format!("momentum_{axis}"), "kg m/s"));
         }
         columns.push(Column::integer("broken_bonds"));
-        if inner {
-            columns.push(Column::integer("inner_iterations"));
-            columns.push(Column::real("inner_change", "m/s"));
-        }
         Self {
-            table: ObserverTable::new(path, "observer/history", columns),
+            table: ObserverTable::new(path.into(), "observer/history", columns),
             dimension,
-            inner,
+            more: Vec::new(),
         }
+    }
+
+    /// The same with more columns.
+    #[must_use]
+    pub fn with(mut self, columns: impl HistoryColumns + 'static) -> Self {
+        self.table.add_columns(columns.columns());
+        self.more.push(Box::new(columns));
+        self
     }
 }
 
@@ -75,10 +71,8 @@ impl Observer for History {
         let momentum = system.momentum(&state.v);
         row.extend(momentum[..self.dimension].iter().map(|&p| Cell::Real(p)));
         row.push(whole(system.operator().broken_bonds()));
-        if self.inner {
-            let inner = snapshot.inner_iterations().unwrap_or_default();
-            row.push(whole(inner.last));
-            row.push(inner.change.into());
+        for columns in &mut self.more {
+            row.extend(columns.cells(snapshot));
         }
         Ok(self.table.append(&row)?)
     }
@@ -87,9 +81,12 @@ impl Observer for History {
 impl Saved for History {
     fn save(&self, archive: &mut Archive) {
         self.table.save(archive);
+        self.more.iter().for_each(|columns| columns.save(archive));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)
+        self.table.restore(archive)?;
+        let mut more = self.more.iter_mut();
+        more.try_for_each(|columns| columns.restore(archive))
     }
 }

@@ -3,12 +3,12 @@
 //! | observer | files | content |
 //! |---|---|---|
 //! | [`FieldSeries`] | `fields.pvd`, `fields/fields_000000.vtu` … | all fields on the points |
-//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds |
+//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; where there are such, the distance from a known solution, a bound of the energy, inner iterations |
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
 //! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
 //! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, concentrations of energy |
-//! | [`Pictures`] | `pictures/Damage-000000.png` … | a field as a picture |
+//! | [`Pictures`] | `pictures/Damage-000000.png` …, `pictures/Damage.apng` | a field as a picture, and all of them as an animation |
 //!
 //! What they write depends on the states they are shown alone: no clock, path or number of threads enters a file. Each remembers in a checkpoint how
 //! much it has written ([`Saved`](pericles::Saved)); restored, it cuts its files back to that and goes on, so that the files of a stopped and resumed
@@ -48,8 +48,8 @@
 //! # }
 //! ```
 
+mod columns;
 mod cracks;
-mod errors;
 mod fields;
 mod history;
 mod pictures;
@@ -58,8 +58,8 @@ mod reactions;
 mod surface;
 mod table;
 
+pub use columns::{EnergyBoundColumns, ErrorColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
-pub use errors::Errors;
 pub use fields::FieldSeries;
 pub use history::History;
 pub use pictures::{PictureOf, Pictures};

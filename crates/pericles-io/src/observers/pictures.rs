@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
+use pericles::space::PointCloud;
 use pericles::space::surface::Surface;
 use pericles::{Archive, Result, Saved, Values};
 
 use super::table::AXES;
 use crate::error::IoError;
-use crate::picture::{CellSize, ColourMap, FieldPicture};
+use crate::picture::{CellSize, ColourMap, FieldPicture, write_animation};
 
 /// What a picture shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +30,9 @@ pub struct PictureOf {
     pub view: Option<[f64; 3]>,
     /// The surface whose vertices the points are: its triangles are drawn.
     pub surface: Option<Arc<Surface>>,
+    /// Whether all pictures show the same part of space, the box of the body at rest and a tenth of its longest side around it. Otherwise each shows what
+    /// the displaced body fills.
+    pub steady: bool,
 }
 
 impl PictureOf {
@@ -42,6 +46,7 @@ impl PictureOf {
             title: String::new(),
             view: None,
             surface: None,
+            steady: false,
         }
     }
 
@@ -88,6 +93,10 @@ impl PictureOf {
         if let Some(surface) = &self.surface {
             picture = picture.triangles(surface.triangles());
         }
+        if self.steady {
+            let (low, high) = surroundings(cloud);
+            picture = picture.window(low, high);
+        }
         if let Some(view) = self.view {
             picture = picture.view(view);
         }
@@ -96,6 +105,19 @@ impl PictureOf {
         }
         picture.write(path)
     }
+}
+
+/// Corners of the box of the points and a tenth of its longest side around it.
+fn surroundings(cloud: &PointCloud) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+    for c in 0..cloud.dimension() {
+        let axis = cloud.axis(c).iter();
+        low[c] = axis.clone().copied().fold(f64::INFINITY, f64::min);
+        high[c] = axis.copied().fold(f64::NEG_INFINITY, f64::max);
+    }
+    let longest = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+    let around = 0.1 * longest.max(cloud.spacing());
+    (low.map(|x| x - around), high.map(|x| x + around))
 }
 
 /// One number per point: the field itself, a component, or a vector's magnitude.
@@ -116,11 +138,12 @@ fn scalar(field: &[f64], n: usize, component: Option<usize>) -> Cow<'_, [f64]> {
     Cow::Owned((0..n).map(magnitude).collect())
 }
 
-/// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder.
+/// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder, and at the end of the run `<stem>.apng` with all of them if asked for.
 pub struct Pictures {
     folder: PathBuf,
     stem: String,
     what: PictureOf,
+    animated: bool,
     drawn: u64,
 }
 
@@ -131,8 +154,20 @@ impl Pictures {
             folder: folder.into(),
             stem: stem.into(),
             what,
+            animated: false,
             drawn: 0,
         }
+    }
+
+    /// The same, put into one animated picture at the end; all of them then show the same part of space.
+    pub fn animated(mut self) -> Self {
+        self.animated = true;
+        self.what.steady = true;
+        self
+    }
+
+    fn still(&self, number: u64) -> PathBuf {
+        self.folder.join(format!("{}-{number:06}.png", self.stem))
     }
 
     fn key(&self) -> String {
@@ -142,10 +177,18 @@ impl Pictures {
 
 impl Observer for Pictures {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        let name = format!("{}-{:06}.png", self.stem, self.drawn);
-        self.what.draw(snapshot, self.folder.join(name))?;
+        self.what.draw(snapshot, self.still(self.drawn))?;
         self.drawn += 1;
         Ok(())
+    }
+
+    fn finish(&mut self) -> std::result::Result<(), ObserveError> {
+        if !self.animated {
+            return Ok(());
+        }
+        let stills: Vec<PathBuf> = (0..self.drawn).map(|number| self.still(number)).collect();
+        let path = self.folder.join(format!("{}.apng", self.stem));
+        Ok(write_animation(&stills, path)?)
     }
 }
 

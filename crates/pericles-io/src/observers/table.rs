@@ -34,6 +34,11 @@ impl ObserverTable {
         }
     }
 
+    /// Adds columns to a table that has no rows yet.
+    pub(super) fn add_columns(&mut self, columns: Vec<Column>) {
+        self.columns.extend(columns);
+    }
+
     /// Adds a row and hands it to the system, so that a table can be followed while the run goes on.
     pub(super) fn append(&self, cells: &[Cell]) -> std::result::Result<(), IoError> {
         let open = &mut *self.open.borrow_mut();

@@ -81,7 +81,8 @@ fn simulation(folder: &Path) -> Simulation {
         folder.join("pictures"),
         "Damage",
         PictureOf::new(Field::Damage),
-    );
+    )
+    .animated();
     let cracks = Cracks::new(folder.join("cracks.csv"), tracker, 2);
     let history = History::new(folder.join("history.csv"), 2);
     let probes = Probes::new(folder.join("probes.csv"), vec![probe], 2);
@@ -173,6 +174,7 @@ fn tables_agree_with_the_simulation() {
     for name in [
         "fields/fields_000003.vtu",
         "pictures/Damage-000002.png",
+        "pictures/Damage.apng",
         "fields.pvd",
     ] {
         assert!(written.contains_key(name), "{name}");

@@ -190,13 +190,17 @@ impl Bitmap {
         let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        let encoding = |error| match error {
-            png::EncodingError::IoError(error) => error,
-            other => io::Error::other(other),
-        };
         let mut writer = encoder.write_header().map_err(encoding)?;
         writer.write_image_data(&self.rgb).map_err(encoding)?;
         writer.finish().map_err(encoding)
+    }
+}
+
+/// What the encoder failed of, as an error of files.
+pub(super) fn encoding(error: png::EncodingError) -> io::Error {
+    match error {
+        png::EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
     }
 }
 

@@ -91,6 +91,8 @@ pub(super) struct Scene {
     /// Opposite corners of the part that is shown.
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
+    /// Whether these corners were asked for: they then are not drawn together to what is there.
+    pub(super) window: bool,
     pub(super) bar: ColourBar,
     pub(super) header: Header,
     pub(super) view: [f64; 3],
@@ -347,6 +349,7 @@ impl<'a> FieldPicture<'a> {
             facets: self.facets(),
             low,
             high,
+            window: self.window.is_some(),
             bar,
             header,
             view: self.view,

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use super::backdrop::Backdrop;
 use super::bitmap::{Bitmap, INK, SIZES, WHITE};
 use super::clip::{clipped, inside, length_inside};
 use super::curve::{Axis, Curve, Pen};
-use super::frame::{Area, AxisText, Frame, Header, Sizes};
+use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
 use super::text::{self, Align, Style};
 use super::units::quantity;
 use crate::IoError;
@@ -18,6 +19,7 @@ pub struct LineChart {
     y: Axis,
     header: Header,
     curves: Vec<Curve>,
+    backdrop: Option<Backdrop>,
     width: u32,
     height: u32,
 }
@@ -30,6 +32,7 @@ impl LineChart {
             y,
             header: Header::default(),
             curves: Vec::new(),
+            backdrop: None,
             width: 1200,
             height: 750,
         }
@@ -54,6 +57,13 @@ impl LineChart {
     /// Adds a curve.
     pub fn curve(mut self, curve: Curve) -> Self {
         self.curves.push(curve);
+        self
+    }
+
+    /// Puts a map of numbers beneath the curves. The axes should have the map's range.
+    pub fn backdrop(mut self, backdrop: Backdrop) -> Self {
+        self.header.bar_label.clone_from(&backdrop.name);
+        self.backdrop = Some(backdrop);
         self
     }
 
@@ -107,6 +117,15 @@ impl LineChart {
         };
         let left = sizes.beside(&y_text.ticks).round();
         let mut right = (f64::from(self.width) - 2.0 * sizes.gap).round();
+        let bar = self.backdrop.as_ref().map(|backdrop| {
+            let bar = backdrop.bar();
+            let ticks = bar.ticks(bottom - top, &sizes);
+            (backdrop, bar, ticks)
+        });
+        let end = right;
+        if let Some((_, _, ticks)) = &bar {
+            right = (f64::from(self.width) - ColourBar::room(ticks, &sizes)).round();
+        }
         let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
         let x_text = AxisText {
             ticks: x.ticks(wanted),
@@ -116,7 +135,9 @@ impl LineChart {
         let overhang = x_text
             .ticks
             .longest(|label| text::width(label, sizes.tick_text));
-        right -= (0.5 * overhang - sizes.gap).max(0.0).round();
+        if bar.is_none() {
+            right -= (0.5 * overhang - sizes.gap).max(0.0).round();
+        }
         let area = Area {
             left,
             top,
@@ -127,6 +148,11 @@ impl LineChart {
 
         let mut bitmap = Bitmap::white(self.width as usize, self.height as usize);
         frame.draw_grid(&mut bitmap, &x_text, &y_text, &sizes);
+        if let Some((backdrop, bar, ticks)) = &bar {
+            let factors = [x_shown.factor, y_shown.factor];
+            backdrop.draw(&mut bitmap, &frame, bar, factors);
+            bar.draw(&mut bitmap, area, ticks, &sizes);
+        }
         let mut drawn = Vec::new();
         for (number, curve) in self.curves.iter().enumerate() {
             let pen = Pen::of(number, curve, &sizes);
@@ -162,7 +188,8 @@ impl LineChart {
         }
         frame.draw_axes(&mut bitmap, &x_text, &y_text, &sizes);
         self.draw_key(&mut bitmap, area, &drawn, &sizes);
-        self.header.draw(&mut bitmap, left, right, &sizes);
+        let end = if bar.is_some() { end } else { right };
+        self.header.draw(&mut bitmap, left, end, &sizes);
         Ok(bitmap)
     }
 
@@ -176,6 +203,17 @@ impl LineChart {
                     "a chart of {width} × {height} pixels; {least} to {most} are allowed"
                 ),
             });
+        }
+        if let Some(backdrop) = &self.backdrop {
+            let (expected, given) = backdrop.lengths();
+            if expected != given {
+                return Err(IoError::Shape {
+                    path: path.to_path_buf(),
+                    what: "numbers of the backdrop".into(),
+                    expected,
+                    given,
+                });
+            }
         }
         for curve in &self.curves {
             let (expected, given) = curve.lengths;

@@ -3,7 +3,8 @@
 //! * [`FieldPicture`]: every point as a filled cell at its displaced place, coloured by a scalar, with colour bar, time stamp and
 //!   lengths in a fitting unit. A body in the plane has axes; a body in space is seen in parallel projection along a chosen
 //!   direction, nearer cells in front; a bar is drawn as a curve over its length.
-//! * [`LineChart`]: named curves, with markers, dashes and logarithmic axes where wanted.
+//! * [`LineChart`]: named curves, with markers, dashes and logarithmic axes where wanted; a [`Backdrop`] puts a map of numbers beneath them.
+//! * [`write_animation`]: pictures one after another in one file.
 //!
 //! Quantities come in SI units and are shown with the SI prefix that suits their size. The bytes of a picture depend on its data
 //! alone. Text is set in the font inside the crate (DejaVu Sans), lines and glyphs are antialiased; nothing of the system is used.
@@ -27,6 +28,8 @@
 //!     .unwrap();
 //! ```
 
+mod animation;
+mod backdrop;
 mod bitmap;
 mod clip;
 mod colour;
@@ -41,6 +44,8 @@ mod text;
 mod ticks;
 mod units;
 
+pub use animation::write_animation;
+pub use backdrop::Backdrop;
 pub use colour::ColourMap;
 pub use curve::{Axis, Curve};
 pub use field::{CellSize, FieldPicture};

@@ -101,7 +101,7 @@ pub(super) fn draw(scene: &Scene) -> Bitmap {
         }
     }
     // A surface need not fill its box.
-    if !scene.facets.is_empty() {
+    if !scene.facets.is_empty() && !scene.window {
         let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for corner in scene.facets.iter().flat_map(|facet| facet.corners) {
             for (c, value) in view.project(corner).into_iter().take(2).enumerate() {

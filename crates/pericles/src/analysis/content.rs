@@ -45,18 +45,18 @@ impl Carried {
 
 /// The share of the energy of a signal g(t), 0 ≤ t ≤ `end`, zero before, that lies above an angular frequency: Σ|ĝ|² above it over Σ|ĝ|² of all but the mean.
 ///
-/// A load that sets in suddenly has a spectrum ~ 1/ω, so that a small share is always beyond any frequency.
+/// A load that sets in suddenly has a spectrum ~ 1/ω, so that a small share is always beyond any frequency. Of signals longer than 2048 periods of that frequency the first so many are judged.
 pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
-    const MOST: usize = 1 << 18;
+    const MOST: f64 = 16384.0;
     // Eight samples for the shortest period that counts.
-    let samples = (4.0 * end * frequency / std::f64::consts::PI).ceil();
-    let samples = if samples.is_finite() {
-        samples as usize
+    let rate = 4.0 * frequency / std::f64::consts::PI;
+    let samples = (rate * end).ceil().clamp(64.0, MOST);
+    let dt = (end / samples).min(if rate > 0.0 {
+        1.0 / rate
     } else {
-        MOST
-    };
-    let samples = samples.clamp(64, MOST);
-    let dt = end / samples as f64;
+        f64::INFINITY
+    });
+    let samples = samples as usize;
     // Rest before the start; then there and back again, so that the end is no jump.
     let mut signal = vec![0.0; samples];
     signal.extend((0..samples).map(|k| g((k as f64 + 0.5) * dt)));

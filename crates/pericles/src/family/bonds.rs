@@ -1,5 +1,7 @@
 //! All families of a body, in compressed rows of eight.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::search::{bond_vector, distance, pairs_where, pairs_within};
@@ -21,13 +23,14 @@ pub struct Cut {
 
 /// The bonds of every point: compressed rows whose length is padded to whole groups of [`LANES`].
 ///
-/// Group g holds `neighbours[g * LANES..][..LANES]`; bit k of `present[g]` says whether its k-th bond exists. Point i owns the groups
-/// `start[i]..start[i + 1]`. Padding entries name the point itself, so that loading them is harmless. Each bond
-/// is stored at both of its ends, in ascending order of the neighbour's number.
+/// Group g holds the neighbours `base[g] + offsets[g * LANES + k]`; bit k of `present[g]` says whether its k-th bond exists. Point i owns the groups
+/// `start[i]..start[i + 1]`; one whose neighbours were too far apart for two bytes is split. Padding entries name the neighbour before them, so that computing them
+/// is harmless. Each bond is stored at both of its ends, in ascending order of the neighbour's number.
 #[derive(Debug, Clone)]
 pub struct BondList {
     start: Vec<usize>,
-    neighbours: Vec<u32>,
+    base: Vec<u32>,
+    offsets: Vec<u16>,
     /// Bonds of the geometric family.
     geometric: Vec<u8>,
     /// Bonds left after pre-cutting.
@@ -119,23 +122,34 @@ impl BondList {
         horizons: Horizons,
         correction: VolumeCorrection,
     ) -> Self {
+        let groups = pairs.len() / LANES + n;
         let mut start = Vec::with_capacity(n + 1);
+        let mut base = Vec::with_capacity(groups);
+        let mut offsets = Vec::with_capacity(groups * LANES);
+        let mut geometric = Vec::with_capacity(groups);
         start.push(0);
         for i in 0..n {
-            start.push(start[i] + (row_start[i + 1] - row_start[i]).div_ceil(LANES));
-        }
-        let mut neighbours = Vec::with_capacity(start[n] * LANES);
-        let mut geometric = Vec::with_capacity(start[n]);
-        for i in 0..n {
-            for group in pairs[row_start[i]..row_start[i + 1]].chunks(LANES) {
-                neighbours.extend_from_slice(group);
-                neighbours.extend(std::iter::repeat_n(i as u32, LANES - group.len()));
-                geometric.push(0xFF >> (LANES - group.len()));
+            let mut row = &pairs[row_start[i]..row_start[i + 1]];
+            while let Some(&first) = row.first() {
+                let near = |&j: &u32| j - first <= u32::from(u16::MAX);
+                let len = row[..row.len().min(LANES)].partition_point(near);
+                let (group, rest) = row.split_at(len);
+                base.push(first);
+                offsets.extend(group.iter().map(|j| (j - first) as u16));
+                let last = (group[len - 1] - first) as u16;
+                offsets.extend(std::iter::repeat_n(last, LANES - len));
+                geometric.push(0xFF >> (LANES - len));
+                row = rest;
             }
+            start.push(base.len());
         }
+        base.shrink_to_fit();
+        offsets.shrink_to_fit();
+        geometric.shrink_to_fit();
         Self {
             start,
-            neighbours,
+            base,
+            offsets,
             present: geometric.clone(),
             geometric,
             horizons,
@@ -156,7 +170,7 @@ impl BondList {
             });
         }
         let cutter = crack.cutter(rule, 1e-9 * cloud.spacing())?;
-        let (start, neighbours) = (&self.start, &self.neighbours);
+        let (start, list) = (&self.start, (&self.base, &self.offsets));
         let removed: Vec<u32> = rows_mut(start, &mut self.present)
             .into_par_iter()
             .enumerate()
@@ -166,7 +180,7 @@ impl BondList {
                 let here = cloud.point(i);
                 for (g, present) in row.iter_mut().enumerate() {
                     for k in 0..LANES {
-                        let j = neighbours[(start[i] + g) * LANES + k] as usize;
+                        let j = neighbour(list, (start[i] + g) * LANES + k);
                         if *present >> k & 1 == 1 && cutter.cuts(here, cloud.point(j)) {
                             *present &= !(1 << k);
                             removed += 1;
@@ -189,9 +203,26 @@ impl BondList {
         &self.start
     }
 
-    /// Neighbours of all groups.
-    pub fn neighbours(&self) -> &[u32] {
-        &self.neighbours
+    /// The groups of a point.
+    pub fn groups(&self, i: usize) -> Range<usize> {
+        self.start[i]..self.start[i + 1]
+    }
+
+    /// The neighbours of a group, all below the number of points.
+    #[inline(always)]
+    pub fn group(&self, group: usize) -> [usize; LANES] {
+        let base = self.base[group] as usize;
+        let offsets = &self.offsets[group * LANES..(group + 1) * LANES];
+        let mut neighbours = [0; LANES];
+        for k in 0..LANES {
+            neighbours[k] = base + usize::from(offsets[k]);
+        }
+        neighbours
+    }
+
+    /// The neighbour of an entry.
+    pub fn neighbour(&self, entry: usize) -> usize {
+        neighbour((&self.base, &self.offsets), entry)
     }
 
     /// Bonds that exist once the pre-cracks are cut, one byte a group.
@@ -227,12 +258,25 @@ impl BondList {
         }
     }
 
+    /// Horizon δ, m, if it is the same everywhere.
+    pub fn uniform_horizon(&self) -> Option<f64> {
+        match &self.horizons {
+            Horizons::Uniform(horizon) => Some(*horizon),
+            Horizons::PerPoint(_) => None,
+        }
+    }
+
+    /// How cells cut by the horizon count.
+    pub fn correction(&self) -> VolumeCorrection {
+        self.correction
+    }
+
     /// The neighbours of a point in its geometric family, with the entry's place in the list.
     pub fn family(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (self.start[i]..self.start[i + 1]).flat_map(move |g| {
+        self.groups(i).flat_map(move |g| {
             (0..LANES)
                 .filter(move |k| self.geometric[g] >> k & 1 == 1)
-                .map(move |k| (g * LANES + k, self.neighbours[g * LANES + k] as usize))
+                .map(move |k| (g * LANES + k, self.neighbour(g * LANES + k)))
         })
     }
 
@@ -277,10 +321,15 @@ impl BondList {
     /// Memory of the list, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.start[..])
-            + size_of_val(&self.neighbours[..])
+            + size_of_val(&self.base[..])
+            + size_of_val(&self.offsets[..])
             + self.present.len()
             + self.geometric.len()
     }
+}
+
+fn neighbour((base, offsets): (&Vec<u32>, &Vec<u16>), entry: usize) -> usize {
+    base[entry / LANES] as usize + usize::from(offsets[entry])
 }
 
 fn mean_cell(cloud: &PointCloud, i: usize, j: usize) -> f64 {

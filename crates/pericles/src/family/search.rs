@@ -26,12 +26,13 @@ pub(super) fn pairs_where(
         .with_min_len(256)
         .map(|i| {
             let mut row = Vec::new();
-            cells.for_each_near(i, |j| {
-                if j != i && wanted(i, j, distance(cloud, i, j)) {
+            cells.for_each_near(i, reach, |j, distance| {
+                if j != i && wanted(i, j, distance) {
                     row.push(j as u32);
                 }
             });
             row.sort_unstable();
+            row.shrink_to_fit();
             row
         })
         .collect();
@@ -67,11 +68,26 @@ pub(crate) fn distance(cloud: &PointCloud, i: usize, j: usize) -> f64 {
     (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt()
 }
 
+/// Points sorted into cells.
 struct CellList {
     shape: [usize; 3],
     cell_of: Vec<u32>,
     start: Vec<u32>,
+    /// The points, cell by cell.
     order: Vec<u32>,
+    /// Where they are, in the same order, in units of `unit`: integers on a lattice, see [`bond_vector`].
+    places: Vec<[f64; 3]>,
+    unit: f64,
+    /// The place of each point in that order.
+    rank: Vec<u32>,
+}
+
+/// Coordinates of a point in units of [`CellList::unit`]; their differences give [`bond_vector`], bit for bit.
+fn coordinates(cloud: &PointCloud, i: usize) -> [f64; 3] {
+    match cloud.lattice() {
+        Some(lattice) => lattice.coordinates(lattice.node[i]).map(f64::from),
+        None => cloud.point(i),
+    }
 }
 
 impl CellList {
@@ -106,8 +122,13 @@ impl CellList {
         }
         let mut next = start.clone();
         let mut order = vec![0u32; n];
+        let mut places = vec![[0.0; 3]; n];
+        let mut rank = vec![0u32; n];
         for (i, &cell) in cell_of.iter().enumerate() {
-            order[next[cell as usize] as usize] = i as u32;
+            let place = next[cell as usize];
+            order[place as usize] = i as u32;
+            places[place as usize] = coordinates(cloud, i);
+            rank[i] = place;
             next[cell as usize] += 1;
         }
         Self {
@@ -115,10 +136,17 @@ impl CellList {
             cell_of,
             start,
             order,
+            places,
+            unit: cloud.lattice().map_or(1.0, |lattice| lattice.spacing),
+            rank,
         }
     }
 
-    fn for_each_near(&self, i: usize, mut visit: impl FnMut(usize)) {
+    /// Calls `visit(j, |ξ|)` for the points within reach of point i and some slightly beyond.
+    fn for_each_near(&self, i: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
+        let here = self.places[self.rank[i] as usize];
+        // No root for points that are clearly too far: most of those looked at.
+        let far = (reach * (1.0 + 1e-6)).powi(2);
         let cell = self.cell_of[i] as usize;
         let at = [
             cell % self.shape[0],
@@ -131,8 +159,13 @@ impl CellList {
                 for x in around(0) {
                     let cell = x + self.shape[0] * (y + self.shape[1] * z);
                     let (from, to) = (self.start[cell] as usize, self.start[cell + 1] as usize);
-                    for &j in &self.order[from..to] {
-                        visit(j as usize);
+                    for (there, &j) in self.places[from..to].iter().zip(&self.order[from..to]) {
+                        let xi: [f64; 3] =
+                            std::array::from_fn(|c| (there[c] - here[c]) * self.unit);
+                        let square = xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2];
+                        if square <= far {
+                            visit(j as usize, square.sqrt());
+                        }
                     }
                 }
             }

@@ -1,5 +1,6 @@
 //! Pair forces of bonds.
 
+use super::treatment::Treatment;
 use crate::operator::lanes::{Real, dot, vector};
 
 /// Which pair force a material uses.
@@ -12,6 +13,17 @@ pub enum PairLaw {
     /// [`GreenBond`](super::GreenBond).
     GreenStrain,
     /// [`LiteralBond`](super::LiteralBond), for bars.
+    Literal57,
+    /// [`Treated`](super::Treated), for bars.
+    Treated(CubicLaw, Treatment),
+}
+
+/// The laws that are cubic in the relative displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CubicLaw {
+    /// [`GreenBond`](super::GreenBond).
+    GreenStrain,
+    /// [`LiteralBond`](super::LiteralBond).
     Literal57,
 }
 
@@ -133,7 +145,7 @@ impl PairForce for LinearBond {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{GreenBond, LiteralBond};
+    use crate::material::{GreenBond, LiteralBond, SecondOrder, Trapezoidal, Treated};
     use proptest::prelude::*;
 
     /// The definition, without the cancellation-free forms.
@@ -175,6 +187,8 @@ mod tests {
             check_gradients::<LinearBond>(xi, eta, d);
             check_gradients::<GreenBond>(xi, eta, d);
             check_gradients::<LiteralBond>(xi, eta, d);
+            check_gradients::<Treated<GreenBond, Trapezoidal>>(xi, eta, d);
+            check_gradients::<Treated<LiteralBond, SecondOrder>>(xi, eta, d);
             let (force, expected) = (BondStretch::force(xi, eta), naive(xi, eta));
             for c in 0..3 {
                 prop_assert!((force[c] - expected[c]).abs() < 1e-14);

@@ -18,10 +18,12 @@ mod lattice;
 mod law;
 mod polynomial;
 mod power;
+mod treatment;
 
 pub use constants::{
     BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
-pub use law::{BondStretch, LinearBond, PairForce, PairLaw};
+pub use law::{BondStretch, CubicLaw, LinearBond, PairForce, PairLaw};
 pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};
+pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

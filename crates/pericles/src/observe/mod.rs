@@ -4,12 +4,14 @@
 //! asked for, once per snapshot.
 
 mod crack;
+mod energy_inequality;
 mod probe;
 mod schedule;
 mod snapshot;
 mod surface;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
+pub use energy_inequality::EnergyInequality;
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
 pub use snapshot::{Energies, Field, Snapshot, StartEnergy};
@@ -27,4 +29,12 @@ pub trait Observer: Saved {
     /// # Errors
     /// Whatever keeps the observer from doing its work; the run then stops.
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError>;
+
+    /// Hears that the run has come to its end; not of a run that is stopped, which may go on.
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from doing its work.
+    fn finish(&mut self) -> Result<(), ObserveError> {
+        Ok(())
+    }
 }

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use super::{
-    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, ForceOperator,
-    GaussForce, GridForce, GridLaw, SpectralCubicForce, SpectralForce,
+    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, FastLaw, ForceOperator,
+    GaussForce, GridForce, SpectralCubicForce, SpectralForce,
 };
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
 use crate::material::{
-    BondConstants, BondMaterial, BondStretch, GreenBond, LinearBond, LiteralBond, PairForce,
-    PairLaw,
+    BondConstants, BondMaterial, BondStretch, CubicLaw, GreenBond, LinearBond, LiteralBond,
+    PairLaw, SecondOrder, Trapezoidal, Treated, Treatment,
 };
 use crate::space::PointCloud;
 
@@ -181,6 +181,12 @@ impl BondBody<'_> {
             (PairLaw::GreenStrain, 2) => self.listed::<GreenBond, 2>(form),
             (PairLaw::GreenStrain, 3) => self.listed::<GreenBond, 3>(form),
             (PairLaw::Literal57, 1) => self.listed::<LiteralBond, 1>(form),
+            (PairLaw::Treated(law, treatment), 1) => self.treated(law, treatment, form),
+            (PairLaw::Treated(..), dimension) => Err(PericlesError::WrongDimension {
+                what: "a treatment of a nonlinear law",
+                needed: "1",
+                dimension,
+            }),
             (PairLaw::Literal57, dimension) => Err(PericlesError::WrongDimension {
                 what: "the law of equation 57 as printed",
                 needed: "1",
@@ -209,8 +215,30 @@ impl BondBody<'_> {
         })
     }
 
+    fn treated(
+        &self,
+        law: CubicLaw,
+        treatment: Treatment,
+        form: BondForm,
+    ) -> Result<AssembledBonds> {
+        match (law, treatment) {
+            (CubicLaw::GreenStrain, Treatment::SecondOrder) => {
+                self.listed::<Treated<GreenBond, SecondOrder>, 1>(form)
+            }
+            (CubicLaw::GreenStrain, Treatment::Trapezoidal) => {
+                self.listed::<Treated<GreenBond, Trapezoidal>, 1>(form)
+            }
+            (CubicLaw::Literal57, Treatment::SecondOrder) => {
+                self.listed::<Treated<LiteralBond, SecondOrder>, 1>(form)
+            }
+            (CubicLaw::Literal57, Treatment::Trapezoidal) => {
+                self.listed::<Treated<LiteralBond, Trapezoidal>, 1>(form)
+            }
+        }
+    }
+
     /// Laws that only the list computes.
-    fn listed<L: PairForce, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+    fn listed<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
         let refuse = |form: BondForm, reason| {
             Err(PericlesError::FormNotUsable {
                 form: form.name(),
@@ -238,7 +266,7 @@ impl BondBody<'_> {
         }
     }
 
-    fn operator_of<L: GridLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+    fn operator_of<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
         let form = match form {
             BondForm::Fastest => self.fastest_form(),
             chosen => chosen,
@@ -275,7 +303,7 @@ impl BondBody<'_> {
     ///
     /// # Errors
     /// See [`GridForce::new`].
-    pub fn grid<L: GridLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
         GridForce::new(
             self.cloud.clone(),
             self.material,
@@ -290,7 +318,7 @@ impl BondBody<'_> {
     ///
     /// # Errors
     /// A horizon that reaches no neighbour, an unusable crack.
-    pub fn list<L: PairForce, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+    pub fn list<L: FastLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self

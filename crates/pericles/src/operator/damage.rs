@@ -88,10 +88,10 @@ pub(super) fn save(blocks: &[BlockDamage], prefix: &str, archive: &mut Archive) 
     let intact = blocks.iter().flat_map(|block| &block.intact).copied();
     let broken = blocks.iter().map(|block| block.tally.broken);
     let dissipated = blocks.iter().map(|block| block.tally.dissipated);
-    archive.put(&format!("{prefix}/intact"), Values::U8(intact.collect()));
-    archive.put(&format!("{prefix}/broken"), Values::U64(broken.collect()));
+    archive.put(format!("{prefix}/intact"), Values::U8(intact.collect()));
+    archive.put(format!("{prefix}/broken"), Values::U64(broken.collect()));
     archive.put(
-        &format!("{prefix}/dissipated"),
+        format!("{prefix}/dissipated"),
         Values::F64(dissipated.collect()),
     );
 }

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, ForceOperator};
+use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, ForceOperator};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
-use crate::material::{
-    BondMaterial, BondStretch, Fracture, LinearBond, PairForce, PairLaw, StressState,
-};
+use crate::material::{BondMaterial, BondStretch, Fracture, LinearBond, PairLaw, StressState};
 use crate::space::PointCloud;
 
 /// What one grid of a body adds to the bonds of its points.
@@ -102,7 +100,7 @@ impl GradedBody<'_> {
         }
     }
 
-    fn list<L: PairForce + 'static, const D: usize>(&self) -> Result<AssembledBonds> {
+    fn list<L: FastLaw + 'static, const D: usize>(&self) -> Result<AssembledBonds> {
         let laws = self.laws()?;
         let cloud = self.cloud;
         let law = |i: usize| &laws[usize::from(self.grid_of_point[i])];

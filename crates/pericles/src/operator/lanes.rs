@@ -7,9 +7,29 @@
 //! Kernels whose speed must not depend on how well a compiler finds vectors are written on [`Lanes`]: eight numbers held in whole
 //! registers of each set. Only [`Lanes::mul_add`] may round differently from set to set.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Index, IndexMut, Mul, Neg, Sub};
 
 use crate::family::LANES;
+
+/// Four numbers of a point, which one load reads: aligned, so that no row lies across two lines of a cache.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C, align(32))]
+pub struct Row(pub [f64; 4]);
+
+impl Index<usize> for Row {
+    type Output = f64;
+    #[inline(always)]
+    fn index(&self, c: usize) -> &f64 {
+        &self.0[c]
+    }
+}
+
+impl IndexMut<usize> for Row {
+    #[inline(always)]
+    fn index_mut(&mut self, c: usize) -> &mut f64 {
+        &mut self.0[c]
+    }
+}
 
 /// Arithmetic of the hot loops.
 pub trait Real:
@@ -44,11 +64,13 @@ pub trait Lanes: Real {
     /// # Panics
     /// If the slice ends before.
     fn load(numbers: &[f64], at: usize) -> Self;
-    /// The components of eight points, each held as x, y, z and a number of no meaning.
+    /// The numbers of eight rows, number by number.
     ///
     /// # Safety
-    /// Every index is below `points.len()`.
-    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3];
+    /// Every index is below `rows.len()`.
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4];
+    /// 1/√self to round-off.
+    fn inverse_root(self) -> Self;
     /// The numbers, in order.
     fn to_array(self) -> [f64; LANES];
     /// self · factor + addend, rounded once where the set has such an instruction.
@@ -145,8 +167,12 @@ impl Lanes for F64x8 {
         Self::from_fn(|k| numbers[k])
     }
     #[inline(always)]
-    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
-        vector(|c| Self::from_fn(|k| points[indices[k] as usize][c]))
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
+        vector(|c| Self::from_fn(|k| rows[indices[k]][c]))
+    }
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        Self::splat(1.0) / self.sqrt()
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {

@@ -6,7 +6,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::lanes::{Lanes, Real};
+use super::lanes::{Lanes, Real, Row};
 use crate::family::LANES;
 
 /// Eight numbers in one 512-bit register.
@@ -90,14 +90,25 @@ impl Real for Avx2x8 {
     }
 }
 
-/// The four numbers of a point.
+/// The four numbers of a row.
 ///
 /// # Safety
-/// The index is below `points.len()`, and the caller is compiled for AVX2.
+/// The index is below `rows.len()`, and the caller is compiled for AVX2.
 #[inline(always)]
-unsafe fn four(points: &[[f64; 4]], index: u32) -> __m256d {
-    // SAFETY: a row holds four numbers.
-    unsafe { _mm256_loadu_pd(points.get_unchecked(index as usize).as_ptr()) }
+unsafe fn four(rows: &[Row], index: usize) -> __m256d {
+    // SAFETY: a row holds four numbers and is aligned to their size.
+    unsafe { _mm256_load_pd(rows.get_unchecked(index).0.as_ptr()) }
+}
+
+/// 1/√x from a seed y with eleven good bits or more: y (1 − e)^(−1/2) with e = 1 − x y², as a series of which the next term is below round-off.
+#[inline(always)]
+fn refined<T: Lanes>(x: T, seed: T) -> T {
+    let e = (-(x * seed)).mul_add(seed, T::splat(1.0));
+    let mut series = T::splat(35.0 / 128.0);
+    for coefficient in [5.0 / 16.0, 3.0 / 8.0, 1.0 / 2.0] {
+        series = series.mul_add(e, T::splat(coefficient));
+    }
+    (seed * e).mul_add(series, seed)
 }
 
 impl Lanes for Avx512x8 {
@@ -109,10 +120,10 @@ impl Lanes for Avx512x8 {
     }
     /// Eight rows of four are loaded in pairs and turned by eleven exchanges: fewer loads than three gathers, and they stay in line.
     #[inline(always)]
-    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
         unsafe {
-            let row = |k: usize| four(points, indices[k]);
+            let row = |k: usize| four(rows, indices[k]);
             let pair = |a: usize, b: usize| {
                 _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(row(a)), row(b))
             };
@@ -125,8 +136,15 @@ impl Lanes for Avx512x8 {
                 Self(_mm512_permutex2var_pd(xz0, low, xz2)),
                 Self(_mm512_permutex2var_pd(y0, low, y2)),
                 Self(_mm512_permutex2var_pd(xz0, high, xz2)),
+                Self(_mm512_permutex2var_pd(y0, high, y2)),
             ]
         }
+    }
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        // SAFETY: used in functions compiled for AVX-512 only.
+        let seed = Self(unsafe { _mm512_rsqrt14_pd(self.0) });
+        refined(self, seed)
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {
@@ -200,11 +218,11 @@ impl Lanes for Avx2x8 {
         }
     }
     #[inline(always)]
-    unsafe fn gather(points: &[[f64; 4]], indices: &[u32; LANES]) -> [Self; 3] {
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
         unsafe {
             let turned = |first: usize| {
-                let row = |k: usize| four(points, indices[first + k]);
+                let row = |k: usize| four(rows, indices[first + k]);
                 let (r0, r1, r2, r3) = (row(0), row(1), row(2), row(3));
                 let (xz0, y0) = (_mm256_unpacklo_pd(r0, r1), _mm256_unpackhi_pd(r0, r1));
                 let (xz2, y2) = (_mm256_unpacklo_pd(r2, r3), _mm256_unpackhi_pd(r2, r3));
@@ -212,6 +230,7 @@ impl Lanes for Avx2x8 {
                     _mm256_permute2f128_pd::<0x20>(xz0, xz2),
                     _mm256_permute2f128_pd::<0x20>(y0, y2),
                     _mm256_permute2f128_pd::<0x31>(xz0, xz2),
+                    _mm256_permute2f128_pd::<0x31>(y0, y2),
                 ]
             };
             let (low, high) = (turned(0), turned(4));
@@ -219,8 +238,18 @@ impl Lanes for Avx2x8 {
                 Self(low[0], high[0]),
                 Self(low[1], high[1]),
                 Self(low[2], high[2]),
+                Self(low[3], high[3]),
             ]
         }
+    }
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        // SAFETY: used in functions compiled for AVX2 only.
+        let seed = unsafe {
+            let half = |x: __m256d| _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x)));
+            Self(half(self.0), half(self.1))
+        };
+        refined(self, seed)
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {

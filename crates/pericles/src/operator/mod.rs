@@ -5,14 +5,15 @@
 //!
 //! | form | bodies | bonds | ns per directed bond, 3D |
 //! |---|---|---|---|
-//! | [`BondForce`] | any | listed, 13 bytes each | 6 |
-//! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | see `benches/surface.rs` |
+//! | [`BondForce`] | any | listed, 3 bytes each | 3 |
+//! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | 1.0 (p = 2), 1.2 (p = 3): see `benches/surface.rs` |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline) |
 //!
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
 
 mod assemble;
 mod damage;
+mod fast_law;
 pub mod function;
 mod graded;
 mod grid;
@@ -22,6 +23,8 @@ pub(crate) mod lanes_x86;
 pub mod linear;
 mod linearisation;
 mod list;
+pub(crate) mod prefetch;
+mod records;
 mod rows;
 pub mod surface;
 mod zoned;
@@ -30,8 +33,9 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use damage::{Breaking, DamageMeasure};
+pub use fast_law::{FastLaw, FixedBond};
 pub use graded::{EndLaw, GradedBody};
-pub use grid::{GridForce, GridLaw, Offset};
+pub use grid::GridForce;
 pub use lanes::InstructionSet;
 pub use linear::{
     ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralCubicForce, SpectralForce,
@@ -177,6 +181,11 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// What the loops are compiled for.
     fn instruction_set(&self) -> InstructionSet;
 
+    /// Runs the loops with another instruction set, if the operator has loops for it and the machine has it; for tests and benchmarks.
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        let _ = set;
+    }
+
     /// The operator as a linear map, if it is one.
     fn as_linear(&self) -> Option<&dyn LinearOperator>;
 
@@ -195,6 +204,11 @@ pub trait ForceOperator: Saved + Send + Sync {
 pub trait LinearOperator: Send + Sync {
     /// `out` = force density at `u`.
     fn apply_into(&self, u: &[f64], out: &mut [f64]);
+
+    /// The largest |i − j| of unknowns that act on each other, where it is known and the matrix a band; bars without periodic ends are.
+    fn half_bandwidth(&self) -> Option<usize> {
+        None
+    }
 
     /// The operator as one whose eigenvectors are known, if it is one.
     fn as_diagonal(&self) -> Option<&dyn function::Diagonal> {

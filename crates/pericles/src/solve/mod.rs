@@ -1,6 +1,6 @@
-//! Iterative solvers for the systems of implicit schemes: conjugate gradients and Newton–Krylov.
+//! Solvers for the systems of implicit schemes: conjugate gradients, Newton–Krylov, and Cholesky's factor of a band.
 //!
-//! Matrices are never formed: a system is given by its products, a nonlinear one by its residual and the products with its derivative
+//! A system is given by its products, a nonlinear one by its residual and the products with its derivative
 //! ([`Nonlinear`]). Both need the symmetric positive definite systems that implicit schemes have: M + β dt² K with a positive mass M and a stiffness K = −f′.
 //!
 //! Sums are taken in a fixed order, so that results do not depend on the number of threads. A solver's vectors live in [`Work`] and are made once.
@@ -23,9 +23,11 @@
 //! assert!((x[0] - 25.0).abs() < 1e-10 && solved.iterations <= n);
 //! ```
 
+mod cholesky;
 mod conjugate_gradient;
 mod newton;
 
+pub use cholesky::BandedCholesky;
 pub use conjugate_gradient::conjugate_gradient;
 pub use newton::{Nonlinear, newton_krylov};
 

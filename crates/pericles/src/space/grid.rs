@@ -67,7 +67,23 @@ pub struct Grid {
 }
 
 /// Nodes of a bounding box must be numbered by u32.
-const CELL_LIMIT: u64 = u32::MAX as u64 - 1;
+pub(super) const CELL_LIMIT: u64 = u32::MAX as u64 - 1;
+
+/// The number of cells along a side, which must be whole.
+pub(super) fn whole_cells(length: f64, spacing: f64) -> Result<f64> {
+    positive("the spacing", spacing)?;
+    let ratio = positive("a side of the body", length)? / spacing;
+    let count = ratio.round();
+    if count < 1.0 || (ratio - count).abs() > 1e-6 * ratio.max(1.0) {
+        return Err(PericlesError::NotWholeCells {
+            length,
+            spacing,
+            below: ratio.floor().max(1.0) * spacing,
+            above: ratio.ceil() * spacing,
+        });
+    }
+    Ok(count)
+}
 
 impl Grid {
     /// Dimension of the body.
@@ -157,20 +173,10 @@ impl Grid {
         let mut origin = [0.0; 3];
         let mut cells = 1.0;
         for c in 0..dimension {
-            let ratio = side[c] / spacing;
             let count = if whole[c] {
-                let count = ratio.round();
-                if count < 1.0 || (ratio - count).abs() > 1e-6 * ratio.max(1.0) {
-                    return Err(PericlesError::NotWholeCells {
-                        length: side[c],
-                        spacing,
-                        below: ratio.floor().max(1.0) * spacing,
-                        above: ratio.ceil() * spacing,
-                    });
-                }
-                count
+                whole_cells(side[c], spacing)?
             } else {
-                (ratio - 1e-9).ceil().max(1.0)
+                (side[c] / spacing - 1e-9).ceil().max(1.0)
             };
             cells *= count;
             if cells > CELL_LIMIT as f64 {

@@ -1,7 +1,8 @@
 //! Bars with quadrature nodes that are not the middles of cells.
 
 use super::PointCloud;
-use crate::error::{PericlesError, Result, positive};
+use super::grid::whole_cells;
+use crate::error::{PericlesError, Result};
 
 /// The two Gauss–Legendre nodes of every cell of a bar, ± spacing/(2√3) about the cells' middles, each with half the cell's volume: the integral over
 /// neighbours is of fourth order for smooth integrands, with equal weights, so that the stiffness stays symmetric.
@@ -11,18 +12,7 @@ use crate::error::{PericlesError, Result, positive};
 /// # Errors
 /// A length that is no whole number of cells.
 pub fn gauss_bar(origin: f64, length: f64, spacing: f64, section: f64) -> Result<PointCloud> {
-    positive("the spacing", spacing)?;
-    positive("a side of the body", length)?;
-    let ratio = length / spacing;
-    let cells = ratio.round();
-    if cells < 1.0 || (ratio - cells).abs() > 1e-6 * ratio.max(1.0) {
-        return Err(PericlesError::NotWholeCells {
-            length,
-            spacing,
-            below: ratio.floor().max(1.0) * spacing,
-            above: ratio.ceil() * spacing,
-        });
-    }
+    let cells = whole_cells(length, spacing)?;
     const LIMIT: u64 = u32::MAX as u64 / 2 - 1;
     if cells > LIMIT as f64 {
         return Err(PericlesError::TooManyPoints {

@@ -2,7 +2,7 @@
 
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
-use crate::archive::{Archive, Saved};
+use crate::archive::Saved;
 use crate::error::Result;
 use crate::operator::On;
 use crate::system::System;
@@ -177,10 +177,4 @@ pub(super) fn start(system: &mut System, state: &mut State) {
 }
 
 /// The method carries nothing from step to step but the state.
-impl Saved for RungeKutta {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
+impl Saved for RungeKutta {}

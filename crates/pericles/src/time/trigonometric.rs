@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Integrator, State};
-use crate::archive::{Archive, Saved};
+use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
 use crate::operator::function::{
@@ -389,10 +389,4 @@ impl Integrator for Trigonometric {
 }
 
 /// The scheme carries nothing from step to step but the state.
-impl Saved for Trigonometric {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
+impl Saved for Trigonometric {}

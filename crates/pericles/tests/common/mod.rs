@@ -6,9 +6,9 @@ use std::sync::Arc;
 use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
 use pericles::kernel::Influence;
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairForce, PairLaw, StressState,
+    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, ForceOperator};
+use pericles::operator::{BondForce, DamageMeasure, FastLaw, ForceOperator};
 use pericles::space::{Grid, PointCloud, PointSet, Shape};
 use pericles::{PointScalar, System};
 
@@ -49,7 +49,7 @@ pub fn material(
 }
 
 /// The bonds of a material as a list.
-pub fn listed<L: PairForce, const D: usize>(
+pub fn listed<L: FastLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,

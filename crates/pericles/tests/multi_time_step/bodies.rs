@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use pericles::System;
 use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
-use pericles::material::{BondStretch, Fracture, LinearBond, PairForce, StressState};
-use pericles::operator::{BondForce, Breaking, DamageMeasure};
+use pericles::material::{BondStretch, Fracture, LinearBond, StressState};
+use pericles::operator::{BondForce, Breaking, DamageMeasure, FastLaw};
 use pericles::space::PointSet;
 use pericles::time::{State, highest_frequency};
 
@@ -20,7 +20,7 @@ pub fn plate() -> Problem {
     plate_with::<LinearBond>(1.0)
 }
 
-pub fn plate_with<L: PairForce>(load: f64) -> Problem {
+pub fn plate_with<L: FastLaw>(load: f64) -> Problem {
     let spacing = 0.02;
     let cloud = boxed([0.0; 3], &[1.0, 0.5], spacing, spacing);
     let material = material(
@@ -76,7 +76,7 @@ pub fn cracking_plate() -> Problem {
 }
 
 /// A plate 0.05 m wide with a central crack and three rows above and below that move apart with ± speed.
-pub fn crack<L: PairForce>(cells: usize, speed: f64, critical_stretch: f64, end: f64) -> Problem {
+pub fn crack<L: FastLaw>(cells: usize, speed: f64, critical_stretch: f64, end: f64) -> Problem {
     let spacing = 0.05 / cells as f64;
     let height = 0.05 + 6.0 * spacing;
     let cloud = boxed(

@@ -20,6 +20,7 @@ use pericles::analysis::tuning::{
 };
 use pericles::family::VolumeCorrection;
 use pericles::material::StressState;
+use pericles_io::{Axis, Curve, LineChart};
 
 use super::{Context, Study};
 use crate::dispersion::curves::{Curves, STEPS, write_classes};
@@ -114,6 +115,50 @@ fn write_curves(
     };
     curves.write(&csv)?;
     curves.draw(&picture, title)
+}
+
+/// Draws one branch of several tables of a model over each other, if figures are wanted: `<name>-<branch>.png`.
+fn write_comparison(
+    context: &Context<'_>,
+    model: &ScalingModel,
+    name: &str,
+    title: &str,
+    tables: &[(&str, &[f64])],
+) -> Result<(), CliError> {
+    let targets = targets(model.state());
+    for (branch, branch_name) in model.contour().branches.iter().enumerate() {
+        let Some(path) = context.figure(&format!("{name}-{branch_name}.png")) else {
+            return Ok(());
+        };
+        let ones = vec![1.0; model.classes().len()];
+        let all = [("original", &ones[..])]
+            .into_iter()
+            .chain(tables.iter().copied());
+        let mut chart: Option<LineChart> = None;
+        for (table, alpha) in all {
+            let lattice = model.lattice(alpha);
+            let points = trace(&lattice, model.contour(), STEPS);
+            let curves = Curves {
+                contour: model.contour(),
+                points: &points,
+                dt: None,
+                targets: &targets,
+            };
+            let x: Vec<f64> = points.iter().map(|point| point.abscissa).collect();
+            let omega: Vec<f64> = points.iter().map(|p| p.branches[branch].omega()).collect();
+            let drawn = chart.take().unwrap_or_else(|| {
+                let target: Vec<f64> = points.iter().map(|p| curves.target(branch, p)).collect();
+                LineChart::new(Axis::new(curves.along(), ""), Axis::new("ω", ""))
+                    .title(format!("{title}, branch {branch_name}"))
+                    .curve(Curve::line("continuum", &x, &target).dashed())
+            });
+            chart = Some(drawn.curve(Curve::line(table, &x, &omega)));
+        }
+        if let Some(chart) = chart {
+            chart.write(path)?;
+        }
+    }
+    Ok(())
 }
 
 fn figures(context: &Context<'_>, name: &str) -> (Option<PathBuf>, Option<PathBuf>) {

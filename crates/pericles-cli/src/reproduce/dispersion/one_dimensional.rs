@@ -6,8 +6,8 @@ use pericles::material::StressState;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{
-    NamedTables, PAPER, method, model, number, numbers, published, tuned, write_curves,
-    write_tables,
+    NamedTables, PAPER, method, model, number, numbers, published, tuned, write_comparison,
+    write_curves, write_tables,
 };
 use crate::error::CliError;
 
@@ -86,6 +86,12 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     for (n, list) in &tables {
         let model = model(StressState::Uniaxial, *n)?;
         write_tables(context, &model, &format!("coefficients-{n}"), list)?;
+        let tables: Vec<_> = list
+            .iter()
+            .map(|(name, a)| (name.as_str(), &a[..]))
+            .collect();
+        let (file, title) = (format!("methods-{n}"), format!("bars, N = {n}"));
+        write_comparison(context, &model, &file, &title, &tables)?;
     }
     Ok(rows)
 }

@@ -8,7 +8,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{
     NamedTables, PAPER, combination, method, model, number, numbers, published, rounding, tuned,
-    write_curves, write_tables,
+    write_comparison, write_curves, write_tables,
 };
 use crate::dispersion::curves::write_polar;
 use crate::error::CliError;
@@ -113,6 +113,20 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     for (n, list) in &tables {
         let model = model(StressState::PlaneStrain, *n)?;
         write_tables(context, &model, &format!("coefficients-{n}"), list)?;
+        for (file, kind, bounded) in [
+            ("separated", "separated", false),
+            ("absolute", "absolute", false),
+            ("positive", "separated", true),
+        ] {
+            let wanted = |name: &str| name.starts_with(kind) && name.contains("α ≥") == bounded;
+            let tables: Vec<_> = list
+                .iter()
+                .filter(|(name, _)| wanted(name))
+                .map(|(name, a)| (name.as_str(), &a[..]))
+                .collect();
+            let file = format!("methods-{n}-{file}");
+            write_comparison(context, &model, &file, &format!("plates, N = {n}"), &tables)?;
+        }
     }
     rows.extend(states()?);
     Ok(rows)

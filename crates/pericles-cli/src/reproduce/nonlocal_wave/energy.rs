@@ -1,6 +1,10 @@
 //! Figure 2: what the schemes do to the energy.
 
+use std::sync::Arc;
+
 use pericles::System;
+use pericles::boundary::{Load, TimeFunction};
+use pericles::observe::{EnergyInequality, Snapshot, StartEnergy};
 use pericles::time::State;
 use pericles_io::{Axis, Curve, LineChart};
 
@@ -129,6 +133,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             drawn.push(("MT without regularisation", course));
         }
     }
+    rows.extend(inequality(context)?);
     if let Some(path) = context.figure("energy.png") {
         let mut chart = LineChart::new(Axis::new("time", ""), Axis::new("E_n − E₀", ""))
             .title("Energy, h = τ = 0.1");
@@ -136,6 +141,98 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             chart = chart.curve(Curve::line(*name, &course.t, &course.paper));
         }
         chart.write(path)?;
+    }
+    Ok(rows)
+}
+
+/// Energy and its bound over time under a load that comes and goes.
+struct Loaded {
+    t: Vec<f64>,
+    energy: Vec<f64>,
+    bound: Vec<f64>,
+}
+
+fn loaded(method: Method, h: f64, dt: f64, end: f64) -> Result<Loaded, CliError> {
+    let cloud = nodes(method, h)?;
+    let mut body = system(&cloud, &UNIT.material())?;
+    let middle = (0..cloud.len() as u32).filter(|&i| cloud.axis(0)[i as usize].abs() < 1.0);
+    let pulse_of_load = TimeFunction::Pulse {
+        start: 0.0,
+        duration: 4.0,
+    };
+    body.add_load(Load::new(middle.collect(), [0.5, 0.0, 0.0], pulse_of_load));
+    let mut scheme = integrator(method, h, &body)?;
+    let mut state = pulse(&Arc::clone(&cloud), 1.0);
+    let mut inequality = EnergyInequality::new(1.0 / end);
+    let start = StartEnergy {
+        energy: body.operator().energy(0.0, &state.u),
+        scheme: 0.0,
+    };
+    let mut loaded = Loaded {
+        t: vec![0.0],
+        energy: vec![start.energy],
+        bound: vec![inequality.bound(&Snapshot::new(&body, &state, start, 0.0))],
+    };
+    let steps = (end / dt).round() as usize;
+    march(
+        &mut body,
+        &mut *scheme,
+        &mut state,
+        dt,
+        steps,
+        |body, state| {
+            let snapshot = Snapshot::new(body, state, start, 0.0);
+            let energies = snapshot.energies();
+            loaded.t.push(state.t);
+            loaded.energy.push(energies.kinetic + energies.elastic);
+            loaded.bound.push(inequality.bound(&snapshot));
+        },
+    )?;
+    Ok(loaded)
+}
+
+/// e(t) ≤ e(0) exp(νt) + 1/(2νρ) ∫ exp(ν(t−s)) ‖b‖² ds.
+fn inequality(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+    const END: f64 = 8.0;
+    let mut rows = Vec::new();
+    for (name, method, dt) in [
+        ("MSV", Method::Msv, 0.1),
+        ("MT", Method::Mt(None), 0.1),
+        ("GT", Method::Gt(None), 0.1),
+        ("MMI", Method::Mmi, 0.1),
+        ("MSV, τ ω_max = 2.4", Method::Msv, 1.2),
+    ] {
+        let course = loaded(method, 0.1, dt, END)?;
+        let pairs = || course.energy.iter().zip(&course.bound);
+        let nearest = pairs().map(|(e, bound)| e / bound).fold(0.0, f64::max);
+        let broken = pairs().any(|(e, bound)| *e > bound * (1.0 + 1e-12));
+        let stable = dt < 1.0;
+        let row = Row::new(
+            format!("{name}: whether the energy inequality is broken"),
+            "",
+            Some(f64::from(u8::from(broken))),
+        );
+        rows.push(
+            row.within(f64::from(u8::from(!stable)), 0.0)
+                .note(if stable {
+                    ""
+                } else {
+                    "a scheme that makes energy is found out"
+                }),
+        );
+        let case = format!("{name}: largest energy over its bound");
+        rows.push(Row::new(case, "", Some(nearest)));
+        if let (Method::Gt(None), Some(path)) = (method, context.figure("inequality.png")) {
+            LineChart::new(Axis::new("time", ""), Axis::new("energy", ""))
+                .title("Energy under a load of 4 time units, and its bound, ν = 1/8")
+                .curve(Curve::line(
+                    "kinetic and elastic",
+                    &course.t,
+                    &course.energy,
+                ))
+                .curve(Curve::line("bound", &course.t, &course.bound).dashed())
+                .write(path)?;
+        }
     }
     Ok(rows)
 }

@@ -99,6 +99,15 @@ pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, C
 
 /// A body with free ends.
 pub(super) fn system(cloud: &Arc<PointCloud>, material: &BondMaterial) -> Result<System, CliError> {
+    system_as(cloud, material, BondForm::Convolution)
+}
+
+/// A body whose bonds are kept in this form.
+pub(super) fn system_as(
+    cloud: &Arc<PointCloud>,
+    material: &BondMaterial,
+    form: BondForm,
+) -> Result<System, CliError> {
     let constants = material.constants(cloud, StressState::Uniaxial)?;
     let body = BondBody {
         cloud,
@@ -109,7 +118,7 @@ pub(super) fn system(cloud: &Arc<PointCloud>, material: &BondMaterial) -> Result
         stiffness: &[],
         damage: DamageMeasure::default(),
     };
-    let operator = body.operator(BondForm::Convolution)?.operator;
+    let operator = body.operator(form)?.operator;
     Ok(System::new(
         Arc::clone(cloud),
         operator,

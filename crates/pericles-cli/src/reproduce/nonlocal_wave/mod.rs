@@ -14,12 +14,13 @@ mod figures;
 mod limit;
 mod line;
 mod long_waves;
+mod nonlinear;
 mod spectral;
 
 use super::Study;
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 8] = [
+pub(super) const STUDIES: [Study; 9] = [
     convergence::STUDY,
     long_waves::STUDY,
     limit::STUDY,
@@ -27,6 +28,7 @@ pub(super) const STUDIES: [Study; 8] = [
     bar::STUDY,
     energy::STUDY,
     figures::STUDY,
+    nonlinear::STUDY,
     cost::STUDY,
 ];
 

@@ -12,6 +12,7 @@
 //!
 //! All sources are independent: each is searched by one thread, up to the horizon only, so that the cost is that of the pairs found. Distances are
 //! symmetric to the last bit, and do not depend on the number of threads. [`geodesic_pairs_cached`] keeps them from run to run.
+//! [`Ball`] says which pairs are bonds: those near along the surface, or those near in space.
 //!
 //! ```
 //! use pericles::family::geodesic::{GeodesicMethod, geodesic_pairs};
@@ -24,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod ball;
 mod errors;
 mod exact;
 mod graph;
@@ -32,6 +34,7 @@ mod pairs;
 mod stored;
 mod unfolding;
 
+pub use ball::Ball;
 pub use errors::GeodesicErrors;
 pub use method::{GeodesicMethod, UnknownMethod};
 pub use pairs::GeodesicPairs;

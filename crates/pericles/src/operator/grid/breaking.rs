@@ -1,10 +1,11 @@
 //! Breaking of a chunk's bonds, decided where the force sweep has seen a large strain.
 
 use super::kernels::{Grid, xi};
-use super::law::{GridLaw, Offset};
 use super::layout::Chunk;
+use super::stencil::Offset;
 use crate::family::LANES;
 use crate::operator::damage::{BreakEvent, Tally};
+use crate::operator::fast_law::FastLaw;
 use crate::operator::lanes::Lanes;
 
 /// Breaking as the loops see it.
@@ -27,7 +28,7 @@ pub(super) struct GridBreaking<'a, const D: usize> {
 ///
 /// Decided with [`crate::material::PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
 #[inline(always)]
-pub(super) fn break_chunk<T: Lanes, L: GridLaw, const D: usize>(
+pub(super) fn break_chunk<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     rule: &GridBreaking<'_, D>,
     chunk: &Chunk,
@@ -69,7 +70,7 @@ pub(super) fn break_chunk<T: Lanes, L: GridLaw, const D: usize>(
 /// Books the energy of bonds of one offset that have just broken. Each end books half.
 #[cold]
 #[inline(never)]
-fn book<L: GridLaw, const D: usize>(
+fn book<L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     rule: &GridBreaking<'_, D>,
     chunk: &Chunk,

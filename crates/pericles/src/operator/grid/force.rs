@@ -6,7 +6,6 @@ use super::block::ChunkBlock;
 use super::breaking::GridBreaking;
 use super::build::{bits_of_set, cut, geometric_blocks, precut_bonds};
 use super::kernels::{Grid, accept_chunks};
-use super::law::GridLaw;
 use super::layout::{Chunk, GridLayout};
 use super::padded::Padded;
 use super::stencil::{BondRule, Stencil};
@@ -16,6 +15,7 @@ use crate::error::{PericlesError, Result};
 use crate::family::{Crack, Cut, EndRule, LANES};
 use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
+use crate::operator::fast_law::FastLaw;
 use crate::operator::{DamageMeasure, ForceOperator, InstructionSet, On};
 use crate::parallel::{components, components_mut, for_each_part};
 use crate::space::PointCloud;
@@ -23,7 +23,7 @@ use crate::space::PointCloud;
 /// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
 ///
 /// All nodes share one stencil. Rows along x are taken eight nodes at a time, all offsets in turn, without roots and
-/// divisions while strains are small (see [`GridLaw`]). Holes, boundaries, pre-cracks and damage are one byte per eight nodes and offset.
+/// divisions while strains are small (see [`FastLaw`]). Holes, boundaries, pre-cracks and damage are one byte per eight nodes and offset.
 /// A point's force depends on nothing but its neighbours: not on threads, not on which points are wanted.
 ///
 /// Memory: per point one byte per eight bonds, a copy of the displacement, and 4 bytes; row ends are padded to eight nodes.
@@ -64,7 +64,7 @@ use crate::space::PointCloud;
 /// # Ok(())
 /// # }
 /// ```
-pub struct GridForce<L: GridLaw, const D: usize> {
+pub struct GridForce<L: FastLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) layout: GridLayout,
     pub(super) stencil: Stencil<D>,
@@ -80,6 +80,8 @@ pub struct GridForce<L: GridLaw, const D: usize> {
     pub(super) damage: DamageMeasure,
     /// Work arrays, locked for the length of an evaluation.
     pub(super) scratch: Mutex<Scratch<D>>,
+    /// A second vector in padded rows, made by the first tangent.
+    pub(super) direction: Mutex<Option<Padded<D>>>,
     pub(super) instruction_set: InstructionSet,
     pub(super) law: std::marker::PhantomData<L>,
 }
@@ -100,7 +102,7 @@ impl<const D: usize> Scratch<D> {
     }
 }
 
-impl<L: GridLaw, const D: usize> GridForce<L, D> {
+impl<L: FastLaw, const D: usize> GridForce<L, D> {
     /// The operator of a material on a lattice body with pre-cracks; bonds of the points `no_fail` never break.
     ///
     /// # Errors
@@ -155,6 +157,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
             directed_bonds: bonds_left(&blocks),
             held: (!no_fail.is_empty()).then(|| bits_of_set(&layout, no_fail)),
             scratch: Mutex::new(Scratch::new(&layout, &stencil)),
+            direction: Mutex::new(None),
             cloud,
             layout,
             stencil,
@@ -170,9 +173,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
 
     /// Runs the loops with another instruction set; for tests and benchmarks.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
-        if InstructionSet::available().contains(&set) {
-            self.instruction_set = set;
-        }
+        self.use_instruction_set(set);
         self
     }
 

@@ -6,10 +6,11 @@
 
 use super::block::{ChunkBlock, scatter};
 use super::breaking::{GridBreaking, break_chunk};
-use super::law::{GridLaw, Offset};
 use super::layout::Chunk;
+use super::stencil::Offset;
 use crate::family::LANES;
 use crate::operator::damage::Tally;
+use crate::operator::fast_law::FastLaw;
 use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set, vector};
 
 /// Read-only arrays as the loops see them.
@@ -58,7 +59,7 @@ struct Fast<T, const D: usize> {
 }
 
 #[inline(always)]
-fn fast_force<T: Lanes, L: GridLaw, const D: usize>(
+fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     place: usize,
     intact: &[u8],
@@ -75,17 +76,18 @@ fn fast_force<T: Lanes, L: GridLaw, const D: usize>(
             continue;
         }
         let eta = grid.eta(place, offset.shift, &here);
-        let t = L::strain(offset, eta).masked(mask);
+        let bond = offset.lanes::<T>();
+        let t = L::strain(&bond, eta).masked(mask);
         fast.largest = t.max(fast.largest);
         fast.smallest = t.min(fast.smallest);
-        L::add_force(offset, eta, t, &mut fast.sum);
+        L::add_force(&bond, eta, t, mask, &mut fast.sum);
     }
     fast
 }
 
 /// Forces of a chunk by the law itself, however large the strains.
 #[inline(always)]
-fn exact_force<T: Lanes, L: GridLaw, const D: usize>(
+fn exact_force<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     place: usize,
     intact: &[u8],
@@ -105,7 +107,7 @@ fn exact_force<T: Lanes, L: GridLaw, const D: usize>(
 /// Forces of a chunk. A lane takes the exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's force
 /// does not depend on which other points are computed beside it.
 #[inline(always)]
-fn chunk_force<T: Lanes, L: GridLaw, const D: usize>(
+fn chunk_force<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     place: usize,
     intact: &[u8],
@@ -126,7 +128,7 @@ fn chunk_force<T: Lanes, L: GridLaw, const D: usize>(
 }
 
 #[inline(always)]
-fn force_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
+fn force_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
@@ -152,7 +154,7 @@ fn force_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_chunks_body<T: Lanes, L: GridLaw, const D: usize, const FORCE: bool>(
+fn accept_chunks_body<T: Lanes, L: FastLaw, const D: usize, const FORCE: bool>(
     grid: &Grid<'_, D>,
     rule: &GridBreaking<'_, D>,
     block: &ChunkBlock<'_>,
@@ -186,7 +188,7 @@ fn accept_chunks_body<T: Lanes, L: GridLaw, const D: usize, const FORCE: bool>(
 }
 
 #[inline(always)]
-fn energy_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
+fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
@@ -213,7 +215,7 @@ fn energy_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
 }
 
 #[inline(always)]
-fn tangent_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
+fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     direction: &Grid<'_, D>,
     block: &ChunkBlock<'_>,
@@ -248,7 +250,7 @@ fn tangent_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
 
 for_each_instruction_set! {
     /// Adds the force density of the wanted points to `out` (indexed from the block's first point).
-    pub(super) fn force_chunks [L: GridLaw, const D: usize] <L, D> (
+    pub(super) fn force_chunks [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
@@ -258,7 +260,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Breaks over-stretched bonds of the wanted points and, with FORCE, adds the force density of those that are left.
-    pub(super) fn accept_chunks [L: GridLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
+    pub(super) fn accept_chunks [L: FastLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
         grid: &Grid<'_, D>,
         rule: &GridBreaking<'_, D>,
         block: &ChunkBlock<'_>,
@@ -270,7 +272,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Adds the energy density of all points to `out`.
-    pub(super) fn energy_chunks [L: GridLaw, const D: usize] <L, D> (
+    pub(super) fn energy_chunks [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
@@ -280,7 +282,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Adds the derivative of the force density in a direction to `out`.
-    pub(super) fn tangent_chunks [L: GridLaw, const D: usize] <L, D> (
+    pub(super) fn tangent_chunks [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, D>,
         direction: &Grid<'_, D>,
         block: &ChunkBlock<'_>,

@@ -5,7 +5,6 @@ mod breaking;
 mod build;
 mod force;
 mod kernels;
-mod law;
 mod layout;
 mod operator;
 mod padded;
@@ -14,4 +13,3 @@ mod wanted;
 mod zoned;
 
 pub use force::GridForce;
-pub use law::{GridLaw, Offset};

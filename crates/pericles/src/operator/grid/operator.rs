@@ -1,17 +1,19 @@
 //! [`ForceOperator`] for lattice bodies.
 
+use std::sync::PoisonError;
+
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, tangent_chunks};
-use super::law::GridLaw;
 use super::padded::Padded;
 use super::wanted::WantedPoints;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
 use crate::operator::damage;
+use crate::operator::fast_law::FastLaw;
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
 
-impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }
@@ -75,13 +77,21 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 
     fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        let mut padded = Padded::new(&self.layout, self.stencil.farthest_shift());
+        let spare = || {
+            self.direction
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        let idle = spare().take();
+        let mut padded =
+            idle.unwrap_or_else(|| Padded::new(&self.layout, self.stencil.farthest_shift()));
         padded.fill(&self.layout, direction);
         let direction = self.grid(&padded);
         out.fill(0.0);
         self.sweep::<D>(u, &On::All, out, |grid, block, intact, out| {
             tangent_chunks::<L, D>(self.instruction_set, grid, &direction, block, intact, out);
         });
+        *spare() = Some(padded);
     }
 
     fn dissipated(&self) -> f64 {
@@ -142,6 +152,12 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
         self.instruction_set
     }
 
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+    }
+
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
     }
@@ -155,7 +171,7 @@ impl<L: GridLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 }
 
-impl<L: GridLaw, const D: usize> GridForce<L, D> {
+impl<L: FastLaw, const D: usize> GridForce<L, D> {
     /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
     fn for_each_block(
         &self,
@@ -179,14 +195,18 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
     }
 }
 
-impl<L: GridLaw, const D: usize> LinearOperator for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.add_force(0.0, u, On::All, out);
     }
+
+    fn half_bandwidth(&self) -> Option<usize> {
+        (D == 1).then(|| self.stencil.farthest(0))
+    }
 }
 
-impl<L: GridLaw, const D: usize> Saved for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
     fn save(&self, archive: &mut Archive) {
         damage::save(&self.blocks, "operator/grid", archive);
     }

@@ -1,7 +1,36 @@
 //! The family of a lattice's node, once for all nodes.
 
-use super::law::Offset;
+use crate::operator::fast_law::FixedBond;
+use crate::operator::lanes::{Lanes, vector};
 use crate::space::Lattice;
+
+/// One bond of the stencil, with everything the loops need of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Offset<const D: usize> {
+    /// From a node's place in a padded array to that of its neighbour.
+    pub shift: isize,
+    /// ξ, m.
+    pub xi: [f64; D],
+    /// 1/|ξ|², m⁻².
+    pub inverse_square: f64,
+    /// c α κ V, N/m³.
+    pub stiffness: f64,
+    /// c α κ V/|ξ|, N/m⁴.
+    pub factor: f64,
+}
+
+impl<const D: usize> Offset<D> {
+    /// The bond in all lanes.
+    #[inline(always)]
+    pub fn lanes<T: Lanes>(&self) -> FixedBond<T, D> {
+        FixedBond {
+            xi: vector(|c| T::splat(self.xi[c])),
+            inverse_square: T::splat(self.inverse_square),
+            stiffness: T::splat(self.stiffness),
+            factor: T::splat(self.factor),
+        }
+    }
+}
 
 /// The bonds of a node within reach, in ascending order of the neighbour's number; with offset k also its opposite, offset `len() − 1 − k`.
 ///
@@ -73,7 +102,6 @@ impl<const D: usize> Stencil<D> {
         self.offsets.push(Offset {
             shift,
             xi: std::array::from_fn(|c| xi[c]),
-            twice_xi: std::array::from_fn(|c| xi[c] + xi[c]),
             inverse_square: 1.0 / (length * length),
             stiffness,
             factor: stiffness / length,

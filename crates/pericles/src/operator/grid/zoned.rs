@@ -3,16 +3,16 @@
 use super::block::{ChunkBlock, scatter};
 use super::force::GridForce;
 use super::kernels::{Grid, force_chunks};
-use super::law::GridLaw;
 use super::layout::Chunk;
 use crate::family::LANES;
+use crate::operator::fast_law::FastLaw;
 use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set};
 use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
 
 /// Which points exert a force, one byte per chunk.
 pub(super) struct Partners(Vec<u8>);
 
-impl<L: GridLaw, const D: usize> GridForce<L, D> {
+impl<L: FastLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {
         let bits = |chunk: &Chunk| {
             chunk
@@ -51,7 +51,7 @@ impl<L: GridLaw, const D: usize> GridForce<L, D> {
     }
 }
 
-impl<L: GridLaw, const D: usize> ZonedForce for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let place = self.layout.place_of(i);
         let (number, lane) = self.layout.chunk_at(place);
@@ -123,7 +123,7 @@ impl<L: GridLaw, const D: usize> ZonedForce for GridForce<L, D> {
 }
 
 #[inline(always)]
-fn endangered_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
+fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, D>,
     threshold: f64,
     breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
@@ -140,7 +140,7 @@ fn endangered_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
         let masks = &intact[number * m..(number + 1) * m];
         for (k, (offset, &mask)) in grid.offsets.iter().zip(masks).enumerate() {
             let eta = grid.eta(place, offset.shift, &here);
-            let over = L::strain(offset, eta).greater(threshold) & mask;
+            let over = L::strain(&offset.lanes(), eta).greater(threshold) & mask;
             if over & !endangered != 0 {
                 endangered |= over & breakable(chunk, k);
             }
@@ -154,7 +154,7 @@ fn endangered_chunks_body<T: Lanes, L: GridLaw, const D: usize>(
 
 for_each_instruction_set! {
     /// Adds one to the points with a bond that may break and is strained beyond the threshold.
-    fn endangered_chunks [L: GridLaw, const D: usize] <L, D> (
+    fn endangered_chunks [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, D>,
         threshold: f64,
         breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),

@@ -7,15 +7,15 @@ use super::box_convolution::BoxConvolution;
 use super::energy::{add_density, elastic_energy, origin};
 use super::lattice_bonds::{LatticeBonds, OffsetBond};
 use super::pool::Pool;
-use super::refuse;
 use super::tensor_kernel::{Axis, axes, pairs};
 use super::tensor_spectra::{Product, pair};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
-use crate::archive::{Archive, Saved};
+use super::{refuse, require_convolution};
+use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, VolumeCorrection};
-use crate::material::{BondConstants, BondMaterial, PairLaw};
+use crate::material::{BondConstants, BondMaterial};
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
 use crate::parallel::{components, components_mut};
 use crate::space::{Lattice, PointCloud};
@@ -59,16 +59,7 @@ impl<const D: usize> ConvolutionForce<D> {
         cracks: &[Crack],
         periodic: [bool; D],
     ) -> Result<Self> {
-        if material.law != PairLaw::Linear {
-            return refuse(
-                "only the linear law is one; use the bond list for the bond-stretch law",
-            );
-        }
-        if constants.critical_stretch.is_finite() {
-            return refuse(
-                "bonds that break are none; use the bond list, or leave the critical stretch and fracture energy out",
-            );
-        }
+        require_convolution(material, constants)?;
         if !cracks.is_empty() {
             return refuse(
                 "pre-cracks cut single bonds, which a convolution cannot; use the bond list",
@@ -261,6 +252,13 @@ impl<const D: usize> LinearOperator for ConvolutionForce<D> {
             }
         }
     }
+
+    fn half_bandwidth(&self) -> Option<usize> {
+        match &self.engine {
+            Engine::Line(line) => line.half_bandwidth(),
+            Engine::Box(_) => None,
+        }
+    }
 }
 
 impl<const D: usize> ForceOperator for ConvolutionForce<D> {
@@ -342,10 +340,4 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
 }
 
 /// A linear operator has no memory: nothing is stored.
-impl<const D: usize> Saved for ConvolutionForce<D> {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
+impl<const D: usize> Saved for ConvolutionForce<D> {}

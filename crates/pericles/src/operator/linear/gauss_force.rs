@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::energy::{elastic_energy, origin};
 use super::pool::Pool;
-use super::refuse;
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
-use crate::archive::{Archive, Saved};
+use super::{refuse, require_convolution};
+use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
 use crate::family::VolumeCorrection;
-use crate::material::{BondConstants, BondMaterial, PairLaw};
+use crate::material::{BondConstants, BondMaterial};
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
 use crate::space::PointCloud;
 
@@ -51,16 +51,7 @@ impl GaussForce {
         material: &BondMaterial,
         constants: &BondConstants,
     ) -> Result<Self> {
-        if material.law != PairLaw::Linear {
-            return refuse(
-                "only the linear law is one; use the bond list for the bond-stretch law",
-            );
-        }
-        if constants.critical_stretch.is_finite() {
-            return refuse(
-                "bonds that break are none; use the bond list, or leave the critical stretch and fracture energy out",
-            );
-        }
+        require_convolution(material, constants)?;
         let stiffness = |r| constants.micromodulus * material.influence.alpha(r, material.horizon);
         Self::with_stiffness(
             cloud,
@@ -202,6 +193,11 @@ impl LinearOperator for GaussForce {
         self.products(|i| u[i] - origin, &mut work);
         out.copy_from_slice(&work.force);
     }
+
+    fn half_bandwidth(&self) -> Option<usize> {
+        let cells = self.same.reach().max(self.across[0].reach());
+        Some((2 * cells + 1).min(self.points() - 1))
+    }
 }
 
 impl ForceOperator for GaussForce {
@@ -282,10 +278,4 @@ impl ForceOperator for GaussForce {
 }
 
 /// A linear operator has no memory: nothing is stored.
-impl Saved for GaussForce {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
+impl Saved for GaussForce {}

@@ -71,6 +71,30 @@ pub use spectral::{SpectralCubicForce, SpectralForce, Symbol};
 pub use toeplitz::{Ends, Toeplitz};
 
 use crate::error::{PericlesError, Result};
+use crate::material::{BondConstants, BondMaterial, PairLaw};
+
+/// Refuses what makes bonds of one offset differ: nonlinear laws and breaking.
+fn require_convolution(material: &BondMaterial, constants: &BondConstants) -> Result<()> {
+    if material.law != PairLaw::Linear {
+        return refuse("only the linear law is one; use the bond list for the bond-stretch law");
+    }
+    if constants.critical_stretch.is_finite() {
+        return refuse(
+            "bonds that break are none; use the bond list, or leave the critical stretch and fracture energy out",
+        );
+    }
+    Ok(())
+}
+
+/// Refuses breaking where plane waves are computed one by one.
+fn require_unbreakable(constants: &BondConstants) -> Result<()> {
+    if constants.critical_stretch.is_finite() {
+        return refuse(
+            "bonds that break couple all plane waves; leave the critical stretch and fracture energy out",
+        );
+    }
+    Ok(())
+}
 
 /// The error of what is no convolution.
 fn refuse<T>(reason: impl Into<String>) -> Result<T> {

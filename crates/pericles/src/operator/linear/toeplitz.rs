@@ -338,6 +338,10 @@ impl Toeplitz {
 }
 
 impl LinearOperator for Toeplitz {
+    fn half_bandwidth(&self) -> Option<usize> {
+        (self.ends != Ends::Periodic).then(|| self.reach())
+    }
+
     /// # Panics
     /// If the slices do not have one entry per node.
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {

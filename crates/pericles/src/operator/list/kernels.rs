@@ -1,303 +1,389 @@
-//! The loops over bonds, one text for every law, dimension and instruction set.
+//! The loops over listed bonds, one text for every law, dimension and instruction set.
 //!
-//! A point's bonds are taken eight at a time: gather the neighbours, compute the pair force in lanes, mask bonds that do not exist, and
-//! add up. The lanes of the sum are added in a fixed order at the end, so a point's force depends on nothing but its neighbours.
+//! A point's bonds are taken eight at a time. Neighbours are read as rows of four numbers and turned into lanes in registers. Nothing is read of
+//! a bond but its neighbour's number and one bit: ξ and with it |ξ|, weight and volume follow from the positions. The lanes of the sum are added in a fixed order, so a
+//! point's force depends on nothing but its neighbours.
 
-use crate::family::LANES;
-use crate::material::PairForce;
-use crate::operator::damage::{BreakEvent, Tally};
-use crate::operator::lanes::{F64x8, InstructionSet, for_each_instruction_set, vector};
+use super::breaking::{BreakRule, break_row};
+use super::stiffness::Stiffness;
+use crate::family::{BondList, LANES};
+use crate::operator::damage::Tally;
+use crate::operator::fast_law::{FastLaw, FixedBond};
+use crate::operator::lanes::{F64x8, InstructionSet, Lanes, dot, for_each_instruction_set, vector};
+use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// The read-only arrays of a bond list as the loops see them.
-pub(super) struct Bonds<'a, const D: usize> {
-    /// Reference coordinates in units of `unit`.
-    pub reference: [&'a [f64]; D],
+/// A bond list as the loops see it.
+pub(super) struct Bonds<'a> {
+    list: &'a BondList,
+    /// Reference coordinates in units of `unit`; behind them the volume of the point, m³.
+    reference: &'a Records,
     /// Length of one coordinate unit, m.
-    pub unit: f64,
-    pub start: &'a [usize],
-    pub neighbours: &'a [u32],
-    /// c α κ V of the neighbour, per entry.
-    pub stiffness: &'a [f64],
+    unit: f64,
+    stiffness: &'a Stiffness,
     /// Marks of the points whose bonds count; all of them if none.
-    pub partners: Option<&'a [bool]>,
+    partners: Option<&'a [bool]>,
 }
 
-impl<const D: usize> Bonds<'_, D> {
-    #[inline(always)]
-    fn gather(&self, group: usize, array: &[f64]) -> F64x8 {
-        let neighbours = &self.neighbours[group * LANES..(group + 1) * LANES];
-        F64x8::from_fn(|k| array[neighbours[k] as usize])
+/// What all bonds of a point share.
+struct Here<T, const D: usize> {
+    reference: [T; D],
+    u: [T; D],
+    cell: T,
+}
+
+impl<'a> Bonds<'a> {
+    /// # Panics
+    /// If there are not as many rows as points.
+    pub fn new(
+        list: &'a BondList,
+        reference: &'a Records,
+        unit: f64,
+        stiffness: &'a Stiffness,
+    ) -> Self {
+        assert_eq!(reference.len(), list.len(), "a row for every point");
+        Self {
+            list,
+            reference,
+            unit,
+            stiffness,
+            partners: None,
+        }
     }
 
-    /// ξ of the eight bonds of a group of point i.
-    #[inline(always)]
-    fn vectors(&self, i: usize, group: usize) -> [F64x8; D] {
-        vector(|c| {
-            let here = self.reference[c][i];
-            let there = self.gather(group, self.reference[c]);
-            F64x8::from_fn(|k| (there.0[k] - here) * self.unit)
-        })
+    /// The same bonds, as far as they lead to marked points.
+    pub fn leading_to(self, partners: Option<&'a [bool]>) -> Self {
+        Self { partners, ..self }
     }
 
-    /// Differences of a vector field along the eight bonds of a group.
+    pub fn list(&self) -> &BondList {
+        self.list
+    }
+
+    /// ξ of one bond, m.
+    pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
+        std::array::from_fn(|c| (self.reference[j][c] - self.reference[i][c]) * self.unit)
+    }
+
     #[inline(always)]
-    fn differences(&self, i: usize, group: usize, field: &[&[f64]; D]) -> [F64x8; D] {
-        vector(|c| {
-            let here = field[c][i];
-            let there = self.gather(group, field[c]);
-            F64x8::from_fn(|k| there.0[k] - here)
-        })
+    fn here<T: Lanes, const D: usize>(&self, i: usize, u: &Records) -> Here<T, D> {
+        Here {
+            reference: vector(|c| T::splat(self.reference[i][c])),
+            u: vector(|c| T::splat(u[i][c])),
+            cell: T::splat(u[i][3]),
+        }
+    }
+
+    /// The rows of the neighbours of a group.
+    #[inline(always)]
+    fn there<T: Lanes>(&self, group: usize, field: &Records) -> [T; 4] {
+        assert!(field.len() == self.list.len(), "a row for every point");
+        let indices = self.list.group(group);
+        // SAFETY: neighbours are below the number of points, which `BondList` guarantees, and the field has as many rows.
+        unsafe { T::gather(field, indices) }
+    }
+
+    /// The eight bonds of a group, and their η.
+    #[inline(always)]
+    fn group<T: Lanes, const D: usize>(
+        &self,
+        group: usize,
+        here: &Here<T, D>,
+        u: &Records,
+    ) -> (FixedBond<T, D>, [T; D]) {
+        let reference = self.there::<T>(group, self.reference);
+        let there = self.there::<T>(group, u);
+        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * T::splat(self.unit));
+        let eta = vector(|c| there[c] - here.u[c]);
+        let mut square = xi[0] * xi[0];
+        for c in 1..D {
+            square = xi[c].mul_add(xi[c], square);
+        }
+        let inverse = square.inverse_root();
+        let cells = [here.cell, there[3]];
+        let stiffness = self
+            .stiffness
+            .of_group(group, square * inverse, reference[3], cells);
+        let bond = FixedBond {
+            xi,
+            inverse_square: inverse * inverse,
+            stiffness,
+            factor: stiffness * inverse,
+        };
+        (bond, eta)
+    }
+
+    /// Stiffness c α κ V of an entry that leads from i to j, whose cells have the sizes given, m.
+    pub fn stiffness_of<const D: usize>(
+        &self,
+        entry: usize,
+        [i, j]: [usize; 2],
+        cells: [f64; 2],
+    ) -> f64 {
+        let xi: [f64; D] = self.vector(i, j);
+        let volume = self.reference[j][3];
+        self.stiffness
+            .of_entry(entry, dot(xi, xi).sqrt(), volume, cells)
     }
 
     /// Bits of the bonds of a group that count.
     #[inline(always)]
-    fn wanted(&self, group: usize) -> u8 {
-        match self.partners {
-            None => 0xFF,
-            Some(marks) => {
-                let neighbours = &self.neighbours[group * LANES..(group + 1) * LANES];
-                let mut bits = 0;
-                for k in 0..LANES {
-                    bits |= u8::from(marks[neighbours[k] as usize]) << k;
-                }
-                bits
-            }
+    pub fn wanted(&self, group: usize) -> u8 {
+        let Some(marks) = self.partners else {
+            return 0xFF;
+        };
+        let neighbours = self.list.group(group);
+        let mut bits = 0;
+        for k in 0..LANES {
+            bits |= u8::from(marks[neighbours[k]]) << k;
         }
-    }
-
-    #[inline(always)]
-    fn stiffness(&self, group: usize) -> F64x8 {
-        let stiffness = &self.stiffness[group * LANES..(group + 1) * LANES];
-        F64x8::from_fn(|k| stiffness[k])
+        bits
     }
 }
 
+/// The force of a point in the fast form, and the range of the strains t it was computed from.
+struct Fast<T, const D: usize> {
+    sum: [T; D],
+    largest: T,
+    smallest: T,
+}
+
 #[inline(always)]
-fn force_rows_body<L: PairForce, const D: usize>(
-    bonds: &Bonds<'_, D>,
-    u: &[&[f64]; D],
+fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
+    u: &Records,
+    i: usize,
+    intact: &[u8],
+) -> Fast<T, D> {
+    let here = bonds.here::<T, D>(i, u);
+    let zero = T::splat(0.0);
+    let mut fast = Fast {
+        sum: [zero; D],
+        largest: zero,
+        smallest: zero,
+    };
+    let first = bonds.list.start()[i];
+    // No closure and no adapter here: one that is not inlined would take the baseline's instructions.
+    for k in 0..intact.len() {
+        let group = first + k;
+        let mask = intact[k] & bonds.wanted(group);
+        if mask == 0 {
+            continue;
+        }
+        let (bond, eta) = bonds.group(group, &here, u);
+        let t = L::strain(&bond, eta).masked(mask);
+        fast.largest = t.max(fast.largest);
+        fast.smallest = t.min(fast.smallest);
+        L::add_force(&bond, eta, t, mask, &mut fast.sum);
+    }
+    fast
+}
+
+/// The force of a point by the law itself, however large the strains.
+#[inline(always)]
+fn exact_force<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
+    u: &Records,
+    i: usize,
+    intact: &[u8],
+) -> [T; D] {
+    let here = bonds.here::<T, D>(i, u);
+    let mut sum = [T::splat(0.0); D];
+    let first = bonds.list.start()[i];
+    for k in 0..intact.len() {
+        let group = first + k;
+        let mask = intact[k] & bonds.wanted(group);
+        if mask == 0 {
+            continue;
+        }
+        let (bond, eta) = bonds.group(group, &here, u);
+        let force = L::force(bond.xi, eta);
+        for c in 0..D {
+            sum[c] = sum[c] + (bond.stiffness * force[c]).masked(mask);
+        }
+    }
+    sum
+}
+
+/// The sum of the lanes, in a fixed order.
+#[inline(always)]
+fn sum<T: Lanes>(lanes: T) -> f64 {
+    F64x8(lanes.to_array()).sum()
+}
+
+/// Adds the force of a point. It takes the exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's force does not depend on
+/// which other points are computed beside it.
+#[inline(always)]
+fn add_point_force<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
+    u: &Records,
+    i: usize,
+    intact: &[u8],
+    fast: Fast<T, D>,
+    at: usize,
+    out: &mut [&mut [f64]; D],
+) {
+    let reach = T::splat(L::REACH);
+    let beyond = fast.largest.greater(reach) | (-fast.smallest).greater(reach);
+    let force = if beyond == 0 {
+        fast.sum
+    } else {
+        exact_force::<T, L, D>(bonds, u, i, intact)
+    };
+    for c in 0..D {
+        out[c][at] += sum(force[c]);
+    }
+}
+
+/// The groups of a point among those of its block.
+#[inline(always)]
+fn groups_of(list: &BondList, i: usize, first_point: usize) -> std::ops::Range<usize> {
+    let start = list.start();
+    start[i] - start[first_point]..start[i + 1] - start[first_point]
+}
+
+#[inline(always)]
+fn force_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
+    u: &Records,
     intact: &[u8],
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
 ) {
-    let first_group = bonds.start[rows.first];
-    // No closure here: one that is not inlined would take the baseline's instructions.
     for k in 0..rows.len() {
         let i = rows.at(k);
-        let mut sum = [F64x8([0.0; LANES]); D];
-        for group in bonds.start[i]..bonds.start[i + 1] {
-            let mask = intact[group - first_group] & bonds.wanted(group);
-            if mask != 0 {
-                let xi = bonds.vectors(i, group);
-                let eta = bonds.differences(i, group, u);
-                let stiffness = bonds.stiffness(group);
-                let force = L::force(xi, eta);
-                for c in 0..D {
-                    sum[c] = sum[c] + (stiffness * force[c]).masked(mask);
-                }
-            }
-        }
-        for c in 0..D {
-            out[c][i - rows.first] += sum[c].sum();
-        }
+        let intact = &intact[groups_of(bonds.list, i, rows.first)];
+        let fast = fast_force::<T, L, D>(bonds, u, i, intact);
+        add_point_force::<T, L, D>(bonds, u, i, intact, fast, i - rows.first, out);
     }
 }
 
-/// Breaking as the loops see it.
-pub(super) struct BreakRule<'a, const D: usize> {
-    pub threshold: f64,
-    /// Bits of the bonds that may break; all of them if none.
-    pub breakable: Option<&'a [u8]>,
-    pub volumes: &'a [f64],
-    /// Mean velocity and length of the step that ended, where the force acted for only half of it.
-    pub step: Option<([&'a [f64]; D], f64)>,
-    /// Note what breaks, so that the other end can be told.
-    pub note_events: bool,
-}
+/// t above which a row is looked at bond by bond: below the threshold by more than the fast form's rounding.
+const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_rows_body<L: PairForce, const D: usize, const FORCE: bool>(
-    bonds: &Bonds<'_, D>,
+fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
     rule: &BreakRule<'_, D>,
-    u: &[&[f64]; D],
+    u: &Records,
     intact: &mut [u8],
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
     tally: &mut Tally,
 ) {
-    let first_group = bonds.start[rows.first];
-    let threshold = F64x8([rule.threshold; LANES]);
+    let watch = T::splat(rule.threshold * WATCH);
     for k in 0..rows.len() {
         let i = rows.at(k);
-        let mut sum = [F64x8([0.0; LANES]); D];
-        for group in bonds.start[i]..bonds.start[i + 1] {
-            let mut mask = intact[group - first_group] & bonds.wanted(group);
-            if mask == 0 {
-                continue;
+        let intact = &mut intact[groups_of(bonds.list, i, rows.first)];
+        // Once more if bonds have broken: a loop, so that the compiler has one copy of its body.
+        let fast = loop {
+            let fast = fast_force::<T, L, D>(bonds, u, i, intact);
+            let endangered = fast.largest.greater(watch) != 0;
+            if !(endangered && break_row::<L, D>(bonds, rule, u, i, intact, tally)) {
+                break fast;
             }
-            let xi = bonds.vectors(i, group);
-            let eta = bonds.differences(i, group, u);
-            let (measure, square) = L::stretch_measure(xi, eta);
-            let breakable = rule.breakable.map_or(0xFF, |bits| bits[group]);
-            let over = measure.greater(threshold * square) & mask & breakable;
-            if over != 0 {
-                mask &= !over;
-                intact[group - first_group] &= !over;
-                break_bonds::<L, D>(bonds, rule, u, i, group, over, tally);
-            }
-            if FORCE {
-                let stiffness = bonds.stiffness(group);
-                let force = L::force(xi, eta);
-                for c in 0..D {
-                    sum[c] = sum[c] + (stiffness * force[c]).masked(mask);
-                }
-            }
-        }
-        if FORCE {
-            for c in 0..D {
-                out[c][i - rows.first] += sum[c].sum();
-            }
-        }
-    }
-}
-
-/// Books the energy of the bonds of a group that have just broken. Each end books half.
-#[cold]
-#[inline(never)]
-fn break_bonds<L: PairForce, const D: usize>(
-    bonds: &Bonds<'_, D>,
-    rule: &BreakRule<'_, D>,
-    u: &[&[f64]; D],
-    i: usize,
-    group: usize,
-    over: u8,
-    tally: &mut Tally,
-) {
-    for k in (0..LANES).filter(|k| over >> k & 1 == 1) {
-        let entry = group * LANES + k;
-        let j = bonds.neighbours[entry] as usize;
-        let difference = |field: &[&[f64]; D]| -> [f64; D] {
-            std::array::from_fn(|c| field[c][j] - field[c][i])
         };
-        let xi: [f64; D] =
-            std::array::from_fn(|c| (bonds.reference[c][j] - bonds.reference[c][i]) * bonds.unit);
-        let eta = difference(u);
-        let mut energy = L::energy(xi, eta);
-        if let Some((velocity, dt)) = &rule.step {
-            let force = L::force(xi, eta);
-            let rate = difference(velocity);
-            let power: f64 = (0..D).map(|c| force[c] * rate[c]).sum();
-            energy -= 0.5 * dt * power;
-        }
-        let dissipated = 0.5 * rule.volumes[i] * bonds.stiffness[entry] * energy;
-        tally.dissipated += dissipated;
-        tally.broken += 1;
-        if rule.note_events {
-            tally.events.push(BreakEvent {
-                point: i as u32,
-                entry,
-                dissipated,
-            });
-        }
+        add_point_force::<T, L, D>(bonds, u, i, intact, fast, i - rows.first, out);
     }
 }
 
 #[inline(always)]
-fn energy_rows_body<L: PairForce, const D: usize>(
-    bonds: &Bonds<'_, D>,
-    u: &[&[f64]; D],
+fn energy_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
+    u: &Records,
     intact: &[u8],
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; 1],
 ) {
-    let first_group = bonds.start[rows.first];
     for k in 0..rows.len() {
         let i = rows.at(k);
-        let mut sum = F64x8([0.0; LANES]);
-        for group in bonds.start[i]..bonds.start[i + 1] {
-            let mask = intact[group - first_group];
-            let xi = bonds.vectors(i, group);
-            let eta = bonds.differences(i, group, u);
-            sum = sum + (bonds.stiffness(group) * L::energy(xi, eta)).masked(mask);
+        let here = bonds.here::<T, D>(i, u);
+        let groups = groups_of(bonds.list, i, rows.first);
+        let first = bonds.list.start()[i];
+        let mut total = T::splat(0.0);
+        for k in 0..groups.len() {
+            let (bond, eta) = bonds.group(first + k, &here, u);
+            let energy = bond.stiffness * L::energy(bond.xi, eta);
+            total = total + energy.masked(intact[groups.start + k]);
         }
-        out[0][i - rows.first] += 0.5 * sum.sum();
+        out[0][i - rows.first] += 0.5 * sum(total);
     }
 }
 
 #[inline(always)]
-fn tangent_rows_body<L: PairForce, const D: usize>(
-    bonds: &Bonds<'_, D>,
-    u: &[&[f64]; D],
-    direction: &[&[f64]; D],
+fn tangent_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+    bonds: &Bonds<'_>,
+    u: &Records,
+    direction: &Records,
     intact: &[u8],
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
 ) {
-    let first_group = bonds.start[rows.first];
     for k in 0..rows.len() {
         let i = rows.at(k);
-        let mut sum = [F64x8([0.0; LANES]); D];
-        for group in bonds.start[i]..bonds.start[i + 1] {
-            let mask = intact[group - first_group];
-            let xi = bonds.vectors(i, group);
-            let eta = bonds.differences(i, group, u);
-            let d = bonds.differences(i, group, direction);
-            let stiffness = bonds.stiffness(group);
-            let force = L::tangent(xi, eta, d);
+        let here = bonds.here::<T, D>(i, u);
+        let direction_here: [T; D] = vector(|c| T::splat(direction[i][c]));
+        let groups = groups_of(bonds.list, i, rows.first);
+        let first = bonds.list.start()[i];
+        let mut total = [T::splat(0.0); D];
+        for k in 0..groups.len() {
+            let (bond, eta) = bonds.group(first + k, &here, u);
+            let there = bonds.there::<T>(first + k, direction);
+            let d = vector(|c| there[c] - direction_here[c]);
+            let force = L::tangent(bond.xi, eta, d);
             for c in 0..D {
-                sum[c] = sum[c] + (stiffness * force[c]).masked(mask);
+                total[c] = total[c] + (bond.stiffness * force[c]).masked(intact[groups.start + k]);
             }
         }
         for c in 0..D {
-            out[c][i - rows.first] = sum[c].sum();
+            out[c][i - rows.first] = sum(total[c]);
         }
     }
 }
 
 for_each_instruction_set! {
     /// Adds the force density of the rows to `out` (indexed from the block's first point).
-    pub(super) fn force_rows [L: PairForce, const D: usize] <L, D> (
-        bonds: &Bonds<'_, D>,
-        u: &[&[f64]; D],
+    pub(super) fn force_rows [L: FastLaw, const D: usize] <L, D> (
+        bonds: &Bonds<'_>,
+        u: &Records,
         intact: &[u8],
         rows: &Rows<'_>,
         out: &mut [&mut [f64]; D],
-    ) = force_rows_body
+    ) = force_rows_body on lanes
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the rows and, with FORCE, adds the force density of those that are left.
-    pub(super) fn accept_rows [L: PairForce, const D: usize, const FORCE: bool] <L, D, FORCE> (
-        bonds: &Bonds<'_, D>,
+    /// Breaks over-stretched bonds of the rows and adds the force density of those that are left.
+    pub(super) fn accept_rows [L: FastLaw, const D: usize] <L, D> (
+        bonds: &Bonds<'_>,
         rule: &BreakRule<'_, D>,
-        u: &[&[f64]; D],
+        u: &Records,
         intact: &mut [u8],
         rows: &Rows<'_>,
         out: &mut [&mut [f64]; D],
         tally: &mut Tally,
-    ) = accept_rows_body
+    ) = accept_rows_body on lanes
 }
 
 for_each_instruction_set! {
     /// Adds the energy density of the rows to `out`.
-    pub(super) fn energy_rows [L: PairForce, const D: usize] <L, D> (
-        bonds: &Bonds<'_, D>,
-        u: &[&[f64]; D],
+    pub(super) fn energy_rows [L: FastLaw, const D: usize] <L, D> (
+        bonds: &Bonds<'_>,
+        u: &Records,
         intact: &[u8],
         rows: &Rows<'_>,
         out: &mut [&mut [f64]; 1],
-    ) = energy_rows_body
+    ) = energy_rows_body on lanes
 }
 
 for_each_instruction_set! {
     /// The derivative of the force density in a direction.
-    pub(super) fn tangent_rows [L: PairForce, const D: usize] <L, D> (
-        bonds: &Bonds<'_, D>,
-        u: &[&[f64]; D],
-        direction: &[&[f64]; D],
+    pub(super) fn tangent_rows [L: FastLaw, const D: usize] <L, D> (
+        bonds: &Bonds<'_>,
+        u: &Records,
+        direction: &Records,
         intact: &[u8],
         rows: &Rows<'_>,
         out: &mut [&mut [f64]; D],
-    ) = tangent_rows_body
+    ) = tangent_rows_body on lanes
 }

@@ -1,6 +1,11 @@
 //! The force of any body by a list of every point's bonds.
 
+mod breaking;
 mod force;
 mod kernels;
+mod operator;
+mod packed;
+mod stiffness;
+mod zoned;
 
 pub use force::BondForce;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::family::LANES;
 use crate::family::geodesic::GeodesicPairs;
+use crate::operator::prefetch::prefetch;
 
 /// Bonds in compressed rows of eight, each with the factor w_ij A_j of its force: 12 bytes a directed bond, and the padding.
 ///
@@ -104,6 +105,13 @@ impl SurfaceBonds {
         self.neighbours[group * LANES..]
             .first_chunk()
             .expect("groups are whole")
+    }
+
+    /// Asks for a group that will be read soon.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, group: usize) {
+        prefetch(&self.weights, group * LANES);
+        prefetch(&self.neighbours, group * LANES);
     }
 
     /// Factors w_ij A_j of all entries.

@@ -8,6 +8,7 @@ use crate::archive::{Archive, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
 use crate::operator::lanes::{F64x8, Real};
+use crate::operator::records::Records;
 use crate::parallel::BLOCK;
 
 /// What is broken, and what it takes to break the rest. A broken bond has weight zero.
@@ -26,10 +27,44 @@ pub(super) struct Step<'a> {
     /// Mean velocity and length of the step, if the force acted for half of it only.
     pub path: Option<(&'a [f64], f64)>,
     pub areas: &'a [f64],
-    pub reference: &'a [[f64; 4]],
+    pub reference: &'a Records,
+    /// Marks of the points whose bonds are decided; all of them if none.
+    pub partners: Option<&'a [bool]>,
+}
+
+/// Values at j less those at i, of a component-major field on n points.
+fn difference(field: &[f64], n: usize, i: usize, j: usize) -> [f64; 3] {
+    std::array::from_fn(|c| field[c * n + j] - field[c * n + i])
+}
+
+/// Whether the bond of an entry is left and longer in |η|² than a limit.
+fn is_over(bonds: &SurfaceBonds, entry: usize, u: &[f64], [i, j]: [usize; 2], limit: f64) -> bool {
+    let eta = difference(u, bonds.len(), i, j);
+    eta.iter().map(|x| x * x).sum::<f64>() > limit && bonds.weights()[entry] != 0.0
 }
 
 impl Breaking {
+    /// Marks the points with a bond that is left and stretched beyond a fraction of what it stands.
+    pub fn mark_endangered(
+        &self,
+        bonds: &SurfaceBonds,
+        u: &[f64],
+        fraction: f64,
+        marks: &mut [bool],
+    ) {
+        let part = fraction * fraction;
+        let near = |i: usize| {
+            bonds
+                .row(i)
+                .any(|(entry, j)| is_over(bonds, entry, u, [i, j], part * self.limits[entry]))
+        };
+        marks
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(BLOCK)
+            .for_each(|(i, mark)| *mark |= near(i));
+    }
+
     /// Breaks what is stretched too far among the bonds of the points named by `on`. Both ends of a bond see the same |η|, bit for bit.
     pub fn decide<L: SurfaceLaw>(
         &mut self,
@@ -39,16 +74,14 @@ impl Breaking {
         on: &On<'_>,
     ) {
         let n = bonds.len();
-        let difference = |field: &[f64], i: usize, j: usize| -> [f64; 3] {
-            std::array::from_fn(|c| field[c * n + j] - field[c * n + i])
-        };
         let over = |i: usize| {
             let (bonds, limits) = (&*bonds, &self.limits);
-            bonds.row(i).filter_map(move |(entry, j)| {
-                let eta = difference(step.u, i, j);
-                let square: f64 = eta.iter().map(|x| x * x).sum();
-                (square > limits[entry] && bonds.weights()[entry] != 0.0).then_some((i, entry, j))
-            })
+            let counts = |j: usize| step.partners.is_none_or(|marks| marks[j]);
+            let over = move |&(entry, j): &(usize, usize)| {
+                counts(j) && is_over(bonds, entry, step.u, [i, j], limits[entry])
+            };
+            let rows = bonds.row(i).filter(over);
+            rows.map(move |(entry, j)| (i, entry, j))
         };
         let found: Vec<(usize, usize, usize)> = match on {
             On::All => (0..n)
@@ -70,11 +103,11 @@ impl Breaking {
             } else {
                 [0.0; 3]
             };
-            let eta = difference(step.u, i, j);
+            let eta = difference(step.u, n, i, j);
             let mut energy = law.energy(lanes(xi), lanes(eta)).0[0];
             if let Some((velocity, dt)) = step.path {
                 let force = law.force(lanes(xi), lanes(eta));
-                let rate = difference(velocity, i, j);
+                let rate = difference(velocity, n, i, j);
                 let power: f64 = (0..3).map(|c| force[c].0[0] * rate[c]).sum();
                 energy -= 0.5 * dt * power;
             }

@@ -10,9 +10,11 @@ use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
 use super::law::SurfaceLaw;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
+use crate::operator::lanes::Row;
 use crate::operator::linear::pool::{Lent, Pool};
+use crate::operator::records::pack;
 use crate::operator::rows::Rows;
-use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use crate::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
 use crate::space::PointCloud;
 
@@ -25,9 +27,9 @@ pub struct SurfaceForce<L: SurfaceLaw> {
     cloud: Arc<PointCloud>,
     bonds: SurfaceBonds,
     /// Positions at rest, if the law needs chords.
-    reference: Vec<[f64; 4]>,
+    reference: Vec<Row>,
     breaking: Option<Breaking>,
-    records: Pool<Vec<[f64; 4]>>,
+    records: Pool<Vec<Row>>,
     instruction_set: InstructionSet,
 }
 
@@ -42,8 +44,8 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         let n = cloud.len();
         let mut reference = Vec::new();
         if L::CHORD {
-            reference = vec![[0.0; 4]; n];
-            pack(cloud.positions(), &mut reference);
+            reference = vec![Row::default(); n];
+            pack::<3>(cloud.positions(), &mut reference);
         }
         Self {
             law,
@@ -54,7 +56,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
                 broken: Vec::new(),
                 dissipated: 0.0,
             }),
-            records: Pool::new(1, move || vec![[0.0; 4]; n]),
+            records: Pool::new(1, move || vec![Row::default(); n]),
             cloud,
             instruction_set: InstructionSet::detect(),
         }
@@ -73,9 +75,9 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         &self.bonds
     }
 
-    fn packed(&self, field: &[f64]) -> Lent<'_, Vec<[f64; 4]>> {
+    fn packed(&self, field: &[f64]) -> Lent<'_, Vec<Row>> {
         let mut records = self.records.take();
-        pack(field, &mut records);
+        pack::<3>(field, &mut records);
         records
     }
 
@@ -99,34 +101,31 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         );
     }
 
-    fn decide(&mut self, u: &[f64], path: Option<(&[f64], f64)>, on: &On<'_>) {
+    fn add_force_of(&self, bonds: &Bonds<'_>, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+        let u = self.packed(u);
+        self.sweep::<3>(on, out, |rows, out| {
+            force_rows(self.instruction_set, self.law, bonds, &u, rows, out);
+        });
+    }
+
+    fn decide(
+        &mut self,
+        u: &[f64],
+        path: Option<(&[f64], f64)>,
+        on: &On<'_>,
+        partners: Option<&[bool]>,
+    ) {
         let step = Step {
             u,
             path,
             areas: self.cloud.volumes(),
             reference: &self.reference,
+            partners,
         };
         if let Some(breaking) = &mut self.breaking {
             breaking.decide(self.law, &mut self.bonds, &step, on);
         }
     }
-}
-
-/// Rows of four from a component-major field.
-fn pack(field: &[f64], records: &mut [[f64; 4]]) {
-    let n = records.len();
-    let (x, rest) = field.split_at(n);
-    let (y, z) = rest.split_at(n);
-    records
-        .par_chunks_mut(8 * BLOCK)
-        .zip(x.par_chunks(8 * BLOCK))
-        .zip(y.par_chunks(8 * BLOCK))
-        .zip(z.par_chunks(8 * BLOCK))
-        .for_each(|(((records, x), y), z)| {
-            for (((record, x), y), z) in records.iter_mut().zip(x).zip(y).zip(z) {
-                *record = [*x, *y, *z, 0.0];
-            }
-        });
 }
 
 impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
@@ -139,11 +138,7 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
     }
 
     fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
-        let u = self.packed(u);
-        let bonds = Bonds::new(&self.bonds, &self.reference);
-        self.sweep::<3>(&on, out, |rows, out| {
-            force_rows(self.instruction_set, self.law, &bonds, &u, rows, out);
-        });
+        self.add_force_of(&Bonds::new(&self.bonds, &self.reference), u, &on, out);
     }
 
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
@@ -175,12 +170,12 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
 
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
         let path = Some((accepted.mean_velocity, accepted.dt));
-        self.decide(accepted.u, path, &on);
+        self.decide(accepted.u, path, &on, None);
         self.add_force(accepted.t, accepted.u, on, out);
     }
 
     fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
-        self.decide(u, None, &on);
+        self.decide(u, None, &on, None);
     }
 
     fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
@@ -250,7 +245,7 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
                 .breaking
                 .as_ref()
                 .map_or(0, |breaking| size_of_val(&breaking.limits[..]))
-            + self.points() * size_of::<[f64; 4]>()
+            + self.points() * size_of::<Row>()
     }
 
     fn instruction_set(&self) -> InstructionSet {
@@ -259,6 +254,43 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         self.law.is_linear().then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        Some(self)
+    }
+
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        Some(self)
+    }
+}
+
+impl<L: SurfaceLaw> ZonedForce for SurfaceForce<L> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.bonds.row(i).for_each(|(_, j)| visit(j));
+    }
+
+    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+        let bonds = Bonds::new(&self.bonds, &self.reference).to(partners);
+        self.add_force_of(&bonds, u, &on, out);
+    }
+
+    fn accept_and_force_from(
+        &mut self,
+        accepted: Accepted<'_>,
+        on: On<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
+        let path = Some((accepted.mean_velocity, accepted.dt));
+        self.decide(accepted.u, path, &on, Some(partners));
+        self.add_force_from(accepted.t, accepted.u, on, partners, out);
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if let Some(breaking) = &self.breaking {
+            breaking.mark_endangered(&self.bonds, u, fraction, marks);
+        }
     }
 }
 

@@ -8,10 +8,10 @@ use rustfft::num_complex::Complex;
 
 use super::super::fourier::LineTransform;
 use super::super::pool::Pool;
-use super::super::refuse;
 use super::super::wanted::for_each_wanted;
+use super::super::{refuse, require_unbreakable};
 use super::symbol::Symbol;
-use crate::archive::{Archive, Saved};
+use crate::archive::Saved;
 use crate::error::Result;
 use crate::kernel::ActsOn;
 use crate::material::{BondConstants, BondMaterial, PairLaw};
@@ -81,11 +81,7 @@ impl SpectralCubicForce {
                 "the terms of a force whose influence function acts on the stretch have no Fourier series of their own; use acts_on = \"displacement\"",
             );
         }
-        if constants.critical_stretch.is_finite() {
-            return refuse(
-                "bonds that break couple all plane waves; leave the critical stretch and fracture energy out",
-            );
-        }
+        require_unbreakable(constants)?;
         let symbol = Symbol::new(
             1,
             cloud.section(),
@@ -363,10 +359,4 @@ impl ForceOperator for SpectralCubicForce {
 }
 
 /// Nothing is stored.
-impl Saved for SpectralCubicForce {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
+impl Saved for SpectralCubicForce {}

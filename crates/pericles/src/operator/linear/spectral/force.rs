@@ -9,12 +9,12 @@ use rustfft::num_complex::Complex;
 
 use super::super::energy::{add_density, elastic_energy, origin};
 use super::super::pool::Pool;
-use super::super::refuse;
 use super::super::tensor_kernel::pairs;
 use super::super::wanted::for_each_wanted;
+use super::super::{refuse, require_unbreakable};
 use super::box_transform::BoxTransform;
 use super::symbol::Symbol;
-use crate::archive::{Archive, Saved};
+use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
 use crate::material::{BondConstants, BondMaterial, PairLaw};
 use crate::operator::function::{Diagonal, Term};
@@ -55,11 +55,7 @@ impl<const D: usize> SpectralForce<D> {
                 "plane waves are independent for the linear law only; use model = \"linear\"",
             );
         }
-        if constants.critical_stretch.is_finite() {
-            return refuse(
-                "bonds that break couple all plane waves; leave the critical stretch and fracture energy out",
-            );
-        }
+        require_unbreakable(constants)?;
         let symbol = Symbol::new(
             D,
             cloud.section(),
@@ -373,10 +369,4 @@ impl<const D: usize> ForceOperator for SpectralForce<D> {
 }
 
 /// A linear operator has no memory: nothing is stored.
-impl<const D: usize> Saved for SpectralForce<D> {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
+impl<const D: usize> Saved for SpectralForce<D> {}

@@ -1,13 +1,18 @@
 //! Implicit schemes of order two: the midpoint and the trapezoidal rule.
 
+mod solver;
+
 use rayon::prelude::*;
+
+pub use solver::LinearSolver;
+use solver::StepSolver;
 
 use super::{Integrator, State};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
 use crate::parallel::{BLOCK, ordered_sum};
-use crate::solve::{Nonlinear, SolveLimits, Work, conjugate_gradient, newton_krylov};
+use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
 use crate::system::System;
 
 /// Where the force of a step is taken.
@@ -26,13 +31,13 @@ pub enum ImplicitRule {
 /// (2/τ) atan(τω/2).
 ///
 /// The unknown is w, half the increment of the displacement: (ρ + τ²/4 K) w = ρ [τ/2 v + τ²/4 (a + Δb/ρ)], symmetric and positive definite. Linear systems are solved by
-/// conjugate gradients, nonlinear ones by Newton–Krylov with the tangent, to a relative residual of 1e-14, or what rounding allows up to 1e-12. Iterations: some
-/// (1 + τ²ω²/4)^½ times 15 for the highest ω.
+/// Cholesky's factor, kept from step to step, or by conjugate gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent, to a relative residual of 1e-14, or what
+/// rounding allows up to 1e-12. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
 pub struct Implicit {
     rule: ImplicitRule,
-    linear: bool,
+    /// Of linear bodies.
+    solver: Option<StepSolver>,
     mass: Vec<f64>,
-    reference: Vec<f64>,
 
     /// w
     half: Vec<f64>,
@@ -58,6 +63,14 @@ impl Implicit {
     /// # Errors
     /// Boundaries that have a memory.
     pub fn new(rule: ImplicitRule, system: &System) -> Result<Self> {
+        Self::with_solver(rule, LinearSolver::default(), system)
+    }
+
+    /// The same with a chosen solver for linear systems.
+    ///
+    /// # Errors
+    /// As [`Implicit::new`].
+    pub fn with_solver(rule: ImplicitRule, solver: LinearSolver, system: &System) -> Result<Self> {
         let refuse = |reason| {
             Err(PericlesError::SchemeNotUsable {
                 scheme: rule.name(),
@@ -76,9 +89,8 @@ impl Implicit {
         let array = || vec![0.0; entries];
         Ok(Self {
             rule,
-            linear: system.operator().as_linear().is_some(),
+            solver: StepSolver::new(solver, system),
             mass: system.masses(),
-            reference: array(),
             half: array(),
             right: array(),
             change: array(),
@@ -99,7 +111,19 @@ impl Implicit {
         each(&mut self.half, u, |half, u| *half = 0.5 * (*half - u));
     }
 
-    fn solve_linear(&mut self, system: &System, t: [f64; 2], v: &[f64], a: &[f64]) -> Result<()> {
+    /// Whether steps of length tau are solved by a factor.
+    pub fn is_direct(&self, tau: f64, system: &System) -> bool {
+        let solver = self.solver.as_ref();
+        solver.is_some_and(|solver| solver.is_direct(tau, system))
+    }
+
+    fn solve_linear(
+        &mut self,
+        solver: &mut StepSolver,
+        system: &System,
+        t: [f64; 2],
+        [v, a]: [&[f64]; 2],
+    ) -> Result<()> {
         let tau = t[1] - t[0];
         let quarter = 0.25 * tau * tau;
         // Loads at the rule's place less those in `a`, over density.
@@ -115,32 +139,18 @@ impl Implicit {
         each(&mut self.right, a, |right, a| *right += quarter * a);
         each(&mut self.right, v, |right, v| *right += 0.5 * tau * v);
         if !system.motions().is_empty() {
-            system.vibration_into(&self.reference, &self.half, &mut self.change);
+            system.vibration_into(&self.half, &self.half, &mut self.change);
             each(&mut self.right, &self.change, |right, pull| {
                 *right -= quarter * pull;
             });
         }
         each(&mut self.right, &self.mass, |right, m| *right *= m);
         system.hold(&mut self.right);
-        let (mass, reference) = (&self.mass, &self.reference);
-        let mut product = |x: &[f64], out: &mut [f64]| {
-            system.vibration_into(reference, x, out);
-            add_and_weigh(out, quarter, x, mass);
-        };
         // Prescribed entries are known: the solver sees the free ones.
-        let mut free = std::mem::take(&mut self.change);
-        free.fill(0.0);
-        let scale = norm(&self.right);
-        let solved = conjugate_gradient(
-            &mut product,
-            &self.right,
-            &mut free,
-            &LIMITS,
-            &mut self.work,
-        );
-        let solved = good_enough(solved.map(|_| ()), scale);
-        each(&mut self.half, &free, |half, free| *half += free);
-        self.change = free;
+        let free = &mut self.change;
+        let solved = solver.solve(system, &self.mass, tau, &self.right, free, &mut self.work);
+        let solved = good_enough(solved, norm(&self.right));
+        each(&mut self.half, free, |half, free| *half += free);
         solved
     }
 
@@ -286,10 +296,13 @@ impl Integrator for Implicit {
         let State { t, u, v, a, .. } = state;
         let tau = t_next - *t;
         self.prescribe(system, t_next, u);
-        if self.linear {
-            self.solve_linear(system, [*t, t_next], v, a)?;
-        } else {
-            self.solve_nonlinear(system, [*t, t_next], [u, v, a])?;
+        match self.solver.take() {
+            Some(mut solver) => {
+                let solved = self.solve_linear(&mut solver, system, [*t, t_next], [v, a]);
+                self.solver = Some(solver);
+                solved?;
+            }
+            None => self.solve_nonlinear(system, [*t, t_next], [u, v, a])?,
         }
         let [u_next, v_next] = &mut self.next;
         u_next.copy_from_slice(u);
@@ -304,11 +317,18 @@ impl Integrator for Implicit {
     }
 }
 
-/// The scheme carries nothing from step to step but the state.
+/// The scheme carries nothing from step to step but the state, and what its solver remembers.
 impl Saved for Implicit {
-    fn save(&self, _archive: &mut Archive) {}
+    fn save(&self, archive: &mut Archive) {
+        if let Some(solver) = &self.solver {
+            solver.save(archive);
+        }
+    }
 
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        match &mut self.solver {
+            Some(solver) => solver.restore(archive),
+            None => Ok(()),
+        }
     }
 }

@@ -1,0 +1,130 @@
+//! Columns that only some histories have.
+
+use pericles::analysis::exact::{ExactSolution, Miss};
+use pericles::observe::{EnergyInequality, Snapshot};
+use pericles::space::PointSet;
+use pericles::{Archive, Result, Saved, Values};
+
+use super::table::whole;
+use crate::csv::{Cell, Column};
+
+/// More columns of a [`History`](super::History).
+pub trait HistoryColumns: Saved {
+    /// Their names and units.
+    fn columns(&self) -> Vec<Column>;
+
+    /// Their cells at a state.
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell>;
+}
+
+/// Of schemes with inner iterations: the iterations of the last step, and the last change of the velocity.
+pub struct InnerColumns;
+
+impl HistoryColumns for InnerColumns {
+    fn columns(&self) -> Vec<Column> {
+        vec![
+            Column::integer("inner_iterations"),
+            Column::real("inner_change", "m/s"),
+        ]
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+        let inner = snapshot.inner_iterations().unwrap_or_default();
+        vec![whole(inner.last), inner.change.into()]
+    }
+}
+
+impl Saved for InnerColumns {}
+
+/// The distance from a known solution of a bar: the largest error over the points that count (m), the largest of that so far, and the root mean square error over that of the
+/// solution.
+pub struct ErrorColumns {
+    solution: Box<dyn ExactSolution>,
+    points: PointSet,
+    largest: f64,
+}
+
+impl ErrorColumns {
+    /// Errors against a solution, at some points.
+    pub fn new(solution: Box<dyn ExactSolution>, points: PointSet) -> Self {
+        Self {
+            solution,
+            points,
+            largest: 0.0,
+        }
+    }
+}
+
+impl HistoryColumns for ErrorColumns {
+    fn columns(&self) -> Vec<Column> {
+        vec![
+            Column::real("error", "m"),
+            Column::real("error_so_far", "m"),
+            Column::real("error_relative", "1"),
+        ]
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+        let state = snapshot.state();
+        let pick = |field: &[f64]| -> Vec<f64> {
+            self.points.iter().map(|&i| field[i as usize]).collect()
+        };
+        let places = pick(snapshot.system().cloud().axis(0));
+        let mut exact = vec![0.0; places.len()];
+        self.solution
+            .displacement_into(state.t, &places, &mut exact);
+        let miss = Miss::between(&pick(&state.u), &exact);
+        self.largest = if miss.largest.is_nan() {
+            f64::NAN
+        } else {
+            self.largest.max(miss.largest)
+        };
+        [miss.largest, self.largest, miss.relative]
+            .map(Cell::from)
+            .to_vec()
+    }
+}
+
+impl Saved for ErrorColumns {
+    fn save(&self, archive: &mut Archive) {
+        archive.put("observer/errors/largest", Values::F64(vec![self.largest]));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        archive.f64_into(
+            "observer/errors/largest",
+            std::slice::from_mut(&mut self.largest),
+        )
+    }
+}
+
+/// What kinetic plus elastic energy cannot exceed, and by how much they stay below it, J.
+pub struct EnergyBoundColumns(pub EnergyInequality);
+
+impl HistoryColumns for EnergyBoundColumns {
+    fn columns(&self) -> Vec<Column> {
+        vec![
+            Column::real("energy_bound", "J"),
+            Column::real("energy_margin", "J"),
+        ]
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+        let bound = self.0.bound(snapshot);
+        let energies = snapshot.energies();
+        vec![
+            bound.into(),
+            (bound - energies.kinetic - energies.elastic).into(),
+        ]
+    }
+}
+
+impl Saved for EnergyBoundColumns {
+    fn save(&self, archive: &mut Archive) {
+        self.0.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.0.restore(archive)
+    }
+}

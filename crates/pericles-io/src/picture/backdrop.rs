@@ -1,0 +1,97 @@
+//! Numbers on a grid, by colour, beneath the curves of a chart.
+
+use super::bitmap::Bitmap;
+use super::colour::ColourMap;
+use super::frame::{ColourBar, Frame, finite_range, widened};
+use super::units::Shown;
+
+/// A map of numbers over both axes of a [`LineChart`](super::LineChart), with a colour bar.
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct Backdrop {
+    pub(super) name: String,
+    unit: String,
+    /// Ends of the columns, ascending.
+    columns: Vec<f64>,
+    y: (f64, f64),
+    rows: usize,
+    values: Vec<f64>,
+    range: Option<(f64, f64)>,
+}
+
+impl Backdrop {
+    /// `values` column by column, each from the bottom up; `columns` are the ends of the columns along x, one more than there are columns, and the equal rows lie between
+    /// the ends `y`.
+    pub fn new(columns: &[f64], y: (f64, f64), rows: usize, values: &[f64]) -> Self {
+        Self {
+            name: String::new(),
+            unit: String::new(),
+            columns: columns.to_vec(),
+            y,
+            rows,
+            values: values.to_vec(),
+            range: None,
+        }
+    }
+
+    /// What the numbers are, and their unit.
+    pub fn label(mut self, name: impl Into<String>, unit: impl Into<String>) -> Self {
+        self.name = name.into();
+        self.unit = unit.into();
+        self
+    }
+
+    /// The numbers at the ends of the colour bar; otherwise the smallest and the largest.
+    pub fn range(mut self, low: f64, high: f64) -> Self {
+        self.range = Some((low, high));
+        self
+    }
+
+    /// How many numbers there must be, and how many there are.
+    pub(super) fn lengths(&self) -> (usize, usize) {
+        let columns = self.columns.len().saturating_sub(1);
+        (columns * self.rows, self.values.len())
+    }
+
+    pub(super) fn bar(&self) -> ColourBar {
+        let (low, high) = self
+            .range
+            .unwrap_or_else(|| finite_range(self.values.iter().copied()));
+        let (low, high) = widened(low, high);
+        ColourBar {
+            map: ColourMap::default(),
+            low,
+            high,
+            shown: Shown::for_size(low.abs().max(high.abs()), &self.unit),
+        }
+    }
+
+    /// Fills the cells; `factors` are those of shown numbers on both axes.
+    pub(super) fn draw(
+        &self,
+        bitmap: &mut Bitmap,
+        frame: &Frame,
+        bar: &ColourBar,
+        factors: [f64; 2],
+    ) {
+        let area = frame.area;
+        let place = |x: f64, y: f64| {
+            let (x, y) = frame.place(x / factors[0], y / factors[1]);
+            // Whole pixels: neighbouring cells leave no seam.
+            (
+                x.clamp(area.left, area.right).round(),
+                y.clamp(area.top, area.bottom).round(),
+            )
+        };
+        let height = (self.y.1 - self.y.0) / self.rows as f64;
+        for (number, ends) in self.columns.windows(2).enumerate() {
+            for row in 0..self.rows {
+                let low = self.y.0 + row as f64 * height;
+                let (left, bottom) = place(ends[0], low);
+                let (right, top) = place(ends[1], low + height);
+                let colour = bar.colour(self.values[number * self.rows + row]);
+                bitmap.fill_rectangle((left, top), (right, bottom), colour, 1.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Pair laws in the operators' loops: the same forces as [`PairForce`], without roots and divisions where that is possible.
+
+use super::lanes::Lanes;
+use crate::material::{
+    BondStretch, CubicBond, CubicFactor, GreenBond, LinearBond, LiteralBond, PairForce, Treated,
+};
+
+/// What stays of eight bonds while their points move.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedBond<T, const D: usize> {
+    /// ξ, m.
+    pub xi: [T; D],
+    /// 1/|ξ|², m⁻².
+    pub inverse_square: T,
+    /// c α κ V, N/m³.
+    pub stiffness: T,
+    /// c α κ V/|ξ|, N/m⁴.
+    pub factor: T,
+}
+
+/// The fast form of a pair force.
+///
+/// With the measure m of [`PairForce::stretch_measure`], t = m/|ξ|² decides all: the bond is over-stretched if t > threshold(s₀), and
+/// its force may be written as a function of t times a direction. A law without such a form takes what it has.
+pub trait FastLaw: PairForce {
+    /// The largest |t| for which [`FastLaw::add_force`] holds to round-off.
+    const REACH: f64 = f64::INFINITY;
+
+    /// t of eight bonds; the same bits seen from the other end.
+    #[inline(always)]
+    fn strain<T: Lanes, const D: usize>(bond: &FixedBond<T, D>, eta: [T; D]) -> T {
+        Self::stretch_measure(bond.xi, eta).0 * bond.inverse_square
+    }
+
+    /// Adds the force of the bonds that `mask` names to `sum`. Their strain is t; it is zero for the others.
+    #[inline(always)]
+    fn add_force<T: Lanes, const D: usize>(
+        bond: &FixedBond<T, D>,
+        eta: [T; D],
+        _t: T,
+        mask: u8,
+        sum: &mut [T; D],
+    ) {
+        let force = Self::force(bond.xi, eta);
+        for c in 0..D {
+            sum[c] = sum[c] + (bond.stiffness * force[c]).masked(mask);
+        }
+    }
+}
+
+impl FastLaw for GreenBond {}
+
+impl FastLaw for LiteralBond {}
+
+impl<L: CubicBond, T: CubicFactor> FastLaw for Treated<L, T> {}
+
+/// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)), ascending: the polynomial through its values at the seven Chebyshev nodes of
+/// |t| ≤ 0.02, computed with 50 digits; relative error below 8e-15 there.
+const PHI: [f64; 7] = [
+    0.5,
+    -0.3750000000013755,
+    0.3125000000012991,
+    -0.27343747249067285,
+    0.2460937240188067,
+    -0.22572346562446355,
+    0.20960254454644783,
+];
+
+impl FastLaw for BondStretch {
+    const REACH: f64 = 0.02;
+
+    /// t = η·(2ξ+η)/|ξ|².
+    #[inline(always)]
+    fn strain<T: Lanes, const D: usize>(bond: &FixedBond<T, D>, eta: [T; D]) -> T {
+        let xi = bond.xi;
+        let mut growth = eta[0] * (xi[0] + (xi[0] + eta[0]));
+        for c in 1..D {
+            growth = eta[c].mul_add(xi[c] + (xi[c] + eta[c]), growth);
+        }
+        growth * bond.inverse_square
+    }
+
+    /// (c α κ V/|ξ|) φ(t) (ξ+η), with φ(t) = 1 − (1+t)^(−1/2) = 1 − |ξ|/|ξ+η|.
+    #[inline(always)]
+    fn add_force<T: Lanes, const D: usize>(
+        bond: &FixedBond<T, D>,
+        eta: [T; D],
+        t: T,
+        _mask: u8,
+        sum: &mut [T; D],
+    ) {
+        let mut phi = T::splat(PHI[6]);
+        for k in (0..6).rev() {
+            phi = phi.mul_add(t, T::splat(PHI[k]));
+        }
+        let pull = t * bond.factor * phi;
+        for c in 0..D {
+            sum[c] = pull.mul_add(bond.xi[c] + eta[c], sum[c]);
+        }
+    }
+}
+
+impl FastLaw for LinearBond {
+    /// t = ξ·η/|ξ|².
+    #[inline(always)]
+    fn strain<T: Lanes, const D: usize>(bond: &FixedBond<T, D>, eta: [T; D]) -> T {
+        let mut along = eta[0] * bond.xi[0];
+        for c in 1..D {
+            along = eta[c].mul_add(bond.xi[c], along);
+        }
+        along * bond.inverse_square
+    }
+
+    /// (c α κ V/|ξ|) t ξ.
+    #[inline(always)]
+    fn add_force<T: Lanes, const D: usize>(
+        bond: &FixedBond<T, D>,
+        _eta: [T; D],
+        t: T,
+        _mask: u8,
+        sum: &mut [T; D],
+    ) {
+        let pull = t * bond.factor;
+        for c in 0..D {
+            sum[c] = pull.mul_add(bond.xi[c], sum[c]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_polynomial_is_exact_to_round_off() {
+        for k in -1000..=1000 {
+            let t = 0.02 * f64::from(k) / 1000.0;
+            let exact = 1.0 / ((1.0 + t) + (1.0 + t).sqrt());
+            let phi = PHI.iter().rev().fold(0.0, |sum, a| sum * t + a);
+            assert!((phi / exact - 1.0).abs() < 9e-15, "{t}: {phi} {exact}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Breaking of a point's bonds, decided where the force sweep has seen a large strain.
+
+use super::kernels::Bonds;
+use crate::family::LANES;
+use crate::material::PairForce;
+use crate::operator::damage::{BreakEvent, Tally};
+use crate::operator::records::Records;
+
+/// Breaking as the loops see it.
+pub(super) struct BreakRule<'a, const D: usize> {
+    /// Bonds with measure > threshold |ξ|² are over-stretched.
+    pub threshold: f64,
+    /// Bits of the bonds that may break; all of them if none.
+    pub breakable: Option<&'a [u8]>,
+    pub volumes: &'a [f64],
+    /// Mean velocity and length of the step that ended, where the force acted for only half of it.
+    pub step: Option<([&'a [f64]; D], f64)>,
+    /// Note what breaks, so that the other end can be told.
+    pub note_events: bool,
+}
+
+/// Breaks the over-stretched bonds of a point and books their energy, each end half; says whether there were any.
+///
+/// Decided with [`PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
+#[cold]
+#[inline(never)]
+pub(super) fn break_row<L: PairForce, const D: usize>(
+    bonds: &Bonds<'_>,
+    rule: &BreakRule<'_, D>,
+    u: &Records,
+    i: usize,
+    intact: &mut [u8],
+    tally: &mut Tally,
+) -> bool {
+    let first = bonds.list().start()[i];
+    let mut any = false;
+    for (k, intact) in intact.iter_mut().enumerate() {
+        let group = first + k;
+        let breakable = rule.breakable.map_or(0xFF, |bits| bits[group]);
+        let candidates = *intact & bonds.wanted(group) & breakable;
+        let neighbours = bonds.list().group(group);
+        for lane in (0..LANES).filter(|lane| candidates >> lane & 1 == 1) {
+            let j = neighbours[lane];
+            let xi: [f64; D] = bonds.vector(i, j);
+            let eta: [f64; D] = std::array::from_fn(|c| u[j][c] - u[i][c]);
+            let (measure, square) = L::stretch_measure(xi, eta);
+            if measure > rule.threshold * square {
+                any = true;
+                *intact &= !(1 << lane);
+                let entry = group * LANES + lane;
+                let stiffness = bonds.stiffness_of::<D>(entry, [i, j], [u[i][3], u[j][3]]);
+                let mut energy = L::energy(xi, eta);
+                if let Some((velocity, dt)) = &rule.step {
+                    let force = L::force(xi, eta);
+                    let power: f64 = (0..D)
+                        .map(|c| force[c] * (velocity[c][j] - velocity[c][i]))
+                        .sum();
+                    energy -= 0.5 * dt * power;
+                }
+                let dissipated = 0.5 * rule.volumes[i] * stiffness * energy;
+                tally.dissipated += dissipated;
+                tally.broken += 1;
+                if rule.note_events {
+                    tally.events.push(BreakEvent {
+                        point: i as u32,
+                        entry,
+                        dissipated,
+                    });
+                }
+            }
+        }
+    }
+    any
+}

@@ -1,0 +1,33 @@
+//! Vectors on points as rows of four numbers, so that a bond reads its neighbour with one load.
+
+use rayon::prelude::*;
+
+use super::lanes::Row;
+use crate::parallel::BLOCK;
+
+/// One row for each point; what a row holds behind the components is its owner's.
+pub(super) type Records = [Row];
+
+/// Writes a component-major field to the first numbers of the rows.
+pub(super) fn pack<const D: usize>(field: &[f64], records: &mut Records) {
+    let n = records.len();
+    records
+        .par_chunks_mut(8 * BLOCK)
+        .enumerate()
+        .for_each(|(part, records)| pack_part::<D>(field, n, part * 8 * BLOCK, records));
+}
+
+/// The same for the rows of the points from `first` on.
+pub(super) fn pack_part<const D: usize>(
+    field: &[f64],
+    n: usize,
+    first: usize,
+    records: &mut Records,
+) {
+    for c in 0..D {
+        let component = &field[c * n + first..][..records.len()];
+        for (record, number) in records.iter_mut().zip(component) {
+            record[c] = *number;
+        }
+    }
+}

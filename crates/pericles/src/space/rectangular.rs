@@ -1,0 +1,125 @@
+//! Boxes of cells whose sides differ.
+
+use super::grid::{CELL_LIMIT, whole_cells};
+use super::{Point, PointCloud, Region};
+use crate::error::{PericlesError, Result};
+
+/// The centres of equal cells, as long along each axis as `spacing` says (m), that fill a box from its lower corner and lie in no hole; x fastest.
+///
+/// They are no lattice of cubic cells: their bonds are kept as a list. The cell size that volume corrections use is that of the cube of equal volume.
+///
+/// # Errors
+/// Sides that are no whole numbers of cells; arrays of different lengths; no cell outside the holes.
+pub fn rectangular_cells(
+    origin: Point,
+    size: &[f64],
+    spacing: &[f64],
+    section: f64,
+    holes: &[Region],
+) -> Result<PointCloud> {
+    let dimension = size.len();
+    if !(1..=3).contains(&dimension) || spacing.len() != dimension {
+        return Err(PericlesError::WrongDimension {
+            what: "a box with this number of sides and a spacing for each",
+            needed: "1, 2 or 3",
+            dimension: spacing.len(),
+        });
+    }
+    let mut shape = [1usize; 3];
+    let mut cells = 1.0;
+    for c in 0..dimension {
+        let count = whole_cells(size[c], spacing[c])?;
+        cells *= count;
+        if cells > CELL_LIMIT as f64 {
+            return Err(PericlesError::TooManyPoints {
+                cells,
+                limit: CELL_LIMIT,
+            });
+        }
+        shape[c] = count as usize;
+    }
+    let least = spacing.iter().copied().fold(f64::INFINITY, f64::min);
+    let centre = |cell: usize| -> Point {
+        let row = cell / shape[0];
+        let steps = [cell % shape[0], row % shape[1], row / shape[1]];
+        std::array::from_fn(|c| match spacing.get(c) {
+            Some(dx) => origin[c] + (steps[c] as f64 + 0.5) * dx,
+            None => 0.0,
+        })
+    };
+    let mut end = [0.0; 3];
+    for c in 0..dimension {
+        end[c] = origin[c] + size[c];
+    }
+    let bounds = [origin, end];
+    let in_hole = |place: &Point| {
+        let holds = |hole: &Region| hole.contains(*place, &bounds, 1e-9 * least);
+        holes.iter().any(holds)
+    };
+    let places: Vec<Point> = (0..shape.iter().product())
+        .map(centre)
+        .filter(|place| !in_hole(place))
+        .collect();
+    let positions = (0..dimension)
+        .flat_map(|c| places.iter().map(move |place| place[c]))
+        .collect();
+    let volume = section * spacing.iter().product::<f64>();
+    PointCloud::new(dimension, positions, vec![volume; places.len()], section)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Grid, Shape};
+
+    #[test]
+    fn equal_spacings_give_the_points_of_the_grid() {
+        let (origin, size) = ([0.5, -1.0, 0.0], [1.2, 0.8, 0.6]);
+        let hole = Region::Ball {
+            centre: [1.0, -0.6, 0.2],
+            radius: 0.25,
+        };
+        for dimension in 1..=3 {
+            let holes = vec![hole.clone()];
+            let grid = Grid {
+                shape: Shape::Box {
+                    origin,
+                    size: size[..dimension].to_vec(),
+                },
+                spacing: 0.2,
+                section: 0.7,
+                holes: holes.clone(),
+            };
+            let (a, b) = (
+                grid.points().unwrap(),
+                rectangular_cells(
+                    origin,
+                    &size[..dimension],
+                    &[0.2; 3][..dimension],
+                    0.7,
+                    &holes,
+                )
+                .unwrap(),
+            );
+            assert_eq!(a.len(), b.len());
+            for i in 0..a.len() {
+                for c in 0..3 {
+                    assert!((a.point(i)[c] - b.point(i)[c]).abs() < 1e-14);
+                }
+                assert!((a.volumes()[i] / b.volumes()[i] - 1.0).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn every_axis_has_its_own_spacing() {
+        let cloud = rectangular_cells([0.0; 3], &[1.0, 1.0], &[0.25, 0.1], 2.0, &[]).unwrap();
+        assert_eq!(cloud.len(), 40);
+        assert!(cloud.lattice().is_none());
+        assert!((cloud.volumes()[0] - 0.05).abs() < 1e-16);
+        assert!((cloud.spacing() - 0.025f64.sqrt()).abs() < 1e-15);
+        assert!((cloud.point(5)[0] - 0.375).abs() < 1e-15);
+        assert!((cloud.point(5)[1] - 0.15).abs() < 1e-15);
+        assert!(rectangular_cells([0.0; 3], &[1.0, 1.0], &[0.25, 0.3], 1.0, &[]).is_err());
+    }
+}

@@ -1,0 +1,10 @@
+//! Peridynamics on surfaces, and the implicit schemes.
+
+mod breaking;
+mod modes;
+mod observe;
+mod operator;
+mod refused;
+mod schemes;
+mod sphere;
+mod zones;
