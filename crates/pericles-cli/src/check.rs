@@ -3,7 +3,7 @@
 use pericles::family::geodesic::Ball;
 use pericles::material::SurfaceBond;
 use pericles::space::surface::AreaRule;
-use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
+use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
 
 use crate::args::CheckArgs;
 use crate::console;
@@ -21,7 +21,7 @@ use crate::waves::WaveSpeeds;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let mut model = prepare::model(&deck, &args.caching)?;
+    let model = prepare::model(&deck, &args.caching)?;
     let facts = Facts::of(&deck, &model);
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
@@ -32,8 +32,33 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         None => lines.extend(material(&deck, &facts)),
     }
     lines.extend(time(&facts));
+    if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
+        // A step goes from static state to static state: one would be the whole run.
+        let note = "that of as many iterations as each static state takes";
+        lines.push(("run time", note.into()));
+    } else {
+        let time = run_time(&deck, &facts, model, count_of_threads, &mut lines)?;
+        lines.push(time);
+    }
+    let title = deck.title.as_deref().unwrap_or("no title");
+    let mut text = format!("{}: {title}", args.deck.display());
+    for (name, value) in lines {
+        text += &format!("\n  {name:<18} {value}");
+    }
+    console::print(format_args!("{text}"))?;
+    Ok(Exit::Done)
+}
+
+/// How long the run will take, from a few of its steps; what that says of two time steps is added to the lines.
+fn run_time(
+    deck: &Deck,
+    facts: &Facts,
+    mut model: Model,
+    count_of_threads: usize,
+    lines: &mut Vec<Line>,
+) -> Result<Line, CliError> {
     model.integrator.start(&mut model.system, &mut model.state);
-    let comparison = Comparison::measure(&deck, &mut model)?;
+    let comparison = Comparison::measure(deck, &mut model)?;
     if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {
         lines.extend(refinement::lines(two, facts.scheme, facts.dt, comparison));
     }
@@ -48,7 +73,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         )?,
     };
     let seconds = step * facts.steps as f64;
-    lines.push((
+    Ok((
         "run time",
         format!(
             "about {} on {} ({}), files not counted",
@@ -56,14 +81,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
             threads(count_of_threads),
             facts.instruction_set
         ),
-    ));
-    let title = deck.title.as_deref().unwrap_or("no title");
-    let mut text = format!("{}: {title}", args.deck.display());
-    for (name, value) in lines {
-        text += &format!("\n  {name:<18} {value}");
-    }
-    console::print(format_args!("{text}"))?;
-    Ok(Exit::Done)
+    ))
 }
 
 type Line = (&'static str, String);
@@ -128,6 +146,9 @@ fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
             ),
         )),
         _ => lines.push(("breaking", "never".into())),
+    }
+    for part in &deck.material.parts {
+        lines.push(("besides", format!("{}, {} kg/m³", part.name, part.density)));
     }
     let density = deck.material.bonds.density;
     let speeds = WaveSpeeds::of(facts.youngs_modulus, density, deck.body.state);

@@ -12,7 +12,7 @@ use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, History, InnerColumns, PictureOf,
     Pictures, Probes, Reactions, SurfaceCourse,
 };
-use pericles_io::{DiskCache, OutputFolder, read_surface};
+use pericles_io::{DiskCache, OutputFolder, read_points, read_surface};
 use serde::Serialize;
 
 use crate::args::Caching;
@@ -112,6 +112,9 @@ pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
         read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
+        read_points: &|path, dimension| {
+            read_points(path, dimension).map_err(|error| error.to_string())
+        },
     });
     for note in cache.iter().flat_map(DiskCache::notes) {
         console::note(format_args!("{note}"));
@@ -169,7 +172,7 @@ pub(crate) fn simulation(
     if output.fields != Schedule::Never {
         folder.subfolder("fields")?;
         let single = output.precision == Precision::Single;
-        let mut fields = FieldSeries::new(folder.path(), single);
+        let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
         if let Some(surface) = &surface {
             fields = fields.of_surface(surface.clone());
         }
@@ -189,6 +192,7 @@ fn add_pictures(
         return Ok(());
     }
     let place = folder.subfolder("pictures")?;
+    let dimension = simulation.system().dimension();
     let mut uses: HashMap<String, u32> = HashMap::new();
     for picture in &deck.output.pictures {
         let what = PictureOf {
@@ -202,11 +206,11 @@ fn add_pictures(
             steady: false,
         };
         // Two pictures of one field get two names.
-        let uses = uses.entry(what.name()).or_default();
+        let uses = uses.entry(what.name(dimension)).or_default();
         *uses += 1;
         let stem = match *uses {
-            1 => what.name(),
-            number => format!("{}_{number}", what.name()),
+            1 => what.name(dimension),
+            number => format!("{}_{number}", what.name(dimension)),
         };
         let mut pictures = Pictures::new(&place, stem, what);
         if picture.animation {

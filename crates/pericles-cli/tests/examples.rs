@@ -97,6 +97,47 @@ fn the_pulse_in_the_bar_runs_at_the_speed_of_sound() {
     );
 }
 
+#[test]
+fn a_bar_in_tension_obeys_hooke() {
+    let (_place, out) = check("statics", "bar");
+    let last =
+        |file: &str, column: &str| *table(&out, file).column(column).unwrap().last().unwrap();
+    let end = last("probes.csv", "end_u_x");
+    assert!((end / 1e-3 - 1.0).abs() < 0.01, "{end}");
+    let between = last("probes.csv", "three_quarters_u_x") - last("probes.csv", "quarter_u_x");
+    assert!((between / 0.5e-3 - 1.0).abs() < 1e-5, "{between}");
+    let reaction = last("reactions.csv", "support_x");
+    assert!((reaction / -2e6 - 1.0).abs() < 1e-6, "{reaction}");
+}
+
+#[test]
+fn an_interface_splits_a_pulse_as_impedances_say() {
+    let (_place, out) = check("wave", "two-materials");
+    let probes = table(&out, "probes.csv");
+    let t = probes.column("time").unwrap();
+    let highest = |name: &str, from: f64| {
+        let column = probes.column(name).unwrap();
+        let late = column.iter().zip(t).filter(|(_, t)| **t > from);
+        late.map(|(u, _)| *u).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let impedance = |young: f64, density: f64| (young * density).sqrt();
+    let (first, second) = (impedance(210e9, 7850.0), impedance(70e9, 2700.0));
+    let sent = highest("before", 0.0);
+    let transmitted = highest("behind", 0.0) / sent;
+    // The pulse has left the first probe by then.
+    let reflected = highest("before", 45e-6) / sent;
+    let exact = 2.0 * first / (first + second);
+    assert!(
+        (transmitted / exact - 1.0).abs() < 0.02,
+        "{transmitted} {exact}"
+    );
+    let exact = (first - second) / (first + second);
+    assert!(
+        (reflected / exact - 1.0).abs() < 0.02,
+        "{reflected} {exact}"
+    );
+}
+
 /// What the audit says of two time steps.
 fn refinement(out: &Path, key: &str) -> f64 {
     report(out)["audit"]["refinement"][key].as_f64().unwrap()

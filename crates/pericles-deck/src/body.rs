@@ -3,6 +3,7 @@
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region, Shape};
 
+use crate::points::{self, PointsFile};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
@@ -13,6 +14,8 @@ use crate::surface::{self, SurfaceKind, SurfaceShape, VertexAreas};
 pub struct Body {
     /// Shape, spacing, section and holes.
     pub grid: Grid,
+    /// The file of its points; of the grid only spacing and section are used then.
+    pub listed: Option<PointsFile>,
     /// Parts with smaller cells and horizon, later ones before earlier ones.
     pub finer: Vec<Finer>,
     /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
@@ -58,10 +61,11 @@ enum Kind {
     Block,
     Cylinder,
     Ball,
+    Points,
     Surface(SurfaceKind),
 }
 
-const KINDS: [(&str, Kind); 12] = [
+const KINDS: [(&str, Kind); 13] = [
     ("bar", Kind::Bar),
     ("plate", Kind::Plate),
     ("disc", Kind::Disc),
@@ -74,6 +78,7 @@ const KINDS: [(&str, Kind); 12] = [
     ("torus", Kind::Surface(SurfaceKind::Torus)),
     ("capsule", Kind::Surface(SurfaceKind::Capsule)),
     ("surface", Kind::Surface(SurfaceKind::File)),
+    ("points", Kind::Points),
 ];
 
 impl Kind {
@@ -81,7 +86,9 @@ impl Kind {
         match self {
             Self::Bar => 1,
             Self::Plate | Self::Disc => 2,
-            Self::Block | Self::Cylinder | Self::Ball | Self::Surface(_) => 3,
+            Self::Block | Self::Cylinder | Self::Ball => 3,
+            // Points say it themselves.
+            Self::Points | Self::Surface(_) => 3,
         }
     }
 }
@@ -103,6 +110,9 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .and_then(|item| item.choice("shape", &KINDS));
     if let Some(Kind::Surface(kind)) = kind {
         return surface(table, kind, read);
+    }
+    if kind == Some(Kind::Points) {
+        return points::read(table, read);
     }
     let spacings = table
         .required("spacing")
@@ -217,6 +227,7 @@ fn assemble(
             section: section?,
             holes,
         },
+        listed: None,
         finer: finer.into_iter().collect::<Option<_>>()?,
         state: read.state?,
         periodic,
@@ -288,7 +299,7 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
             })
         }
         // Read by `surface`.
-        Kind::Surface(_) => None,
+        Kind::Points | Kind::Surface(_) => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
             let axis = region::axis(table);
@@ -354,7 +365,7 @@ fn inner_radius(table: &Table<'_>, outer: Option<f64>) -> Option<Option<f64>> {
 }
 
 /// Area of a bar, thickness of a plate, 1 in three dimensions.
-fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
+pub(crate) fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
     if dimension != 1 {
         table.forbid("area", "only a bar has an area");
     }
@@ -371,7 +382,7 @@ fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
     }
 }
 
-fn state(table: &Table<'_>, dimension: usize) -> Option<StressState> {
+pub(crate) fn state(table: &Table<'_>, dimension: usize) -> Option<StressState> {
     const PLANES: [(&str, StressState); 2] = [
         ("stress", StressState::PlaneStress),
         ("strain", StressState::PlaneStrain),

@@ -15,6 +15,31 @@ pub enum Caution {
     /// A horizon that does not go well with the mesh of a surface.
     #[error("{0}")]
     Surface(SurfaceCaution),
+    /// A strength that no brittle material has.
+    #[error("bonds break beyond a stretch of {:.0} % only", 100.0 * stretch)]
+    LargeStretch {
+        /// The critical stretch.
+        stretch: f64,
+    },
+    /// A load that supports take.
+    #[error("all {points} points of this load are held along it: it acts on the supports alone")]
+    LoadOnHeld {
+        /// Points of the load.
+        points: usize,
+    },
+    /// A static body of which a part may float away.
+    #[error(
+        "{points} of {of} points, such as that at ({}, {}, {}) m, are joined to no support by bonds",
+        place[0], place[1], place[2]
+    )]
+    NoSupport {
+        /// Points without support.
+        points: usize,
+        /// All points.
+        of: usize,
+        /// One of them, m.
+        place: [f64; 3],
+    },
     /// A probe away from the body.
     #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
     ProbeOutside {
@@ -93,6 +118,13 @@ impl Subject for Caution {
             Self::CrackCutsNothing => {
                 "it must pass between points of the body that lie within a horizon of each other"
             }
+            Self::LargeStretch { .. } => {
+                "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
+            }
+            Self::LoadOnHeld { .. } => "take other points, or leave the load out",
+            Self::NoSupport { .. } => {
+                "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
+            }
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
@@ -114,6 +146,9 @@ impl Subject for Caution {
     fn label(&self) -> &'static str {
         match self {
             Self::CrackCutsNothing => "no effect",
+            Self::LargeStretch { .. } => "very strong",
+            Self::LoadOnHeld { .. } => "held",
+            Self::NoSupport { .. } => "loose parts",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",

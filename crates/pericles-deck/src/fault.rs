@@ -99,6 +99,32 @@ pub enum Fault {
         /// What is wrong, and where.
         reason: String,
     },
+    /// A condition that cannot be read.
+    #[error("the condition `{text}` cannot be used: {reason}")]
+    BadCondition {
+        /// The condition.
+        text: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// Points that cannot be had from their file.
+    #[error("{reason}")]
+    BadPoints {
+        /// What is wrong, with the file and the line in it.
+        reason: String,
+    },
+    /// Listed points whose volumes belong to another spacing.
+    #[error(
+        "the volumes of the listed points are those of cells of {found:.3e} m, not of {given:.3e} m"
+    )]
+    OtherSpacing {
+        /// The spacing of the deck, m.
+        given: f64,
+        /// The size of the mean cell, m.
+        found: f64,
+        /// What volumes are divided by besides, by its name in `[body]`.
+        section: Option<&'static str>,
+    },
     /// A course over time for an expression that has its own.
     #[error("`{text}` depends on time by itself and takes no function of time besides")]
     TwoCourses {
@@ -186,6 +212,12 @@ pub enum Fault {
         /// The set.
         set: String,
     },
+    /// A part of another material without points.
+    #[error("the part `{part}` has no point")]
+    EmptyPart {
+        /// Its name.
+        part: String,
+    },
     /// A load whose area cannot be guessed.
     #[error("the area that the traction acts on cannot be told: {reason}")]
     UnknownArea {
@@ -225,7 +257,6 @@ impl Subject for Fault {
             Self::Misplaced { allowed, .. }
             | Self::OutOfRange { allowed, .. }
             | Self::BadOverride { allowed, .. } => allowed.clone(),
-            Self::WrongKind { expected, .. } => format!("allowed: {expected}"),
             Self::NotANumber { expected, .. } => format!("expected {expected}"),
             Self::UnknownUnit {
                 nearest, expected, ..
@@ -242,6 +273,7 @@ impl Subject for Fault {
             Self::EmptySet { .. } => {
                 "a set needs at least one cell centre; make the region larger (a layer is at least half a spacing deep)".into()
             }
+            Self::EmptyPart { .. } => "its set or blocks have none, or later parts have taken them".into(),
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
             Self::BadSurfaceFile { .. } => {
@@ -249,7 +281,16 @@ impl Subject for Fault {
             }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
-            Self::Model(_) => return None,
+            Self::BadCondition { .. } => {
+                "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m".into()
+            }
+            Self::BadPoints { .. } => "one line for each point, in m and m³".into(),
+            Self::OtherSpacing { section: Some(section), .. } => format!(
+                "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
+            ),
+            Self::OtherSpacing { .. } => "places in the file are in m and volumes in m³".into(),
+            // Their own text says what is allowed.
+            Self::WrongKind { .. } | Self::Model(_) => return None,
         })
     }
 
@@ -272,12 +313,15 @@ impl Subject for Fault {
             Self::WrongUnit { .. } => "wrong unit",
             Self::OutOfRange { .. } => "out of range",
             Self::WrongLength { .. } => "wrong length",
-            Self::BadName { .. } | Self::BadExpression { .. } | Self::BadSurfaceFile { .. } => {
-                "not usable"
-            }
+            Self::OtherSpacing { .. } => "another size",
+            Self::BadName { .. }
+            | Self::BadExpression { .. }
+            | Self::BadCondition { .. }
+            | Self::BadPoints { .. }
+            | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
-            Self::EmptySet { .. } => "no points here",
+            Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
             Self::UnknownArea { .. } => "which area?",
             Self::NoExactSolution { .. } => "of another problem",
             Self::Model(_) => "refused",

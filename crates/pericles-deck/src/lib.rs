@@ -50,7 +50,7 @@
 //! title = "Branching crack"              # for people; optional
 //!
 //! [body]
-//! shape = "plate"                        # bar (1D) | plate, disc (2D) | block, cylinder, ball (3D)
+//! shape = "plate"                        # bar (1D) | plate, disc (2D) | block, cylinder, ball (3D) | points
 //! size = ["100 mm", "40 mm"]             # bar (or length = "…"), plate, block; whole numbers of cells
 //! origin = ["0 mm", "0 mm"]              # their lower corner; default 0
 //! # disc, ball: centre [center], default 0; radius          disc: inner_radius, optional
@@ -62,6 +62,7 @@
 //! # area = "1 mm2"                       # 1D only; default 1 m²
 //! # periodic = true                       # bar, plate, block without holes: opposite faces are one; default false
 //! # quadrature = "midpoint"               # default; or gauss: a bar with two Gauss nodes in every cell of `spacing`
+//! # points: those of file = "cloud.txt", beside the deck: text `x y z block volume` (m, m³), see below; dimension, default 3; spacing: about their distance
 //! [[body.hole]]                          # a region without material; any number
 //! ball = { centre = ["20 mm", "20 mm"], radius = "5 mm" }
 //! # [[body.refine]]                      # a region with smaller cells and a smaller horizon; any number, later ones before earlier ones. Bonds are then
@@ -95,14 +96,27 @@
 //! damage = { measure = "volume", count_precut = false }        # the defaults; measure = volume | count
 //! bonds = "fastest"                      # default; or grid, list: how bonds are kept, a matter of speed only; linear unbreakable bodies also
 //!                                         # convolution (grids of any shape and gauss bars; periodic ones, too) and spectral (periodic: the continuum's own forces)
+//! surface_correction = "none"            # default; or volume, energy: bonds near surfaces are stiffened so that families lack nothing; kept as a list
 //! [[material.inclusion]]                 # a part of other stiffness; any number, later ones before earlier ones
 //! set = "left"
 //! stiffness = 64                         # over the material's; a bond has the mean of its ends, density and critical stretch are the material's
+//!
+//! # [[material.part]]                    # another material; any number, later ones before earlier ones. Model, horizon and the like are those of [material]
+//! # name = "aluminium"
+//! # set = "left"                         # or block = 2, block = [2, 3]
+//! # density = "2700 kg/m3"
+//! # youngs_modulus = "70 GPa"            # and fracture_energy or critical_stretch, as above
+//! # [material.interface]                 # bonds between two materials
+//! # rule = "harmonic"                    # default: 2c₁c₂/(c₁+c₂); or arithmetic: (c₁+c₂)/2; or weaker: the smaller. Critical stretch: the smaller, unless
+//! # pair = [{ between = ["soda-lime glass", "aluminium"], critical_stretch = 1e-3 }]
 //!
 //! [sets.top]                             # named sets of points: exactly one region each; "all" is always there
 //! layer = { side = "+y", depth = "0.25 mm" }
 //! [sets.left]
 //! layer = { side = "-x", cells = 2 }
+//!
+//! [sets.grain]
+//! where = "x > 0.01 && (x - 0.02)^2 + y^2 <= 1e-6 || block == 2"   # a condition on x, y, z (m) and block; or block = 2, block = [2, 3]
 //!
 //! [[crack]]                              # cuts bonds before the run
 //! segment = [["0 mm", "20 mm"], ["50 mm", "20 mm"]]   # 2D
@@ -149,7 +163,7 @@
 //! end = "46 us"
 //! dt = "auto"                            # default: the largest stable step times `safety`; or a time
 //! safety = 0.95                          # default; only with "auto"
-//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, newmark, discrete-gradient, implicit-midpoint, trapezoidal, trigonometric
+//! scheme = "velocity-verlet"             # default; or rk3, rk4, dormand-prince, rk3-mts, rk4-mts, respa, newmark, discrete-gradient, implicit-midpoint, trapezoidal, trigonometric, relaxation
 //! # implicit-midpoint, trapezoidal, trigonometric: stable for any dt, which must be given
 //! # implicit-midpoint, trapezoidal: linear_solver = "fastest" (default) | "direct" | "conjugate-gradients", of linear bodies
 //! # trigonometric: functions = "fastest" (default) | "chebyshev" | "fourier" | "lanczos" | "eigenvectors"; loads = "gauss" (default, order 4) | "midpoint";
@@ -164,17 +178,21 @@
 //! # fine = ["notch", "inclusion"]        # these sets, which may not overlap; or
 //! # adaptive = { every = 4, threshold = 0.85, layers = 2, hold = 1 }   # the defaults: what is near to breaking, looked for every so many steps
 //! # rk3-mts, rk4-mts: predictor = "structured" (default) | "backward-difference"; interpolant = "hermite" (default) | "stages"
+//! # relaxation: static states. load_steps = 1 (default) of them up to `end` (default 1 s), dt is not given; tolerance = 1e-6, the forces out of balance over
+//! #   those that act; iterations = 100000; damping = "adaptive" (default) or a number below 2, per iteration
 //! allow_unstable = false                 # default; true: a step known to be unstable is only warned of
 //!
 //! [output]                               # schedules: interval = time | every = steps | count = number over the run
-//! fields = { count = 20 }                # default; or "never"
+//! fields = { count = 20 }                # default; or "never". names = ["Displacement", …]: which fields, by default the first five below; Stress and Strain are
+//! #                                        made of listed bonds, so that bonds = "fastest" becomes "list"
 //! # energy_bound = "46 us"                # adds to the history what kinetic plus elastic energy cannot exceed under the loads, e(0) exp(t/τ) + τ/2 ∫ exp((t−s)/τ) ‖b‖² ds, for
 //! #                                        this τ (best: the time that is looked at), and the margin to it; not with supports that move
 //! history = { count = 200 }              # default; or "never". Reactions follow it too
 //! cracks = { threshold = 0.35 }          # default threshold of damage; schedule by default that of the history; or "never"
 //! precision = "double"                   # default; or single: numbers in field files
 //! [[output.picture]]                     # any number
-//! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density
+//! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density,
+//! #                                        External_Force_Density, Reaction_Density (_x, …), Stress, Strain (Frobenius norm of the components kept, or _xx, _yy, _xy …)
 //! scale = 1                              # default: factor of the displacement
 //! range = [0, 1]                         # of the colour bar; default: that of the field
 //! animation = false                      # default; true: at the end all of them in one animated PNG, ten a second; all then show the box of the body at rest and a
@@ -189,6 +207,11 @@
 //! `cylinder = { centre, axis, radius }` (3D), `half_space = { point, normal }` (the side the normal points away from),
 //! `layer = { side, depth }` (side −x, +x, …, +z of the body's bounding box; `cells` counts spacings instead), `polygon = { corners = [[x, y], …] }`,
 //! `union = [ … ]`, `intersection = [ … ]`, `complement = { … }`.
+//!
+//! # Listed points
+//! `shape = "points"` takes the points of a text file: a line `x y z block volume` for each, separated by blanks or commas; with `#` or `!` begin comments. A first
+//! line may name the columns (`header: x y block_id volume`). In two dimensions z may be left out and volumes are area times `thickness`, in one
+//! dimension y as well and they are length times `area`. Bodies on grids are block 1. Tractions on sets of listed points need `area`.
 //!
 //! # Surfaces
 //! A body may be a closed surface of triangles. Its points are the vertices, with areas in place of volumes: densities are per area, forces are tractions.
@@ -252,9 +275,12 @@ mod nearest;
 mod newmark;
 mod output;
 mod overrides;
+mod part;
+mod points;
 mod quantity;
 mod reader;
 mod region;
+mod relaxation;
 mod scheme;
 mod set;
 mod source;
@@ -265,7 +291,7 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::{BoundaryCondition, HistoryForm};
-pub use build::{ExactReference, Model, Resources, Sets, SurfaceReader};
+pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
@@ -273,13 +299,15 @@ pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
-pub use expression::Expression;
+pub use expression::{Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};
 pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
+pub use part::{MaterialInterface, Part, PartPlace};
+pub use points::PointsFile;
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
-pub use set::{ALL, NamedSet};
+pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
 pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use time::{Time, TimeStep, seconds};

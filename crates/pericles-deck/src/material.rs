@@ -4,12 +4,13 @@ use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, CubicLaw, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
-    Treatment,
+    SurfaceCorrection, Treatment,
 };
 use pericles::operator::{BondForm, DamageMeasure};
 
 use crate::body::BodyRead;
 use crate::influence::{Setting, influence};
+use crate::part::{self, MaterialInterface, Part};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
@@ -26,6 +27,12 @@ pub struct Material {
     pub no_fail: Vec<String>,
     /// Parts that are stiffer or softer, later ones before earlier ones.
     pub inclusions: Vec<Inclusion>,
+    /// Other materials, later ones before earlier ones.
+    pub parts: Vec<Part>,
+    /// Bonds between materials.
+    pub interface: MaterialInterface,
+    /// What is done about the bonds that points near surfaces lack.
+    pub surface_correction: SurfaceCorrection,
     /// How damage is measured.
     pub damage: DamageMeasure,
     /// How bonds are kept: a matter of speed only.
@@ -70,6 +77,15 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             ("none", VolumeCorrection::None),
         ],
     );
+    let surface_correction = table.choice_or_first(
+        "surface_correction",
+        "surface correction",
+        &[
+            ("none", SurfaceCorrection::None),
+            ("volume", SurfaceCorrection::Volume),
+            ("energy", SurfaceCorrection::Energy),
+        ],
+    );
     poisson_ratio(&table, body.state);
     let influence = influence(
         &table,
@@ -92,6 +108,8 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         .into_iter()
         .map(|table| inclusion(table, sets))
         .collect();
+    let parts = part::parts(table.tables("part"), body, sets);
+    let interface = interface(&table, name.as_ref(), parts.as_deref());
     let damage = damage(&table);
     let form = table.choice_or_first(
         "bonds",
@@ -118,9 +136,32 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         },
         no_fail: no_fail?,
         inclusions: inclusions.into_iter().collect::<Option<_>>()?,
+        parts: parts?,
+        interface: interface?,
+        surface_correction: surface_correction?,
         damage: damage?,
         form: form?,
     })
+}
+
+/// Bonds between materials, where there are several.
+fn interface(
+    table: &Table<'_>,
+    name: Option<&Option<String>>,
+    parts: Option<&[Part]>,
+) -> Option<MaterialInterface> {
+    if !table.has("part") {
+        table.forbid(
+            "interface",
+            "only a body with [[material.part]] has interfaces",
+        );
+        return Some(MaterialInterface::default());
+    }
+    let interface = table.table_or_empty("interface");
+    let own = name.cloned().flatten();
+    let others = parts?.iter().map(|part| Some(part.name.clone()));
+    let names: Vec<Option<String>> = std::iter::once(own).chain(others).collect();
+    part::interface(interface?, &names)
 }
 
 /// The law as it is taken.
@@ -173,7 +214,7 @@ pub(crate) fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> 
     })
 }
 
-fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
+pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
     let value = table.exactly_one(MODULI).and_then(|(kind, item)| {
         let number = item.positive(Quantity::Modulus)?;
         let value = match kind {
@@ -201,7 +242,7 @@ fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
     })
 }
 
-fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
+pub(crate) fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
     let Some(item) = table.optional("poisson_ratio") else {
         return;
     };
@@ -282,7 +323,7 @@ fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
     length.map(Extent::Finite)
 }
 
-fn fracture(table: &Table<'_>) -> Option<Fracture> {
+pub(crate) fn fracture(table: &Table<'_>) -> Option<Fracture> {
     match table.at_most_one(STRENGTHS)? {
         None => Some(Fracture::Unbreakable),
         Some(("fracture_energy", item)) => {

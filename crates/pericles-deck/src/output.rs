@@ -12,6 +12,8 @@ use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
 pub struct Output {
     /// When field files are written.
     pub fields: Schedule,
+    /// Which fields.
+    pub names: Vec<Field>,
     /// When a row is added to the tables of energies, probes and reactions.
     pub history: Schedule,
     /// The table of crack tips.
@@ -80,7 +82,7 @@ impl Default for Checkpoint {
 
 /// `driven`: whether supports move.
 pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> Option<Output> {
-    let fields = scheduled(&table, "fields", 20);
+    let (fields, names) = fields(&table, dimension);
     let history = scheduled(&table, "history", 200);
     let cracks = cracks(&table, history);
     let precision = table.choice_or_first(
@@ -105,6 +107,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> 
     table.finish();
     Some(Output {
         fields: fields?,
+        names: names?,
         history: history?,
         cracks: cracks?,
         precision: precision?,
@@ -143,6 +146,37 @@ fn scheduled(table: &Table<'_>, key: &'static str, count: u64) -> Option<Schedul
     let schedule = schedule(&table, Schedule::Count(count));
     table.finish();
     schedule
+}
+
+/// When field files are written, and which fields.
+fn fields(table: &Table<'_>, dimension: Option<usize>) -> (Option<Schedule>, Option<Vec<Field>>) {
+    let usual = Some(Field::USUAL.to_vec());
+    if is_never(table, "fields") {
+        return (Some(Schedule::Never), usual);
+    }
+    let Some(table) = table.table_or_empty("fields") else {
+        return (None, None);
+    };
+    let schedule = schedule(&table, Schedule::Count(20));
+    let names = match table.optional("names") {
+        None => usual,
+        Some(item) => names(&item, dimension),
+    };
+    table.finish();
+    (schedule, names)
+}
+
+fn names(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Field>> {
+    let one = |item: &Item<'_>| match field(item, dimension)? {
+        (field, None) => Some(field),
+        (_, Some(_)) => {
+            item.out_of_range("whole fields: components are part of them");
+            None
+        }
+    };
+    let items = item.list("a list of names of fields")?;
+    let fields: Vec<Option<Field>> = items.iter().map(one).collect();
+    fields.into_iter().collect()
 }
 
 fn is_never(table: &Table<'_>, key: &'static str) -> bool {
@@ -246,24 +280,41 @@ fn quantity(field: Field) -> Quantity {
     match field {
         Field::Displacement => Quantity::Length,
         Field::Velocity => Quantity::Velocity,
-        Field::ForceDensity => Quantity::ForceDensity,
-        Field::Damage => Quantity::Number,
+        Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
+        Field::Stress => Quantity::Traction,
+        Field::Damage | Field::Strain => Quantity::Number,
         Field::StrainEnergyDensity => Quantity::EnergyDensity,
     }
 }
 
-/// A field by its name in files; vectors by magnitude or with the name of an axis the body has.
+impl Output {
+    /// Whether stress or strain is wanted, which only listed bonds give.
+    pub(crate) fn wants_tensors(&self) -> bool {
+        let drawn = self.pictures.iter().map(|picture| picture.field);
+        self.names
+            .iter()
+            .copied()
+            .chain(drawn)
+            .any(Field::is_tensor)
+    }
+}
+
+/// A field by its name in files; vectors and tensors by magnitude or with the name of an axis the body has.
 fn field(item: &Item<'_>, dimension: Option<usize>) -> Option<(Field, Option<usize>)> {
     let whole = Field::ALL.iter().map(|&field| (field, None));
-    let parts = Field::ALL
-        .iter()
-        .filter(|field| field.is_vector())
-        .flat_map(|&field| (0..dimension.unwrap_or(3)).map(move |c| (field, Some(c))));
+    let dimension = dimension.unwrap_or(3);
+    let parts = Field::ALL.iter().flat_map(|&field| {
+        let components = 0..field.components(dimension).len();
+        components.map(move |c| (field, Some(c)))
+    });
     let named: Vec<(String, (Field, Option<usize>))> = whole
         .chain(parts)
         .map(|(field, component)| {
-            let axis = component.map_or("", |c| ["_x", "_y", "_z"][c]);
-            (format!("{}{axis}", field.name()), (field, component))
+            let name = match component {
+                Some(c) => format!("{}_{}", field.name(), field.components(dimension)[c]),
+                None => field.name().to_owned(),
+            };
+            (name, (field, component))
         })
         .collect();
     let text = item.text()?;

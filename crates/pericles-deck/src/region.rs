@@ -6,21 +6,7 @@ use pericles::space::{Face, Point, Region};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::vocabulary::DEPTHS;
-
-/// The kinds of region.
-const KINDS: &[&str] = &[
-    "all",
-    "box",
-    "ball",
-    "cylinder",
-    "half_space",
-    "layer",
-    "polygon",
-    "union",
-    "intersection",
-    "complement",
-];
+use crate::vocabulary::{DEPTHS, REGIONS};
 
 /// What a region is measured against.
 #[derive(Clone, Copy)]
@@ -35,19 +21,24 @@ pub(crate) struct Frame {
 
 /// A table with exactly one key, the kind of region.
 pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<Region> {
-    let found = table.exactly_one(KINDS);
+    let found = table.exactly_one(REGIONS);
     table.finish();
     let (kind, item) = found?;
+    of_kind(kind, &item, frame)
+}
+
+/// A region of a kind.
+pub(crate) fn of_kind(kind: &str, item: &Item<'_>, frame: Frame) -> Option<Region> {
     match kind {
-        "all" => everything(&item),
+        "all" => everything(item),
         "box" => axis_parallel_box(item.table()?, frame),
         "ball" => ball(item.table()?, frame),
-        "cylinder" => cylinder(&item, frame),
+        "cylinder" => cylinder(item, frame),
         "half_space" => half_space(item.table()?, frame),
         "layer" => layer(item.table()?, frame),
-        "polygon" => polygon(&item, frame),
-        "union" => Some(Region::Union(several(&item, frame)?)),
-        "intersection" => Some(Region::Intersection(several(&item, frame)?)),
+        "polygon" => polygon(item, frame),
+        "union" => Some(Region::Union(several(item, frame)?)),
+        "intersection" => Some(Region::Intersection(several(item, frame)?)),
         _ => Some(Region::Complement(Box::new(read(item.table()?, frame)?))),
     }
 }

@@ -2,12 +2,13 @@
 
 use pericles::time::{
     Follow, FunctionMethod, ImplicitRule, Interpolant, LinearSolver, LoadRule, NewmarkOptions,
-    Predictor, TrigonometricOptions,
+    Predictor, RelaxationOptions, TrigonometricOptions,
 };
 
 use crate::newmark;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
+use crate::relaxation;
 use crate::set::SetNames;
 use crate::vocabulary::FINE_REGIONS;
 
@@ -61,6 +62,8 @@ pub enum Scheme {
         /// Relative error of the energy in a step.
         tolerance: f64,
     },
+    /// Static states by dynamic relaxation.
+    Relaxation(RelaxationOptions),
     /// r-RESPA.
     Respa {
         /// Where and how fine.
@@ -118,6 +121,7 @@ enum Kind {
     Trigonometric,
     Newmark,
     DiscreteGradient,
+    Relaxation,
 }
 
 pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
@@ -143,6 +147,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             ("trigonometric", Kind::Trigonometric),
             ("newmark", Kind::Newmark),
             ("discrete-gradient", Kind::DiscreteGradient),
+            ("relaxation", Kind::Relaxation),
         ],
     );
     let Some(kind) = kind else {
@@ -162,6 +167,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         ]
         .into_iter()
         .chain(newmark::KEYS)
+        .chain(relaxation::KEYS)
         {
             table.optional(key);
         }
@@ -178,7 +184,17 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         newmark::read(table).map(Some)
     } else {
         for key in newmark::KEYS {
-            table.forbid(key, "it belongs to scheme = \"newmark\"");
+            if !(kind == Kind::Relaxation && key == "iterations") {
+                table.forbid(key, "it belongs to scheme = \"newmark\"");
+            }
+        }
+        Some(None)
+    };
+    let relaxation = if kind == Kind::Relaxation {
+        relaxation::read(table).map(Some)
+    } else {
+        for key in relaxation::KEYS {
+            table.forbid(key, "it belongs to scheme = \"relaxation\"");
         }
         Some(None)
     };
@@ -186,11 +202,11 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         Kind::DormandPrince => tolerance(table),
         Kind::DiscreteGradient => energy_tolerance(table),
         // Its own, a velocity.
-        Kind::Newmark => Some(f64::NAN),
+        Kind::Newmark | Kind::Relaxation => Some(f64::NAN),
         _ => {
             table.forbid(
                 "tolerance",
-                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\" or \"discrete-gradient\"",
+                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\" or \"relaxation\"",
             );
             Some(f64::NAN)
         }
@@ -242,6 +258,9 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
     }
     if let Some(options) = newmark? {
         return Some(Scheme::Newmark(options));
+    }
+    if let Some(options) = relaxation? {
+        return Some(Scheme::Relaxation(options));
     }
     Some(match (kind, fine, interface) {
         (Kind::Implicit(rule), ..) => Scheme::Implicit {

@@ -1,10 +1,13 @@
 //! `[sets.NAME]`: named sets of points, and the use of their names.
 
-use pericles::space::Region;
+use pericles::space::{PointCloud, PointSet, Region};
 
+use crate::expression::{Condition, VARIABLES};
 use crate::fault::Fault;
+use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
+use crate::vocabulary::SELECTIONS;
 
 /// The name of the set of all points, which is always there.
 pub const ALL: &str = "all";
@@ -14,8 +17,42 @@ pub const ALL: &str = "all";
 pub struct NamedSet {
     /// Its name.
     pub name: String,
-    /// Where its points lie.
-    pub region: Region,
+    /// Which points it has.
+    pub members: Members,
+}
+
+/// Which points a set has.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Members {
+    /// Those in a region.
+    Region(Region),
+    /// Those for which a condition on x, y, z and block holds.
+    Where(Condition),
+    /// Those of some blocks.
+    Blocks(Vec<u32>),
+}
+
+impl Members {
+    /// The points of a cloud.
+    pub fn of(&self, cloud: &PointCloud) -> PointSet {
+        let those = |belongs: &dyn Fn(usize) -> bool| {
+            let all = 0..cloud.len() as u32;
+            all.filter(|&i| belongs(i as usize)).collect()
+        };
+        match self {
+            Self::Region(region) => cloud.select(region),
+            Self::Where(condition) => those(&|i| condition.holds(cloud.point(i), cloud.block(i))),
+            Self::Blocks(blocks) => those(&|i| blocks.contains(&cloud.block(i))),
+        }
+    }
+
+    /// The region, if it is one.
+    pub fn region(&self) -> Option<&Region> {
+        match self {
+            Self::Region(region) => Some(region),
+            _ => None,
+        }
+    }
 }
 
 /// The names that may be used, whether or not their regions could be read.
@@ -57,16 +94,57 @@ pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedS
             sets = None;
         }
         names.0.push(name.into());
-        let region = item.table().and_then(|table| region::read(table, frame));
-        match (region, &mut sets) {
-            (Some(region), Some(sets)) => sets.push(NamedSet {
+        let members = item.table().and_then(|table| members(table, frame));
+        match (members, &mut sets) {
+            (Some(members), Some(sets)) => sets.push(NamedSet {
                 name: name.into(),
-                region,
+                members,
             }),
             _ => sets = None,
         }
     }
     (sets, names)
+}
+
+/// A table with exactly one key: a kind of region, `where` or `block`.
+fn members(table: Table<'_>, frame: Frame) -> Option<Members> {
+    let found = table.exactly_one(SELECTIONS);
+    table.finish();
+    let (kind, item) = found?;
+    match kind {
+        "where" => condition(&item, frame.dimension).map(Members::Where),
+        "block" => blocks(&item).map(Members::Blocks),
+        kind => region::of_kind(kind, &item, frame).map(Members::Region),
+    }
+}
+
+fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {
+    let text = item.text()?;
+    let mut variables = VARIABLES[..dimension.unwrap_or(3)].to_vec();
+    variables.push("block");
+    let read = Condition::parse(&text, &variables);
+    read.map_err(|malformed| {
+        let reason = malformed.reason;
+        item.report(Fault::BadCondition { text, reason });
+    })
+    .ok()
+}
+
+/// A number of a block, or a list of them.
+pub(crate) fn blocks(item: &Item<'_>) -> Option<Vec<u32>> {
+    let block = |item: &Item<'_>| {
+        let allowed = "a whole number from 0 on, or a list of them";
+        let number = item.within(Quantity::Number, allowed, |number| {
+            number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)
+        })?;
+        Some(number as u32)
+    };
+    if !item.is_list() {
+        return Some(vec![block(item)?]);
+    }
+    let items = item.list("a list of numbers of blocks")?;
+    let numbers: Vec<Option<u32>> = items.iter().map(block).collect();
+    numbers.into_iter().collect()
 }
 
 /// Why a name cannot be used for a set or a probe: it becomes part of a column's name in tables.

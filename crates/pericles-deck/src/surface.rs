@@ -374,6 +374,7 @@ pub(crate) fn no_grid() -> Body {
             section: 1.0,
             holes: Vec::new(),
         },
+        listed: None,
         finer: Vec::new(),
         state: StressState::Spatial,
         periodic: false,
@@ -400,6 +401,9 @@ pub(crate) fn no_bonds() -> Material {
         },
         no_fail: Vec::new(),
         inclusions: Vec::new(),
+        parts: Vec::new(),
+        interface: Default::default(),
+        surface_correction: Default::default(),
         damage: DamageMeasure::default(),
         form: BondForm::List,
     }

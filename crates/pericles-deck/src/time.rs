@@ -2,6 +2,7 @@
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
+use crate::relaxation;
 use crate::scheme::{self, Scheme};
 use crate::set::SetNames;
 use crate::units;
@@ -29,6 +30,8 @@ pub enum TimeStep {
     },
     /// This step, s.
     Fixed(f64),
+    /// So many to the end.
+    Equal(u64),
 }
 
 /// Reads a time as decks write it: `"2h"`, `"90 min"`, or a plain number of seconds. None if it is something else.
@@ -44,11 +47,19 @@ pub fn seconds(text: &str) -> Option<f64> {
 }
 
 pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
-    let end = table
-        .required("end")
-        .and_then(|item| item.positive(Quantity::Time));
-    let step = step(&table);
     let scheme = scheme::read(&table, names);
+    let (end, step) = match scheme {
+        Some(Scheme::Relaxation(_)) => (
+            table.or("end", relaxation::END, |item| item.positive(Quantity::Time)),
+            relaxation::load_steps(&table).map(TimeStep::Equal),
+        ),
+        _ => (
+            table
+                .required("end")
+                .and_then(|item| item.positive(Quantity::Time)),
+            step(&table),
+        ),
+    };
     let allow_unstable = table.or("allow_unstable", false, |item| item.boolean());
     table.finish();
     Some(Time {

@@ -14,10 +14,40 @@ const SYNONYMS: [(&str, &[&str]); 10] = [
     ("critical_stretch", &["s0"]),
 ];
 
+/// The kinds of region.
+pub(crate) const REGIONS: &[&str] = &[
+    "all",
+    "box",
+    "ball",
+    "cylinder",
+    "half_space",
+    "layer",
+    "polygon",
+    "union",
+    "intersection",
+    "complement",
+];
+/// What makes a set: a region, a condition, blocks.
+pub(crate) const SELECTIONS: &[&str] = &[
+    "all",
+    "box",
+    "ball",
+    "cylinder",
+    "half_space",
+    "layer",
+    "polygon",
+    "union",
+    "intersection",
+    "complement",
+    "where",
+    "block",
+];
 /// The elastic modulus.
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
 /// The horizon.
 pub(crate) const HORIZONS: &[&str] = &["horizon", "horizon_ratio"];
+/// Where a part of another material is.
+pub(crate) const PLACES: &[&str] = &["set", "block"];
 /// The strength of bonds.
 pub(crate) const STRENGTHS: &[&str] = &["fracture_energy", "critical_stretch"];
 /// When output is due.

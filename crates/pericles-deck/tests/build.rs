@@ -993,3 +993,228 @@ end = "1 us"
         .to_string();
     assert!(message.contains("square and cubic cells"), "{message}");
 }
+
+/// A plate of 12 × 6 cells of 1 mm as a list of points in no order, with its right third as block 2.
+fn listed_plate(volume: f64) -> pericles::space::ListedPoints {
+    let mut listed = pericles::space::ListedPoints::default();
+    for k in 0..72 {
+        // 5 and 72 have no common divisor: every cell once.
+        let cell = 5 * k % 72;
+        let (column, row) = (cell % 12, cell / 12);
+        let place = [column, row].map(|c| (f64::from(c) + 0.5) * 1e-3);
+        listed.positions.push([place[0], place[1], 0.0]);
+        listed.blocks.push(if column < 8 { 1 } else { 2 });
+        listed.volumes.push(volume);
+    }
+    listed
+}
+
+const LISTED: &str = r#"
+[body]
+shape = "points"
+file = "plate.txt"
+dimension = 2
+spacing = "1 mm"
+plane = "stress"
+thickness = "2 mm"
+[material]
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+[sets]
+right = { block = 2 }
+corner = { where = "x < 0.002 && y < 0.003 || block == 7" }
+edge = { layer = { side = "-x", cells = 1 } }
+[[load]]
+set = "right"
+traction = ["1 MPa", 0]
+area = "12 mm2"
+[time]
+end = "1 us"
+"#;
+
+#[test]
+fn listed_points_are_the_body_of_the_grid() {
+    use pericles::operator::On;
+    use pericles_deck::Resources;
+    let built = |text: &str, volume: f64| {
+        let deck = Deck::parse(text, "decks/plate.toml", &[]).unwrap();
+        deck.build_with(Resources {
+            read_points: &|path, dimension| {
+                assert_eq!(path, std::path::Path::new("decks/plate.txt"));
+                assert_eq!(dimension, 2);
+                Ok(listed_plate(volume))
+            },
+            ..Resources::default()
+        })
+    };
+    let cell = 2e-9;
+    let listed = built(LISTED, cell).unwrap_or_else(|error| panic!("{error}"));
+    let sizes: Vec<(&str, usize)> = listed
+        .sets
+        .iter()
+        .map(|(name, points)| (name.as_str(), points.len()))
+        .collect();
+    assert_eq!(
+        sizes,
+        [("all", 72), ("right", 24), ("corner", 6), ("edge", 6)]
+    );
+    // The same plate as a grid: equal forces, to round-off.
+    let grid = LISTED
+        .replace(
+            "\"points\"\nfile = \"plate.txt\"\ndimension = 2",
+            "\"plate\"\nsize = [\"12 mm\", \"6 mm\"]",
+        )
+        .replace("block = 2", "where = \"x > 0.008\"");
+    let grid = build(&grid);
+    let displaced = |model: &Model| -> Vec<f64> {
+        let places = (0..72).map(|i| model.cloud.point(i));
+        let u: Vec<[f64; 2]> = places
+            .map(|[x, y, _]| [1e-2 * x * x / 1e-3, 2e-3 * (x - y)])
+            .collect();
+        (0..2).flat_map(|c| u.iter().map(move |u| u[c])).collect()
+    };
+    let forces = |model: &Model| {
+        let u = displaced(model);
+        let mut force = vec![0.0; 144];
+        model
+            .system
+            .operator()
+            .add_force(0.0, &u, On::All, &mut force);
+        force
+    };
+    let (ours, theirs) = (forces(&listed), forces(&grid));
+    let scale = theirs.iter().fold(0.0, |max: f64, f| max.max(f.abs()));
+    for i in 0..72 {
+        let place = listed.cloud.point(i);
+        let twin = grid.cloud.nearest(place);
+        for c in 0..2 {
+            let difference = ours[c * 72 + i] - theirs[c * 72 + twin];
+            assert!(difference.abs() < 1e-11 * scale, "{i}: {difference}");
+        }
+    }
+    // Volumes in mm³, a set without points, a traction without area.
+    let refused =
+        |text: &str, volume: f64| built(text, volume).map(|_| ()).unwrap_err().to_string();
+    let error = refused(LISTED, 2.0);
+    assert!(
+        error.contains("plate.toml:6:11: the volumes of the listed points"),
+        "{error}"
+    );
+    assert!(
+        error.contains("volumes in m³; `thickness` is part"),
+        "{error}"
+    );
+    let error = refused(&LISTED.replace("block = 2", "block = 3"), cell);
+    assert!(
+        error.contains("the set `right` selects no point"),
+        "{error}"
+    );
+    let error = refused(&LISTED.replace("area = \"12 mm2\"", ""), cell);
+    assert!(error.contains("listed points have no faces"), "{error}");
+    assert!(refusal(LISTED).to_string().contains("handed in"));
+}
+
+/// A bar of 20 cells, held at its left end and pulled at its right one, in two materials.
+const STATIC: &str = r#"
+[body]
+shape = "bar"
+length = "20 mm"
+spacing = "1 mm"
+area = "4 mm2"
+[material]
+name = "steel"
+density = "7850 kg/m3"
+youngs_modulus = "210 GPa"
+horizon_ratio = 3
+critical_stretch = 0.3
+[[material.part]]
+name = "glue"
+set = "middle"
+density = "1200 kg/m3"
+youngs_modulus = "7 GPa"
+critical_stretch = 0.01
+[material.interface]
+rule = "weaker"
+pair = [{ between = ["glue", "steel"], critical_stretch = 0.005 }]
+[sets]
+left = { where = "x < 0.003" }
+middle = { where = "0.009 < x < 0.011" }
+right = { layer = { side = "+x", cells = 3 } }
+[[prescribe]]
+set = "left"
+displacement = [0]
+[[load]]
+set = "right"
+traction = ["1 MPa"]
+[time]
+scheme = "relaxation"
+load_steps = 4
+"#;
+
+#[test]
+fn parts_have_their_own_density_and_strength() {
+    let model = build(STATIC);
+    assert_eq!(
+        (model.steps, model.dt, model.form),
+        (4, 0.25, BondForm::List)
+    );
+    let density = |x: f64| {
+        model
+            .system
+            .density()
+            .at(model.cloud.nearest([x, 0.0, 0.0]))
+    };
+    assert_eq!((density(2e-3), density(10e-3)), (7850.0, 1200.0));
+    assert!(model.system.operator().can_break());
+    let lines: Vec<String> = model
+        .warnings
+        .iter()
+        .map(|warning| warning.line())
+        .collect();
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!(
+        lines[0].contains("deck.toml:12:20: bonds break beyond a stretch of 30 %"),
+        "{lines:?}"
+    );
+}
+
+#[test]
+fn what_makes_no_physical_sense_is_said() {
+    let warned = |replace: &str, by: &str, says: &str| {
+        let text = STATIC.replace("0.3\n", "0.1\n");
+        let lines: Vec<String> = build(&text.replace(replace, by))
+            .warnings
+            .iter()
+            .map(|warning| warning.line())
+            .collect();
+        assert!(lines.iter().any(|line| line.contains(says)), "{lines:?}");
+    };
+    warned(
+        "set = \"right\"",
+        "set = \"left\"\narea = \"4 mm2\"",
+        "all 3 points of this load are held along it",
+    );
+    warned(
+        "[time]",
+        "[[crack]]\nsection = \"15 mm\"\n[time]",
+        "5 of 20 points, such as that at (0.015",
+    );
+    let refused = |replace: &str, by: &str, says: &[&str]| {
+        let message = refusal(&STATIC.replace(replace, by)).to_string();
+        assert!(
+            says.iter().all(|words| message.contains(words)),
+            "{message}"
+        );
+    };
+    refused(
+        "horizon_ratio = 3",
+        "horizon = \"1e6 m\"",
+        &["deck.toml:11:11", "is a unit wrong?"],
+    );
+    refused(
+        "[sets]",
+        "[[material.part]]\nname = \"more\"\nset = \"middle\"\ndensity = 1\nyoungs_modulus = 1\n[sets]",
+        &["the part `glue` has no point"],
+    );
+}

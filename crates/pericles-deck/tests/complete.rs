@@ -50,6 +50,7 @@ fn every_entry_arrives() {
     let state = StressState::PlaneStrain;
     let body = Body {
         grid,
+        listed: None,
         finer: vec![],
         state,
         periodic: false,
@@ -92,7 +93,7 @@ fn every_entry_arrives() {
     let sets: Vec<(&str, &Region)> = deck
         .sets
         .iter()
-        .map(|set| (set.name.as_str(), &set.region))
+        .map(|set| (set.name.as_str(), set.members.region().unwrap()))
         .collect();
     assert_eq!(
         sets,
@@ -219,6 +220,7 @@ fn conditions_time_and_output_arrive() {
         deck.output,
         Output {
             fields: Schedule::Interval(0.5e-6),
+            names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
             energy_bound: None,
             cracks: CrackOutput {
@@ -265,7 +267,7 @@ fn defaults_are_filled_in_and_recorded() {
         "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "periodic": false, "quadrature": "midpoint" },
         "material": {
             "model": "bond-stretch", "density": 7850.0, "youngs_modulus": 210e9, "modulus": "continuum",
-            "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended",
+            "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended", "surface_correction": "none",
             "influence": { "function": "constant", "acts_on": "stretch" },
             "damage": { "measure": "volume", "count_precut": false },
         },
@@ -436,11 +438,11 @@ fn overrides_change_what_is_read() {
 fn overrides_make_tables_and_point_at_themselves() {
     let deck = with(&["sets.right.layer.side=+x", "sets.right.layer.cells=2"]).unwrap();
     assert_eq!(
-        deck.sets[3].region,
-        Region::Layer {
+        deck.sets[3].members.region(),
+        Some(&Region::Layer {
             face: Face::named("+x").unwrap(),
             depth: 0.5e-3
-        }
+        })
     );
     for (text, column, words) in [
         ("time.end=-1 s", 10, "`-1 s` is out of range"),

@@ -116,6 +116,25 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nadaptive = { after = 2 }", (37, 14), "after", &["unknown key `after` in [time.adaptive]", "`threshold`"]),
     wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nfine = \"top\"\ninterpolant = \"hermit\"", (38, 15), "\"hermit\"", &["did you mean `hermite`?"]),
     wrong("[sets.top]", "[[material.inclusion]]\nset = \"top\"\nstiffness = 0\n[sets.top]", (17, 13), "0", &["a positive number"]),
+    // Sets by condition, listed points.
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"x > \"", (16, 9), "\"x > \"", &["the condition `x > ` cannot be used", "block == 2"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"z > 0\"", (16, 9), "\"z > 0\"", &["`z` is not known here", "Variables: x, y, block"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "block = 1.5", (16, 9), "1.5", &["a whole number from 0 on"]),
+    wrong("layer = {", "where = \"x > 0\"\nlayer = {", (17, 9), "{ side", &["`layer` and `where` are given together", "`block`"]),
+    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\n", (3, 1), "[body]", &["[body] lacks `file`"]),
+    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\ndimension = 4\n", (6, 13), "4", &["allowed: 1, 2 or 3"]),
+    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\n", (7, 1), "plane", &["`plane` has no place in [body]"]),
+    // Several materials, relaxation.
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = -1\nyoungs_modulus = 1\n[sets.top]", (18, 11), "-1", &["a positive number"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\nblock = 2\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (18, 9), "2", &["`set` and `block` are given together in [material.part.0]"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nhorizon = 1\n[sets.top]", (20, 1), "horizon", &["no place", "for all bonds of the body"]),
+    wrong("[sets.top]", "[material.interface]\nrule = \"weaker\"\n[sets.top]", (15, 11), "interface", &["only a body with [[material.part]]"]),
+    wrong("[sets.top]", "[material.interface]\npair = [{ between = [\"b\", \"a\"], critical_stretch = 1 }]\n[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 22), "\"b\"", &["unknown material `b`", "\"a\""]),
+    wrong("fracture_energy", "surface_correction = \"force\"\nfracture_energy", (13, 22), "\"force\"", &["unknown surface correction `force`", "\"volume\" and \"energy\""]),
+    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndt = 1", (36, 1), "dt", &["`dt` has no place in [time]", "give load_steps"]),
+    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
+    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ntolerance = 0", (36, 13), "0", &["forces out of balance"]),
+    wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
     // Boundaries.
     wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),
@@ -135,6 +154,7 @@ const WRONG: &[Wrong] = &[
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),
+    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (37, 18), "\"yes\"", &["a string (`yes`) where true or false, without quotes is needed"]),
     wrong("segment = [[", "ends = true\nsegment = [[", (19, 8), "true", &["one of \"closed\", \"open\""]),
     wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a string (`often`) where a table is needed"]),
     wrong("title = \"plate\"", "title = 2024-01-01", (1, 9), "2024-01-01", &["a date", "a string in quotes"]),
@@ -173,6 +193,8 @@ const WRONG: &[Wrong] = &[
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "polygon = { corners = [[0, 0], [1, 1]] }", (16, 23), "[[0, 0]", &["at least 3 corners"]),
     wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has it"]),
     wrong("fields =", "picture = [{ field = \"Displacement_z\" }]\nfields =", (38, 22), "\"Displacement_z\"", &["unknown field `Displacement_z`", "\"Displacement_x\""]),
+    wrong("{ interval = \"0.5 us\" }", "{ every = 2, names = [\"Stress_xx\"] }", (38, 32), "\"Stress_xx\"", &["whole fields"]),
+    wrong("fields =", "picture = [{ field = \"Stress_zz\" }]\nfields =", (38, 22), "\"Stress_zz\"", &["unknown field `Stress_zz`", "\"Stress_xy\""]),
     wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
     wrong("fields =", "picture = [{ field = \"Damage\", animation = 12 }]\nfields =", (38, 44), "12", &["true or false"]),
     // What the library refuses.

@@ -7,6 +7,7 @@
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
+//! | text `x y z block volume` | bodies whose points are listed | [`read_points`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
 //! | cached results | all runs of a user | [`DiskCache`] |
 //! | all of these but checkpoints | a simulation, state by state | [`observers`] |
@@ -46,6 +47,7 @@ mod folder;
 mod mesh;
 pub mod observers;
 mod picture;
+mod points;
 mod vtk;
 
 pub use atomic::write_atomically;
@@ -60,4 +62,5 @@ pub use mesh::{
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
+pub use points::{PointsError, read_points};
 pub use vtk::{PvdSeries, VtkField, VtuFile};

@@ -46,6 +46,8 @@ pub(crate) enum Path<'a> {
         u: [&'a [f64]; 2],
         v: [&'a [f64]; 2],
     },
+    /// Straight from one equilibrium to another, pushed by the mean of the forces at both.
+    Chord([&'a [f64]; 2]),
 }
 
 impl Path<'_> {
@@ -90,6 +92,10 @@ impl Path<'_> {
                 (push, push * mean[entry])
             }
             // The middle velocity of the cubic is 3/2 Δu/dt − (v₀ + v₁)/4, and Simpson's rule becomes what stands here.
+            Self::Chord(u) => {
+                let mean = 0.5 * (first + last);
+                (dt * mean, mean * (u[1][entry] - u[0][entry]))
+            }
             Self::Cubic { u, v } => (
                 dt / 6.0 * (first + 4.0 * middle + last),
                 middle * (u[1][entry] - u[0][entry])

@@ -47,6 +47,26 @@ pub enum PericlesError {
         /// The limit.
         limit: u64,
     },
+    /// Lists of points, blocks and volumes that do not go together.
+    #[error(
+        "{positions} positions, {blocks} blocks and {volumes} volumes are listed: each point needs one of each"
+    )]
+    ListedLengths {
+        /// Positions.
+        positions: usize,
+        /// Blocks.
+        blocks: usize,
+        /// Volumes.
+        volumes: usize,
+    },
+    /// Two points at one place.
+    #[error("points {first} and {second} of the list (counted from 0) are at the same place")]
+    SamePlace {
+        /// The first of them.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
     /// The horizon reaches no neighbour.
     #[error(
         "the horizon {horizon} m reaches no neighbour: it must be at least the spacing, {spacing} m (usual: 3 spacings)"
@@ -56,6 +76,22 @@ pub enum PericlesError {
         horizon: f64,
         /// Spacing, m.
         spacing: f64,
+    },
+    /// A horizon with far too many neighbours.
+    #[error(
+        "the horizon {horizon} m is {:.0} spacings of {spacing} m, so that each point would have up to {neighbours:.0e} neighbours; at most {most:.0e} are \
+         possible (usual: 3 spacings); is a unit wrong?",
+        horizon / spacing
+    )]
+    HorizonTooLarge {
+        /// Horizon, m.
+        horizon: f64,
+        /// Spacing, m.
+        spacing: f64,
+        /// Cells of the cube about a family.
+        neighbours: f64,
+        /// The largest number.
+        most: f64,
     },
     /// A ball in space that holds parts of a surface that are far apart along it.
     #[error(
@@ -335,6 +371,21 @@ pub enum PericlesError {
         tolerance: f64,
         /// What stands in the way.
         cause: &'static str,
+    },
+    /// A load step without an equilibrium.
+    #[error(
+        "at t = {t:e} s no equilibrium was found: after {iterations} iterations the forces that are out of balance are {residual:e} of those that act, \
+         {tolerance:e} was asked for; usual causes: a part without support, a load beyond what the body bears, too few iterations"
+    )]
+    NoEquilibrium {
+        /// Time of the load step, s.
+        t: f64,
+        /// Iterations done.
+        iterations: u32,
+        /// The residual force over the forces that act.
+        residual: f64,
+        /// The ratio asked for.
+        tolerance: f64,
     },
     /// No absorbing end can be made.
     #[error("absorbing end: {0}")]

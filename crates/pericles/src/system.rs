@@ -350,6 +350,12 @@ impl System {
         self.add_loads(t, &On::All, out);
     }
 
+    /// Loads at time t, N/m³.
+    pub fn load_density_into(&self, t: f64, out: &mut [f64]) {
+        self.zero(&On::All, out);
+        self.add_loads(t, &On::All, out);
+    }
+
     /// Loads over density at time t, m/s².
     pub fn external_acceleration_into(&self, t: f64, out: &mut [f64]) {
         self.zero(&On::All, out);
@@ -381,6 +387,24 @@ impl System {
         for motion in &self.motions {
             motion.project(self.points(), vector);
         }
+    }
+
+    /// Zeros the entries that are prescribed at time t.
+    pub fn hold_at(&self, t: f64, vector: &mut [f64]) {
+        for motion in self.motions.iter().filter(|motion| motion.holds(t)) {
+            motion.zero(self.points(), vector);
+        }
+    }
+
+    /// Books the way from one equilibrium to another, u = [before, after], that ended at time t and took dt: loads and supports act as the mean of both ends, without
+    /// inertia. With dt = 0 they do not change on the way. `work` is for accelerations.
+    pub fn book_equilibrium(&mut self, t: f64, dt: f64, u: [&[f64]; 2], work: &mut [f64]) {
+        self.free_acceleration(t, u[1], &On::All, work);
+        let n = self.points();
+        for motion in &self.motions {
+            motion.add_acceleration(t, n, work);
+        }
+        self.book(Path::Chord(u), t, dt, work);
     }
 
     /// Kinetic energy, J.

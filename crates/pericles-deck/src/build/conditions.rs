@@ -122,9 +122,12 @@ impl Deck {
         points: &[u32],
         traction: &VectorField,
     ) -> Result<f64, &'static str> {
-        let region = self.sets.iter().find(|named| named.name == set);
+        if self.body.listed.is_some() && cloud.dimension() > 1 {
+            return Err("listed points have no faces");
+        }
+        let named = self.sets.iter().find(|named| named.name == set);
         let acts = std::array::from_fn(|c| traction[c].number() != Some(0.0));
-        let axis = area::normal_axis(region.map(|named| &named.region), &acts)?;
+        let axis = area::normal_axis(named.and_then(|named| named.members.region()), &acts)?;
         Ok(area::seen_along(cloud, points, axis))
     }
 

@@ -32,8 +32,11 @@ impl Deck {
         }
     }
 
-    /// Warns of loads, motions and initial values whose waves the grid distorts. Bodies that lie on no grid are not judged.
+    /// Warns of loads, motions and initial values whose waves the grid distorts. Bodies that lie on no grid, or are of several materials, are not judged.
     pub fn judge_waves(&self, model: &Model) -> Vec<Warning> {
+        if !self.material.parts.is_empty() {
+            return Vec::new();
+        }
         let Ok(lattice) = self.bond_lattice(model) else {
             return Vec::new();
         };

@@ -1,7 +1,7 @@
 //! Bonds of a body with cells of several sizes.
 
 use pericles::PericlesError;
-use pericles::operator::{AssembledBonds, BondBody, BondForm, GradedBody};
+use pericles::operator::{AssembledBonds, BondForm, CompositeBody, GradedBody};
 
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -18,7 +18,7 @@ pub(super) struct Grids<'a> {
 impl Deck {
     pub(super) fn graded_bonds(
         &self,
-        body: &BondBody<'_>,
+        composite: &CompositeBody<'_>,
         grids: Grids<'_>,
     ) -> Result<AssembledBonds, DeckError> {
         if !matches!(self.material.form, BondForm::Fastest | BondForm::List) {
@@ -28,6 +28,14 @@ impl Deck {
             };
             return Err(self.at("material.bonds", error));
         }
+        if !composite.is_plain() {
+            let error = PericlesError::Graded {
+                what: "several materials or corrected surfaces",
+                reason: "its bonds have the laws of two grids already; parts of other stiffness are possible ([[material.inclusion]])",
+            };
+            return Err(self.at("material", error));
+        }
+        let body = &composite.body;
         let graded = GradedBody {
             cloud: body.cloud,
             ratios: grids.ratios,

@@ -7,29 +7,29 @@ mod content;
 mod exact;
 mod fields;
 mod graded;
+mod parts;
+mod points;
 mod resources;
 mod scheme;
+mod sense;
 mod step;
 mod surface;
 
 pub use exact::ExactReference;
 
-pub use resources::{Resources, SurfaceReader};
+pub use resources::{PointsReader, Resources, SurfaceReader};
 
 use std::sync::Arc;
 
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::{AssembledBonds, BondBody, BondForm};
+use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody};
 use pericles::space::surface::Surface;
-use pericles::space::{
-    GradedCloud, GradedGrid, PointCloud, PointSet, Shape, gauss_bar, rectangular_cells,
-};
+use pericles::space::{GradedCloud, PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use self::graded::Grids;
-use crate::body::Quadrature;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -87,7 +87,7 @@ struct Assembled {
     constants: BondConstants,
     bonds: AssembledBonds,
     cracks: Vec<TrackedCrack>,
-    density: f64,
+    density: PointScalar,
 }
 
 impl Model {
@@ -138,9 +138,8 @@ impl Deck {
             density,
         } = match &self.surface {
             Some(deck) => self.assemble_surface(deck, &resources, &mut warnings)?,
-            None => self.assemble_grid(&mut warnings)?,
+            None => self.assemble_grid(&resources, &mut warnings)?,
         };
-        let density = PointScalar::Uniform(density);
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
         let mut state = self.initial_state(&cloud, &sets)?;
@@ -152,6 +151,7 @@ impl Deck {
         }
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
+        self.judge_conditions(&system, &mut warnings);
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
         let ends = self.ends(&system, &state, &sets, &*integrator)?;
@@ -179,12 +179,16 @@ impl Deck {
         })
     }
 
-    fn assemble_grid(&self, warnings: &mut Vec<Warning>) -> Result<Assembled, DeckError> {
+    fn assemble_grid(
+        &self,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Assembled, DeckError> {
         let GradedCloud {
             cloud,
             ratios,
             grid_of_point,
-        } = self.points()?;
+        } = self.points(resources)?;
         let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
@@ -193,6 +197,7 @@ impl Deck {
             .map_err(|error| self.at_material(error))?;
         let no_fail = self.union_of(&sets, &self.material.no_fail)?;
         let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
+        let (classes, density) = self.parts(&cloud, &sets, &constants, warnings)?;
         let body = BondBody {
             cloud: &cloud,
             material,
@@ -206,13 +211,25 @@ impl Deck {
             ratios: &ratios,
             of_point: &grid_of_point,
         };
-        let (bonds, cracks) = self.bonds(body, grids, warnings)?;
+        let composite = CompositeBody {
+            body,
+            classes: classes.as_ref(),
+            correction: self.material.surface_correction,
+        };
+        let (bonds, cracks) = self.bonds(composite, grids, warnings)?;
+        if self.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
+            let error = PericlesError::FormNotUsable {
+                form: bonds.form.name(),
+                reason: "stress and strain are made of listed bonds: \"list\", or leave these fields out",
+            };
+            return Err(self.at("output", error));
+        }
         Ok(Assembled {
             surface: None,
             sets,
             bonds,
             cracks,
-            density: material.density,
+            density,
             constants,
             cloud,
         })
@@ -242,7 +259,7 @@ impl Deck {
                 form: BondForm::List,
             },
             cracks: Vec::new(),
-            density: deck.material.density,
+            density: PointScalar::Uniform(deck.material.density),
             constants: BondConstants {
                 young: f64::NAN,
                 micromodulus: f64::NAN,
@@ -254,63 +271,11 @@ impl Deck {
         })
     }
 
-    fn points(&self) -> Result<GradedCloud, DeckError> {
-        let graded = GradedGrid {
-            grid: self.body.grid.clone(),
-            finer: self.body.finer.clone(),
-        };
-        let grid = &graded.grid;
-        let points = match (&grid.shape, self.body.quadrature) {
-            (Shape::Box { origin, size }, _) if self.body.rectangular.is_some() => {
-                let spacing = self.body.rectangular.as_deref().unwrap_or_default();
-                rectangular_cells(*origin, size, spacing, grid.section, &grid.holes)
-                    .map(GradedCloud::of_one_grid)
-            }
-            (Shape::Box { origin, size }, Quadrature::Gauss) => {
-                gauss_bar(origin[0], size[0], grid.spacing, grid.section)
-                    .map(GradedCloud::of_one_grid)
-            }
-            _ if self.body.periodic => grid
-                .points()
-                .and_then(PointCloud::with_periodic_faces)
-                .map(GradedCloud::of_one_grid),
-            _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
-            _ => graded.points(),
-        };
-        points.map_err(|error| {
-            let place = match &error {
-                PericlesError::NotWholeCells { length, .. } => self.side(*length),
-                PericlesError::TooManyPoints { .. } => "body.spacing".into(),
-                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
-                    Path::from("body.refine").index(*part)
-                }
-                PericlesError::FinerParts { .. } => "body.refine".into(),
-                _ => "body".into(),
-            };
-            self.at_path(&place, error.into())
-        })
-    }
-
-    /// The entry that gives a side of this length.
-    fn side(&self, length: f64) -> Path {
-        let given =
-            |path: &Path| self.record.value(path).and_then(|value| value.as_f64()) == Some(length);
-        let size = Path::from("body.size");
-        let candidates = [
-            size.index(0),
-            size.index(1),
-            size.index(2),
-            "body.length".into(),
-            "body.height".into(),
-        ];
-        candidates.into_iter().find(given).unwrap_or(size)
-    }
-
     fn select(&self, cloud: &PointCloud) -> Result<Sets, DeckError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
         let mut problems = Vec::new();
         for set in &self.sets {
-            let points = cloud.select(&set.region);
+            let points = set.members.of(cloud);
             if points.is_empty() {
                 let fault = Fault::EmptySet {
                     set: set.name.clone(),
@@ -364,7 +329,7 @@ impl Deck {
     /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
-        body: BondBody<'_>,
+        composite: CompositeBody<'_>,
         grids: Grids<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
@@ -381,20 +346,27 @@ impl Deck {
             .iter()
             .map(|crack| (crack.surface.clone(), crack.ends))
             .collect();
-        let body = BondBody {
-            cracks: &surfaces,
-            ..body
+        let composite = CompositeBody {
+            body: BondBody {
+                cracks: &surfaces,
+                ..composite.body
+            },
+            ..composite
         };
         let assembled = if grids.ratios.len() > 1 {
-            self.graded_bonds(&body, grids)?
+            self.graded_bonds(&composite, grids)?
         } else {
             let form = match self.material.form {
                 BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
-                    body.fastest_bonds()
+                    composite.fastest_bonds()
+                }
+                BondForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
+                    BondForm::List
                 }
                 form => form,
             };
-            body.operator(form)
+            composite
+                .operator(form)
                 .map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();
@@ -438,7 +410,9 @@ impl Deck {
             PericlesError::BadConvolution { .. }
             | PericlesError::FormNotUsable { .. }
             | PericlesError::OneStencil => "material.bonds",
-            PericlesError::HorizonTooSmall { .. } => self.horizon_key(),
+            PericlesError::HorizonTooSmall { .. } | PericlesError::HorizonTooLarge { .. } => {
+                self.horizon_key()
+            }
             _ => "material",
         };
         self.at(path, error)

@@ -3,10 +3,14 @@
 use std::path::Path;
 
 use pericles::cache::{Cache, NoCache};
+use pericles::space::ListedPoints;
 use pericles::space::surface::Surface;
 
 /// Reads a surface from a file; the error says in words what is wrong, with the file and the place in it.
 pub type SurfaceReader<'a> = dyn Fn(&Path) -> Result<Surface, String> + Sync + 'a;
+
+/// Reads the points of a body of a dimension from a file; the error says in words what is wrong, with the file and the place in it.
+pub type PointsReader<'a> = dyn Fn(&Path, usize) -> Result<ListedPoints, String> + Sync + 'a;
 
 /// What a model is built with besides its deck. Decks know no files but themselves: who builds a model hands in what reads others.
 #[derive(Clone, Copy)]
@@ -15,6 +19,8 @@ pub struct Resources<'a> {
     pub cache: &'a dyn Cache,
     /// The reader of bodies with `shape = "surface"`.
     pub read_surface: &'a SurfaceReader<'a>,
+    /// The reader of bodies with `shape = "points"`.
+    pub read_points: &'a PointsReader<'a>,
 }
 
 impl Default for Resources<'_> {
@@ -23,6 +29,7 @@ impl Default for Resources<'_> {
         Self {
             cache: &NoCache,
             read_surface: &|_| Err("nothing that reads surfaces was handed in".into()),
+            read_points: &|_, _| Err("nothing that reads points was handed in".into()),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
-    MultiTimeStepOptions, Newmark, Predictor, Respa, RungeKutta, Tableau, Trigonometric,
-    VelocityVerlet,
+    MultiTimeStepOptions, Newmark, Predictor, Relaxation, Respa, RungeKutta, Tableau,
+    Trigonometric, VelocityVerlet,
 };
 use pericles::{PericlesError, System};
 
@@ -57,6 +57,9 @@ impl Deck {
             Scheme::DiscreteGradient { tolerance } => Box::new(
                 DiscreteGradient::new(*tolerance, system).map_err(|error| self.at_scheme(error))?,
             ),
+            Scheme::Relaxation(options) => {
+                Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
+            }
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
                 Box::new(

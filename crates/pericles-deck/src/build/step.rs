@@ -29,12 +29,23 @@ impl Deck {
         warnings: &mut Vec<Warning>,
     ) -> Result<Steps, DeckError> {
         let end = self.time.end;
+        if let TimeStep::Equal(count) = self.time.step {
+            return Ok(Steps {
+                dt: end / count as f64,
+                count,
+                frequency: None,
+            });
+        }
         let frequency = integrator
             .limiting_frequency(system, &state.u)
             .map(|frequency| frequency.at_least(exterior));
         let limit = integrator.stability_limit();
         match self.time.step {
-            TimeStep::Auto { safety } => {
+            TimeStep::Equal(_) | TimeStep::Auto { .. } => {
+                let safety = match self.time.step {
+                    TimeStep::Auto { safety } => safety,
+                    _ => 1.0,
+                };
                 let refuse = |error| self.at("time.dt", error);
                 let frequency = frequency.map_err(refuse)?;
                 // A scheme without a limit has no step of its own: accuracy alone must set it.

@@ -46,8 +46,7 @@ impl Deck {
         checks: SurfaceChecks,
         resources: &Resources<'_>,
     ) -> Result<Surface, DeckError> {
-        let folder = Path::new(self.record.sources.name()).parent();
-        let file = folder.unwrap_or(Path::new("")).join(path);
+        let file = self.beside(path);
         let refused = |reason: String| {
             let file = file.display().to_string();
             self.at_path(&"body.file".into(), Fault::BadSurfaceFile { file, reason })

@@ -6,11 +6,13 @@
 //! Parsing, evaluation and derivatives are those of exmex. It binds a sign tighter than a power (`-x^2 = x^2` there) and powers from left to right; what it
 //! is given has therefore every power in parentheses ([`grammar`]).
 
+mod condition;
 mod grammar;
 
 use std::fmt;
 use std::sync::Arc;
 
+pub use condition::Condition;
 use exmex::{Differentiate, Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 
 /// Functions of one argument that expressions may use. `step` is 0 below zero and 1 from zero on.
@@ -19,8 +21,8 @@ pub(crate) const FUNCTIONS: [&str; 20] = [
     "round", "sign", "sin", "sinh", "sqrt", "step", "tan", "tanh",
 ];
 
-/// Names of the variables, in the order of their values.
-pub(crate) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
+/// Names of the variables, in the order of their values. `block` belongs to conditions.
+pub(crate) const VARIABLES: [&str; 5] = ["x", "y", "z", "t", "block"];
 
 /// Longest text that is read.
 pub(crate) const LONGEST: usize = 2000;
@@ -57,7 +59,7 @@ pub(crate) struct Malformed {
 pub struct Expression {
     text: Arc<str>,
     compiled: Arc<Compiled>,
-    /// The values its variables take, as places in (x, y, z, t).
+    /// The values its variables take, as places in [`VARIABLES`].
     variables: Arc<[usize]>,
 }
 
@@ -98,8 +100,12 @@ impl Expression {
 
     /// The value at a place (m) and time (s). Where the expression has none, such as the root of a negative number, it is NaN.
     pub fn value(&self, [x, y, z]: [f64; 3], t: f64) -> f64 {
-        let all = [x, y, z, t];
-        let mut given = [0.0; 4];
+        self.at([x, y, z, t, f64::NAN])
+    }
+
+    /// The value for all [`VARIABLES`].
+    fn at(&self, all: [f64; 5]) -> f64 {
+        let mut given = [0.0; 5];
         for (given, &v) in given.iter_mut().zip(&*self.variables) {
             *given = all[v];
         }

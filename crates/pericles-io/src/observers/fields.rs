@@ -15,7 +15,7 @@ use crate::vtk::{PvdSeries, VtkField, VtuFile};
 
 const KEY: &str = "observer/fields";
 
-/// All fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's numbering of the points.
+/// Fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's numbering of the points.
 ///
 /// The files hold the reference positions; displaced ones are a "Warp By Vector" away. Their bytes depend on the state alone.
 pub struct FieldSeries {
@@ -23,6 +23,7 @@ pub struct FieldSeries {
     single_precision: bool,
     series: Option<PvdSeries>,
     surface: Option<Arc<Surface>>,
+    wanted: Vec<Field>,
 }
 
 impl FieldSeries {
@@ -33,7 +34,14 @@ impl FieldSeries {
             single_precision,
             series: None,
             surface: None,
+            wanted: Field::USUAL.to_vec(),
         }
+    }
+
+    /// The same with these fields; of tensors each component is a field of its own, `Stress_xx` …
+    pub fn with(mut self, fields: &[Field]) -> Self {
+        self.wanted = fields.to_vec();
+        self
     }
 
     /// The same for a surface, whose triangles become cells; its files hold the kinetic energy density besides.
@@ -50,13 +58,18 @@ impl FieldSeries {
         let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
         let numbering = Numbering::of(cloud);
         let positions = numbering.apply(cloud.positions());
-        let arrays = Field::ALL.map(|field| numbering.apply(snapshot.field(field)));
+        let columns: Vec<(String, bool, Cow<'_, [f64]>)> = self
+            .wanted
+            .iter()
+            .flat_map(|&field| columns(field, snapshot))
+            .map(|(name, vector, array)| (name, vector, numbering.apply(array)))
+            .collect();
         let mut file = VtuFile::new(cloud.dimension(), &positions).time(state.t);
-        for (field, array) in Field::ALL.into_iter().zip(&arrays) {
-            let column = if field.is_vector() {
-                VtkField::vector(field.name(), array)
+        for (name, vector, array) in &columns {
+            let column = if *vector {
+                VtkField::vector(name, array)
             } else {
-                VtkField::scalar(field.name(), array)
+                VtkField::scalar(name, array)
             };
             file = file.field(if self.single_precision {
                 column.in_single_precision()
@@ -110,6 +123,20 @@ impl Saved for FieldSeries {
             .map_err(misfit)?;
         Ok(())
     }
+}
+
+/// A field as columns of a file: name, whether it is a vector, numbers.
+fn columns<'a>(field: Field, snapshot: &'a Snapshot<'_>) -> Vec<(String, bool, &'a [f64])> {
+    let array = snapshot.field(field);
+    if !field.is_tensor() {
+        return vec![(field.name().to_owned(), field.is_vector(), array)];
+    }
+    let cloud = snapshot.system().cloud();
+    let components = field.components(cloud.dimension()).iter();
+    components
+        .zip(array.chunks(cloud.len()))
+        .map(|(component, array)| (format!("{}_{component}", field.name()), false, array))
+        .collect()
 }
 
 /// The way from the cloud's order of points to the user's; none if they are the same.

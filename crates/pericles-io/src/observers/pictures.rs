@@ -9,7 +9,6 @@ use pericles::space::PointCloud;
 use pericles::space::surface::Surface;
 use pericles::{Archive, Result, Saved, Values};
 
-use super::table::AXES;
 use crate::error::IoError;
 use crate::picture::{CellSize, ColourMap, FieldPicture, write_animation};
 
@@ -50,10 +49,13 @@ impl PictureOf {
         }
     }
 
-    /// `Damage`, `Velocity`, `Velocity_x` …
-    pub fn name(&self) -> String {
+    /// `Damage`, `Velocity`, `Velocity_x`, `Stress_yy` … in a body of a dimension.
+    pub fn name(&self, dimension: usize) -> String {
         match self.component {
-            Some(component) => format!("{}_{}", self.field.name(), AXES[component]),
+            Some(component) => {
+                let names = self.field.components(dimension);
+                format!("{}_{}", self.field.name(), names[component])
+            }
             None => self.field.name().to_owned(),
         }
     }
@@ -84,7 +86,7 @@ impl PictureOf {
             None => self.field.unit().to_owned(),
         };
         let mut picture = FieldPicture::new(cloud.dimension(), cloud.positions(), &values, cell)
-            .label(self.name(), unit)
+            .label(self.name(cloud.dimension()), unit)
             .displacement(&state.u, self.scale)
             .title(&self.title)
             .time(state.t)

@@ -208,11 +208,25 @@ impl PrescribedMotion {
     /// Zeros the prescribed entries of a vector, as in a virtual displacement. Points that are freed one day count as free.
     pub(crate) fn project(&self, cloud_len: usize, vector: &mut [f64]) {
         if self.until.is_none() {
-            for c in self.axes() {
-                for &i in &self.points {
-                    vector[c * cloud_len + i as usize] = 0.0;
-                }
+            self.zero(cloud_len, vector);
+        }
+    }
+
+    /// Zeros the prescribed entries of a vector.
+    pub(crate) fn zero(&self, cloud_len: usize, vector: &mut [f64]) {
+        for c in self.axes() {
+            for &i in &self.points {
+                vector[c * cloud_len + i as usize] = 0.0;
             }
+        }
+    }
+
+    /// Adds the prescribed accelerations of time t.
+    pub(crate) fn add_acceleration(&self, t: f64, cloud_len: usize, acceleration: &mut [f64]) {
+        if self.holds(t) {
+            self.for_each(2, t, &On::All, cloud_len, |entry, _, rate| {
+                acceleration[entry] += rate;
+            });
         }
     }
 
@@ -272,6 +286,16 @@ impl PrescribedMotion {
             sum[c] = each.map(|(force, &i)| force * volumes[i as usize]).sum();
         }
         sum
+    }
+
+    /// Adds the force density of the support at the last accepted state (N/m³) to the entries of held points.
+    pub fn add_reaction(&self, cloud_len: usize, out: &mut [f64]) {
+        let slots = self.reaction.chunks(self.points.len().max(1));
+        for (c, reactions) in self.axes().zip(slots) {
+            for (force, &i) in reactions.iter().zip(&self.points) {
+                out[c * cloud_len + i as usize] += force;
+            }
+        }
     }
 
     /// The noted reactions (N/m³), for checkpoints.

@@ -235,6 +235,11 @@ impl BondList {
         &self.geometric
     }
 
+    /// Whether an entry's bond is left after pre-cutting.
+    pub fn is_present(&self, entry: usize) -> bool {
+        self.present[entry / LANES] >> (entry % LANES) & 1 == 1
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.start.len() - 1

@@ -201,6 +201,7 @@ impl BondMaterial {
         let dimension = state.dimension();
         positive("the density", self.density)?;
         positive("the horizon", self.horizon)?;
+        self.check_reach(dimension, spacing)?;
         self.influence.check(dimension, self.horizon)?;
         if self.influence.is_signed(self.horizon) && self.fracture != Fracture::Unbreakable {
             return Err(PericlesError::BadInfluence {

@@ -20,7 +20,7 @@ impl BondMaterial {
     }
 
     /// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
-    fn for_each_offset(
+    pub(super) fn for_each_offset(
         &self,
         dimension: usize,
         spacing: f64,
@@ -42,6 +42,23 @@ impl BondMaterial {
                 }
             }
         }
+    }
+
+    /// Refuses horizons with so many neighbours that sums over them do not end.
+    pub(super) fn check_reach(&self, dimension: usize, spacing: f64) -> Result<()> {
+        /// A second's work, and far more bonds than any body can have.
+        const MOST: f64 = 1e8;
+        let reach = self.volume_correction.reach(self.horizon, spacing);
+        let neighbours = (2.0 * (reach / spacing).floor() + 1.0).powi(dimension as i32);
+        if neighbours <= MOST {
+            return Ok(());
+        }
+        Err(PericlesError::HorizonTooLarge {
+            horizon: self.horizon,
+            spacing,
+            neighbours,
+            most: MOST,
+        })
     }
 
     pub(super) fn class_table(&self) -> Option<&ClassTable> {
@@ -67,6 +84,7 @@ impl BondMaterial {
                 table.spacing()
             ));
         }
+        self.check_reach(cloud.dimension(), spacing)?;
         let mut within = BTreeSet::new();
         self.for_each_offset(cloud.dimension(), spacing, |offset, _, _| {
             within.insert(class_of(offset));

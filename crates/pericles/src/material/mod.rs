@@ -13,17 +13,21 @@
 //!
 //! Units: E, K in Pa; c in N/m⁶ for a dimensionless α; G₀ in J/m².
 
+mod composite;
 mod constants;
 mod lattice;
 mod law;
 mod polynomial;
 mod power;
+mod surface_correction;
 mod treatment;
 
+pub use composite::{InterfaceRule, PairClasses};
 pub use constants::{
     BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
 pub use law::{BondStretch, CubicLaw, LinearBond, PairForce, PairLaw};
 pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};
+pub use surface_correction::SurfaceCorrection;
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

@@ -9,6 +9,7 @@ mod probe;
 mod schedule;
 mod snapshot;
 mod surface;
+mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use energy_inequality::EnergyInequality;

@@ -2,6 +2,9 @@
 
 use std::cell::OnceCell;
 
+use super::tensors::{fitted_strain, places, virial_stress};
+use crate::operator::BondView;
+use crate::space::PointCloud;
 use crate::system::System;
 use crate::time::{InnerIterations, State};
 
@@ -18,16 +21,37 @@ pub enum Field {
     Damage,
     /// Elastic energy density, J/m³.
     StrainEnergyDensity,
+    /// Loads, N/m³.
+    ExternalForce,
+    /// What supports exert on held points, N/m³.
+    Reaction,
+    /// Virial stress, Pa: ½ Σ f ⊗ (ξ + η) over the bonds of a point. Of operators that list their bonds; else not a number.
+    Stress,
+    /// Strain of the displacement gradient that fits a point's bonds best. As stress.
+    Strain,
 }
 
 impl Field {
-    /// All fields.
-    pub const ALL: [Self; 5] = [
+    /// Fields that are written if nothing else is asked for.
+    pub const USUAL: [Self; 5] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
         Self::Damage,
         Self::StrainEnergyDensity,
+    ];
+
+    /// All fields.
+    pub const ALL: [Self; 9] = [
+        Self::Displacement,
+        Self::Velocity,
+        Self::ForceDensity,
+        Self::Damage,
+        Self::StrainEnergyDensity,
+        Self::ExternalForce,
+        Self::Reaction,
+        Self::Stress,
+        Self::Strain,
     ];
 
     /// Name in files.
@@ -38,6 +62,10 @@ impl Field {
             Self::ForceDensity => "Force_Density",
             Self::Damage => "Damage",
             Self::StrainEnergyDensity => "Strain_Energy_Density",
+            Self::ExternalForce => "External_Force_Density",
+            Self::Reaction => "Reaction_Density",
+            Self::Stress => "Stress",
+            Self::Strain => "Strain",
         }
     }
 
@@ -46,8 +74,9 @@ impl Field {
         match self {
             Self::Displacement => "m",
             Self::Velocity => "m/s",
-            Self::ForceDensity => "N/m³",
-            Self::Damage => "",
+            Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
+            Self::Stress => "Pa",
+            Self::Damage | Self::Strain => "",
             Self::StrainEnergyDensity => "J/m³",
         }
     }
@@ -56,8 +85,32 @@ impl Field {
     pub fn is_vector(self) -> bool {
         matches!(
             self,
-            Self::Displacement | Self::Velocity | Self::ForceDensity
+            Self::Displacement
+                | Self::Velocity
+                | Self::ForceDensity
+                | Self::ExternalForce
+                | Self::Reaction
         )
+    }
+
+    /// Whether it is a symmetric tensor field, component-major in the order of [`Field::components`].
+    pub fn is_tensor(self) -> bool {
+        matches!(self, Self::Stress | Self::Strain)
+    }
+
+    /// Names of the components in a body of a dimension, none for a scalar.
+    pub fn components(self, dimension: usize) -> &'static [&'static str] {
+        if self.is_vector() {
+            &["x", "y", "z"][..dimension]
+        } else if self.is_tensor() {
+            match dimension {
+                1 => &["xx"],
+                2 => &["xx", "yy", "xy"],
+                _ => &["xx", "yy", "zz", "xy", "yz", "xz"],
+            }
+        } else {
+            &[]
+        }
     }
 }
 
@@ -105,6 +158,10 @@ pub struct Snapshot<'a> {
     force: OnceCell<Vec<f64>>,
     damage: OnceCell<Vec<f64>>,
     energy_density: OnceCell<Vec<f64>>,
+    external: OnceCell<Vec<f64>>,
+    reaction: OnceCell<Vec<f64>>,
+    stress: OnceCell<Vec<f64>>,
+    strain: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Snapshot<'a> {
@@ -119,6 +176,10 @@ impl<'a> Snapshot<'a> {
             force: OnceCell::new(),
             damage: OnceCell::new(),
             energy_density: OnceCell::new(),
+            external: OnceCell::new(),
+            reaction: OnceCell::new(),
+            stress: OnceCell::new(),
+            strain: OnceCell::new(),
         }
     }
 
@@ -166,6 +227,31 @@ impl<'a> Snapshot<'a> {
                     .add_energy_density(t, u, &mut density);
                 density
             }),
+            Field::ExternalForce => self.external.get_or_init(|| {
+                let mut force = vec![0.0; u.len()];
+                self.system.load_density_into(t, &mut force);
+                force
+            }),
+            Field::Reaction => self.reaction.get_or_init(|| {
+                let mut reaction = vec![0.0; u.len()];
+                for motion in self.system.motions() {
+                    motion.add_reaction(self.system.points(), &mut reaction);
+                }
+                reaction
+            }),
+            Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
+            Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
+        }
+    }
+
+    fn tensor(
+        &self,
+        of_bonds: impl Fn(&PointCloud, &dyn BondView, &[f64]) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let cloud = self.system.cloud();
+        match self.system.operator().as_bonds() {
+            Some(bonds) => of_bonds(cloud, bonds, &self.state.u),
+            None => vec![f64::NAN; places(cloud.dimension()).len() * cloud.len()],
         }
     }
 

@@ -314,11 +314,8 @@ impl BondBody<'_> {
         )
     }
 
-    /// The list operator, and what each pre-crack removed from it.
-    ///
-    /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack.
-    pub fn list<L: FastLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+    /// The families without the bonds that pre-cracks cut, and what each crack removed.
+    pub(super) fn families(&self) -> Result<(BondList, Vec<Cut>)> {
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self
@@ -326,6 +323,16 @@ impl BondBody<'_> {
             .iter()
             .map(|(crack, rule)| bonds.cut(self.cloud, crack, *rule))
             .collect::<Result<_>>()?;
+        Ok((bonds, cuts))
+    }
+
+    /// The list operator, and what each pre-crack removed from it.
+    ///
+    /// # Errors
+    /// A horizon that reaches no neighbour, an unusable crack.
+    pub fn list<L: FastLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+        let material = self.material;
+        let (bonds, cuts) = self.families()?;
         let constants = self.constants;
         let mean = |i: usize, j: usize| match self.stiffness {
             [] => 1.0,

@@ -12,6 +12,7 @@
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
 
 mod assemble;
+mod composite;
 mod damage;
 mod fast_law;
 pub mod function;
@@ -27,11 +28,13 @@ pub(crate) mod prefetch;
 mod records;
 mod rows;
 pub mod surface;
+mod view;
 mod zoned;
 
 use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
+pub use composite::CompositeBody;
 pub use damage::{Breaking, DamageMeasure};
 pub use fast_law::{FastLaw, FixedBond};
 pub use graded::{EndLaw, GradedBody};
@@ -43,6 +46,7 @@ pub use linear::{
 };
 pub use linearisation::Linearisation;
 pub use list::BondForce;
+pub use view::{BondAt, BondView};
 pub use zoned::ZonedForce;
 
 use crate::archive::Saved;
@@ -188,6 +192,11 @@ pub trait ForceOperator: Saved + Send + Sync {
 
     /// The operator as a linear map, if it is one.
     fn as_linear(&self) -> Option<&dyn LinearOperator>;
+
+    /// The operator's bonds one by one, if it lists them.
+    fn as_bonds(&self) -> Option<&dyn BondView> {
+        None
+    }
 
     /// The operator as a sum over bonds that can be taken apart by zones, if it is one.
     fn as_zoned(&self) -> Option<&dyn ZonedForce> {

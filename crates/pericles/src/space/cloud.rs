@@ -48,6 +48,8 @@ pub struct PointCloud {
     periodic: bool,
     /// The user's numbers of the points; empty if they are the points' own.
     user_numbers: Vec<u32>,
+    /// The block of each point; empty if all are in block 1.
+    blocks: Vec<u32>,
 }
 
 impl PointCloud {
@@ -99,6 +101,7 @@ impl PointCloud {
             lattice: None,
             periodic: false,
             user_numbers: Vec::new(),
+            blocks: Vec::new(),
         })
     }
 
@@ -171,6 +174,15 @@ impl PointCloud {
         Ok(cloud)
     }
 
+    /// The same points with the numbers and blocks of a list.
+    pub(super) fn listed(self, user_numbers: Vec<u32>, blocks: Vec<u32>) -> Self {
+        Self {
+            user_numbers,
+            blocks,
+            ..self
+        }
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.volumes.len()
@@ -241,6 +253,11 @@ impl PointCloud {
             [] => i,
             numbers => numbers[i] as usize,
         }
+    }
+
+    /// The block a point belongs to: a part of the body by number. Bodies on grids are block 1.
+    pub fn block(&self, i: usize) -> u32 {
+        self.blocks.get(i).copied().unwrap_or(1)
     }
 
     /// Bounding box of the cells (half a cell beyond the outermost points), m.

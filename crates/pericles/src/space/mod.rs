@@ -1,15 +1,17 @@
 //! Points in space: clouds, regular grids, regions and named sets.
 //!
 //! A body is a set of points with volumes. [`PointCloud`] holds it as structure of arrays; [`Grid`] makes clouds of cell
-//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in
+//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in
 //! [`surface`].
 //!
 //! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates handed to regions always have three components,
 //! the missing ones zero.
 
 mod cloud;
+mod curve;
 mod graded;
 mod grid;
+mod listed;
 mod quadrature;
 mod rectangular;
 mod region;
@@ -18,6 +20,7 @@ pub mod surface;
 pub use cloud::{Lattice, PointCloud, PointSet};
 pub use graded::{Finer, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
+pub use listed::ListedPoints;
 pub use quadrature::gauss_bar;
 pub use rectangular::rectangular_cells;
 pub use region::{Face, Region};

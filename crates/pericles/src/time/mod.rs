@@ -9,6 +9,7 @@ mod multi_time_step;
 mod newmark;
 mod refinement;
 mod refinement_report;
+mod relaxation;
 mod respa;
 mod runge_kutta;
 mod tableau;
@@ -27,6 +28,7 @@ pub use newmark::{
     DiscreteGradient, InnerIterations, InnerSolver, Newmark, NewmarkOptions, VelocityNorm,
 };
 pub use refinement_report::RefinementReport;
+pub use relaxation::{Damping, Relaxation, RelaxationOptions};
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;

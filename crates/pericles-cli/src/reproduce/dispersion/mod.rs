@@ -125,6 +125,8 @@ fn write_comparison(
     title: &str,
     tables: &[(&str, &[f64])],
 ) -> Result<(), CliError> {
+    /// Height of a chart over that of the continuum's curve.
+    const ROOM: f64 = 1.6;
     let targets = targets(model.state());
     for (branch, branch_name) in model.contour().branches.iter().enumerate() {
         let Some(path) = context.figure(&format!("{name}-{branch_name}.png")) else {
@@ -148,7 +150,10 @@ fn write_comparison(
             let omega: Vec<f64> = points.iter().map(|p| p.branches[branch].omega()).collect();
             let drawn = chart.take().unwrap_or_else(|| {
                 let target: Vec<f64> = points.iter().map(|p| curves.target(branch, p)).collect();
-                LineChart::new(Axis::new(curves.along(), ""), Axis::new("ω", ""))
+                // Room above the curves for the key.
+                let top = target.iter().copied().fold(0.0, f64::max);
+                let y = Axis::new("ω", "").range(0.0, ROOM * top);
+                LineChart::new(Axis::new(curves.along(), ""), y)
                     .title(format!("{title}, branch {branch_name}"))
                     .curve(Curve::line("continuum", &x, &target).dashed())
             });

@@ -2,7 +2,7 @@
 
 use super::kernels::Bonds;
 use crate::family::LANES;
-use crate::material::PairForce;
+use crate::material::{PairClasses, PairForce};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
 
@@ -10,6 +10,8 @@ use crate::operator::records::Records;
 pub(super) struct BreakRule<'a, const D: usize> {
     /// Bonds with measure > threshold |ξ|² are over-stretched.
     pub threshold: f64,
+    /// Thresholds that depend on the ends of a bond, in place of the one, which is then the smallest of them.
+    pub pairs: Option<&'a PairThresholds>,
     /// Bits of the bonds that may break; all of them if none.
     pub breakable: Option<&'a [u8]>,
     pub volumes: &'a [f64],
@@ -17,6 +19,30 @@ pub(super) struct BreakRule<'a, const D: usize> {
     pub step: Option<([&'a [f64]; D], f64)>,
     /// Note what breaks, so that the other end can be told.
     pub note_events: bool,
+}
+
+/// Thresholds by the materials of a bond's ends.
+pub(super) struct PairThresholds {
+    pub classes: PairClasses,
+    /// By class of pairs.
+    table: Vec<f64>,
+}
+
+impl PairThresholds {
+    pub(super) fn of<L: PairForce>(classes: PairClasses) -> Self {
+        let stretches = classes.critical_stretches().iter();
+        let table = stretches.map(|&stretch| L::threshold(stretch)).collect();
+        Self { classes, table }
+    }
+}
+
+impl<const D: usize> BreakRule<'_, D> {
+    fn threshold_of(&self, i: usize, j: usize) -> f64 {
+        match self.pairs {
+            None => self.threshold,
+            Some(pairs) => pairs.table[pairs.classes.class(i, j)],
+        }
+    }
 }
 
 /// Breaks the over-stretched bonds of a point and books their energy, each end half; says whether there were any.
@@ -44,7 +70,7 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
             let xi: [f64; D] = bonds.vector(i, j);
             let eta: [f64; D] = std::array::from_fn(|c| u[j][c] - u[i][c]);
             let (measure, square) = L::stretch_measure(xi, eta);
-            if measure > rule.threshold * square {
+            if measure > rule.threshold_of(i, j) * square {
                 any = true;
                 *intact &= !(1 << lane);
                 let entry = group * LANES + lane;

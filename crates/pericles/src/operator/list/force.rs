@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::breaking::BreakRule;
+use super::breaking::{BreakRule, PairThresholds};
 use super::kernels::{Bonds, accept_rows};
 use super::packed::{Packed, Reach};
 use super::stiffness::{Formula, Stiffness};
 use crate::family::{BondList, LANES};
-use crate::material::{BondConstants, BondMaterial};
+use crate::material::{BondConstants, BondMaterial, PairClasses};
 use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::lanes::Row;
@@ -34,6 +34,8 @@ pub struct BondForce<L: FastLaw, const D: usize> {
     stiffness: Stiffness,
     pub(super) breakable: Option<Vec<u8>>,
     pub(super) critical_stretch: f64,
+    /// Critical stretches by the materials of a bond's ends, in place of the one, which is then the smallest.
+    pub(super) pairs: Option<PairThresholds>,
     pub(super) damage: DamageMeasure,
     pub(super) blocks: Vec<BlockDamage>,
     reach: Reach,
@@ -145,10 +147,20 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             unit,
             stiffness,
             critical_stretch: breaking.critical_stretch,
+            pairs: None,
             damage,
             blocks,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
+        }
+    }
+
+    /// The same with critical stretches that depend on the materials of a bond's ends.
+    pub fn with_critical_stretches(self, classes: PairClasses) -> Self {
+        Self {
+            critical_stretch: classes.smallest_critical_stretch(),
+            pairs: Some(PairThresholds::of::<L>(classes)),
+            ..self
         }
     }
 
@@ -216,6 +228,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let bonds = self.view().leading_to(partners);
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
+            pairs: self.pairs.as_ref(),
             breakable: self.breakable.as_deref(),
             volumes: self.cloud.volumes(),
             step: step.map(|(velocity, dt)| (components::<D>(velocity, n), dt)),

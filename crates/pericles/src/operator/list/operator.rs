@@ -9,9 +9,10 @@ use crate::error::Result;
 use crate::family::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce, damage,
+    Accepted, BondAt, BondView, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce,
+    damage,
 };
-use crate::parallel::{BLOCK, ordered_sum};
+use crate::parallel::{BLOCK, components, ordered_sum};
 
 impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
     fn points(&self) -> usize {
@@ -154,12 +155,38 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
         L::LINEAR.then_some(self as &dyn LinearOperator)
     }
 
+    fn as_bonds(&self) -> Option<&dyn BondView> {
+        Some(self)
+    }
+
     fn as_zoned(&self) -> Option<&dyn ZonedForce> {
         Some(self)
     }
 
     fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
         Some(self)
+    }
+}
+
+impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
+    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (bonds, u) = (self.view(), components::<D>(u, self.points()));
+        let spatial =
+            |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
+        for (entry, j) in self.bonds.family(i) {
+            if !self.is_intact(i, entry) {
+                continue;
+            }
+            let xi: [f64; D] = bonds.vector(i, j);
+            let eta: [f64; D] = std::array::from_fn(|c| u[c][j] - u[c][i]);
+            let stiffness = self.stiffness_of(entry, i, j);
+            visit(BondAt {
+                neighbour: j,
+                xi: spatial(xi),
+                eta: spatial(eta),
+                force: spatial(L::force(xi, eta).map(|force| stiffness * force)),
+            });
+        }
     }
 }
 

@@ -47,13 +47,19 @@ impl<L: FastLaw, const D: usize> ZonedForce for BondForce<L, D> {
         if !self.can_break() {
             return;
         }
-        let threshold = L::threshold(fraction * self.critical_stretch);
+        let threshold = |i: usize, j: usize| {
+            let stretch = match &self.pairs {
+                Some(pairs) => pairs.classes.critical_stretch(i, j),
+                None => self.critical_stretch,
+            };
+            L::threshold(fraction * stretch)
+        };
         let u = components::<D>(u, self.points());
         let bonds = self.view();
         let over = |i: usize, j: usize| {
             let eta: [f64; D] = std::array::from_fn(|c| u[c][j] - u[c][i]);
             let (measure, square) = L::stretch_measure(bonds.vector(i, j), eta);
-            measure > threshold * square
+            measure > threshold(i, j) * square
         };
         let may_break = |entry: usize| {
             self.breakable

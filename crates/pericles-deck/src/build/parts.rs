@@ -1,0 +1,95 @@
+//! Several materials: the classes of bonds, and the density of every point.
+
+use pericles::PointScalar;
+use pericles::material::{BondConstants, BondMaterial, PairClasses};
+use pericles::space::PointCloud;
+
+use super::Sets;
+use crate::caution::Caution;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::finding::Warning;
+use crate::part::PartPlace;
+use crate::reader::Path;
+
+impl Deck {
+    /// The classes of bonds between materials, none if there is one material only, and the density.
+    pub(super) fn parts(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+        constants: &BondConstants,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<(Option<PairClasses>, PointScalar), DeckError> {
+        let material = &self.material;
+        self.judge_stretch(constants, &"material".into(), warnings);
+        if material.parts.is_empty() {
+            return Ok((None, PointScalar::Uniform(material.bonds.density)));
+        }
+        let mut all = vec![constants.clone()];
+        let mut of_point = vec![0u8; cloud.len()];
+        for (k, part) in material.parts.iter().enumerate() {
+            let path = Path::from("material.part").index(k);
+            let own = BondMaterial {
+                density: part.density,
+                modulus: part.modulus,
+                fracture: part.fracture,
+                ..material.bonds.clone()
+            };
+            let own = own
+                .constants(cloud, self.body.state)
+                .map_err(|error| self.at_path(&path, error.into()))?;
+            self.judge_stretch(&own, &path, warnings);
+            all.push(own);
+            // The library refuses more materials than a byte counts.
+            let number = (k + 1) as u8;
+            match &part.place {
+                PartPlace::Set(set) => {
+                    for &i in self.members(sets, set, &path)? {
+                        of_point[i as usize] = number;
+                    }
+                }
+                PartPlace::Blocks(blocks) => {
+                    for i in (0..cloud.len()).filter(|&i| blocks.contains(&cloud.block(i))) {
+                        of_point[i] = number;
+                    }
+                }
+            }
+        }
+        for (k, part) in material.parts.iter().enumerate() {
+            if !of_point.contains(&((k + 1) as u8)) {
+                let part = part.name.clone();
+                let path = Path::from("material.part").index(k);
+                return Err(self.at_path(&path, Fault::EmptyPart { part }));
+            }
+        }
+        let densities: Vec<f64> = of_point
+            .iter()
+            .map(|&number| match number {
+                0 => material.bonds.density,
+                number => material.parts[usize::from(number) - 1].density,
+            })
+            .collect();
+        let mut classes = PairClasses::new(of_point, &all, material.interface.rule)
+            .map_err(|error| self.at("material.part", error))?;
+        for &(pair, stretch) in &material.interface.critical_stretches {
+            classes.set_critical_stretch(pair, stretch);
+        }
+        Ok((Some(classes), PointScalar::PerPoint(densities)))
+    }
+
+    /// Bonds of real materials break long before they are a fifth longer.
+    fn judge_stretch(&self, constants: &BondConstants, path: &Path, warnings: &mut Vec<Warning>) {
+        const LARGE: f64 = 0.2;
+        let stretch = constants.critical_stretch;
+        if stretch.is_finite() && stretch > LARGE {
+            let key = ["fracture_energy", "critical_stretch"]
+                .map(|key| path.key(key))
+                .into_iter()
+                .find(|path| self.record.value(path).is_some());
+            let path = key.as_ref().unwrap_or(path);
+            warnings.push(self.finding(path, Caution::LargeStretch { stretch }));
+        }
+    }
+}

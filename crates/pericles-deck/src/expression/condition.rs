@@ -1,0 +1,258 @@
+//! Conditions: comparisons of expressions, joined by `&&`, `||` and `!`.
+//!
+//! `||` binds weaker than `&&`, and `&&` weaker than `!`; comparisons may be chained (`0 < x <= 1`). A comparison with something that has no value is false.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::{Expression, LONGEST, Malformed};
+
+/// Parentheses within parentheses.
+const DEEPEST: usize = 60;
+
+/// A condition on the place and the block of a point, compiled once.
+#[derive(Clone)]
+pub struct Condition {
+    text: Arc<str>,
+    test: Arc<Test>,
+}
+
+enum Test {
+    Any(Vec<Test>),
+    Every(Vec<Test>),
+    Not(Box<Test>),
+    Compare(Expression, Comparison, Expression),
+}
+
+#[derive(Clone, Copy)]
+enum Comparison {
+    Less,
+    AtMost,
+    Greater,
+    AtLeast,
+    Equal,
+    Unequal,
+}
+
+/// Longer signs before those they begin with.
+const COMPARISONS: [(&str, Comparison); 6] = [
+    ("<=", Comparison::AtMost),
+    (">=", Comparison::AtLeast),
+    ("==", Comparison::Equal),
+    ("!=", Comparison::Unequal),
+    ("<", Comparison::Less),
+    (">", Comparison::Greater),
+];
+
+impl Condition {
+    /// Reads a condition on the variables named by `allowed`.
+    pub(crate) fn parse(text: &str, allowed: &[&str]) -> Result<Self, Malformed> {
+        if text.len() > LONGEST {
+            return refuse(format!(
+                "it has {} characters; allowed: at most {LONGEST}",
+                text.len()
+            ));
+        }
+        Ok(Self {
+            text: text.into(),
+            test: Test::parse(text, allowed, 0)?.into(),
+        })
+    }
+
+    /// The text it was read from.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it holds for a point of a block at a place (m).
+    pub fn holds(&self, place: [f64; 3], block: u32) -> bool {
+        let [x, y, z] = place;
+        self.test.holds([x, y, z, f64::NAN, f64::from(block)])
+    }
+}
+
+impl Test {
+    fn parse(text: &str, allowed: &[&str], depth: usize) -> Result<Self, Malformed> {
+        if depth > DEEPEST {
+            return refuse(format!("it is nested more than {DEEPEST} deep"));
+        }
+        let text = text.trim();
+        if text.is_empty() {
+            return refuse("a part of it is empty".into());
+        }
+        for (sign, join) in [("||", Self::Any as fn(_) -> _), ("&&", Self::Every)] {
+            let (parts, _) = split(text, &[sign])?;
+            if parts.len() > 1 {
+                let parts = parts.into_iter();
+                let tests: Result<Vec<Self>, _> = parts
+                    .map(|part| Self::parse(part, allowed, depth + 1))
+                    .collect();
+                return Ok(join(tests?));
+            }
+        }
+        if let Some(rest) = text.strip_prefix('!') {
+            return Ok(Self::Not(Self::parse(rest, allowed, depth + 1)?.into()));
+        }
+        let signs = COMPARISONS.map(|(sign, _)| sign);
+        let (sides, found) = split(text, &signs)?;
+        if found.is_empty() {
+            return match text
+                .strip_prefix('(')
+                .and_then(|rest| rest.strip_suffix(')'))
+            {
+                Some(inner) => Self::parse(inner, allowed, depth + 1),
+                None => refuse(format!(
+                    "`{text}` compares nothing; allowed: comparisons (< <= > >= == !=) such as x > 0.1, joined by && (and), || (or), ! (not)"
+                )),
+            };
+        }
+        let sides: Result<Vec<Expression>, _> = sides
+            .into_iter()
+            .map(|side| Expression::parse(side, allowed))
+            .collect();
+        let sides = sides?;
+        let pairs = sides.windows(2).zip(found);
+        let mut tests: Vec<Self> = pairs
+            .map(|(pair, sign)| {
+                Self::Compare(pair[0].clone(), COMPARISONS[sign].1, pair[1].clone())
+            })
+            .collect();
+        Ok(match tests.len() {
+            1 => tests.remove(0),
+            _ => Self::Every(tests),
+        })
+    }
+
+    fn holds(&self, values: [f64; 5]) -> bool {
+        match self {
+            Self::Any(parts) => parts.iter().any(|part| part.holds(values)),
+            Self::Every(parts) => parts.iter().all(|part| part.holds(values)),
+            Self::Not(part) => !part.holds(values),
+            Self::Compare(left, comparison, right) => {
+                let (left, right) = (left.at(values), right.at(values));
+                match comparison {
+                    Comparison::Less => left < right,
+                    Comparison::AtMost => left <= right,
+                    Comparison::Greater => left > right,
+                    Comparison::AtLeast => left >= right,
+                    Comparison::Equal => left == right,
+                    Comparison::Unequal => left != right,
+                }
+            }
+        }
+    }
+}
+
+fn refuse<T>(reason: String) -> Result<T, Malformed> {
+    Err(Malformed { reason })
+}
+
+/// The parts of a text between signs that stand in no parenthesis, and which signs those are.
+fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>), Malformed> {
+    let (mut parts, mut found) = (Vec::new(), Vec::new());
+    let (mut depth, mut from, mut skip) = (0usize, 0, 0);
+    for (at, character) in text.char_indices() {
+        if at < skip {
+            continue;
+        }
+        match character {
+            '(' => depth += 1,
+            ')' if depth == 0 => {
+                return refuse("a parenthesis is closed that was never opened".into());
+            }
+            ')' => depth -= 1,
+            _ if depth == 0 => {
+                let rest = &text[at..];
+                if let Some(sign) = signs.iter().position(|sign| rest.starts_with(sign)) {
+                    parts.push(&text[from..at]);
+                    found.push(sign);
+                    from = at + signs[sign].len();
+                    skip = from;
+                }
+            }
+            _ => {}
+        }
+    }
+    if depth > 0 {
+        return refuse("a parenthesis is not closed".into());
+    }
+    parts.push(&text[from..]);
+    Ok((parts, found))
+}
+
+impl fmt::Debug for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Condition({:?})", self.text)
+    }
+}
+
+/// Equal texts are equal conditions.
+impl PartialEq for Condition {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const ALLOWED: [&str; 4] = ["x", "y", "z", "block"];
+
+    #[test]
+    fn conditions_are_those_of_programmers() {
+        // At (2, 3, 5) in block 7.
+        let cases = [
+            ("x > 1", true),
+            ("x >= 2 && y < 3", false),
+            ("x >= 2 && y < 3 || z == 5", true),
+            ("x >= 2 && (y < 3 || z == 5)", true),
+            ("x > 2 || y > 2 && z > 5", false),
+            ("!(x > 1) || block == 7", true),
+            ("!x > 1", false),
+            ("! (block != 7) && 0 < x <= 2", true),
+            ("0 < x < 2", false),
+            ("(x + 1)^2 > 2 * (y + 1)", true),
+            ("((x - 2)^2 + (y - 3)^2) <= 1e-9", true),
+            ("(((x) < y))", true),
+            ("sqrt(-x) < 1 || sqrt(-x) >= 1", false),
+        ];
+        for (text, expected) in cases {
+            let condition = Condition::parse(text, &ALLOWED).unwrap();
+            assert_eq!(condition.holds([2.0, 3.0, 5.0], 7), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_condition_is_refused() {
+        for (text, says) in [
+            ("x + 1", "compares nothing"),
+            ("(x > 1", "not closed"),
+            ("x > 1)", "never opened"),
+            ("x > 1 &&", "empty"),
+            ("x > 1 and y > 1", "no operator before `and`"),
+            ("x = 1", "compares nothing"),
+            ("t > 1", "`t` is not known here"),
+            ("x > ", "it is empty"),
+            ("", "empty"),
+        ] {
+            let malformed = Condition::parse(text, &ALLOWED).unwrap_err();
+            assert!(
+                malformed.reason.contains(says),
+                "{text}: {}",
+                malformed.reason
+            );
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(512))]
+        #[test]
+        fn any_text_is_read_or_refused(text in "[-+*/()<>=!&| .0-9xyzblock]{0,24}") {
+            if let Ok(condition) = Condition::parse(&text, &ALLOWED) {
+                condition.holds([0.1, 0.2, 0.3], 4);
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! `[[material.part]]` and `[material.interface]`: several materials in one body.
+
+use pericles::material::{Fracture, InterfaceRule, Modulus};
+
+use crate::body::BodyRead;
+use crate::fault::Fault;
+use crate::material;
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::set::{self, SetNames};
+use crate::vocabulary::PLACES;
+
+/// A material that some points have in place of the body's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub place: PartPlace,
+    /// Mass density ρ, kg/m³.
+    pub density: f64,
+    /// Elastic modulus.
+    pub modulus: Modulus,
+    /// Breaking.
+    pub fracture: Fracture,
+}
+
+/// The points of a part.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PartPlace {
+    /// Those of a set.
+    Set(String),
+    /// Those of some blocks.
+    Blocks(Vec<u32>),
+}
+
+/// Bonds between two materials.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MaterialInterface {
+    /// How their constant follows from both materials'.
+    pub rule: InterfaceRule,
+    /// Critical stretches of bonds between two materials, by their numbers: 0 is the body's, then the parts'.
+    pub critical_stretches: Vec<([u8; 2], f64)>,
+}
+
+/// All parts, in the order in which later ones replace earlier ones.
+pub(crate) fn parts(tables: Vec<Table<'_>>, body: &BodyRead, sets: &SetNames) -> Option<Vec<Part>> {
+    let mut names: Vec<String> = Vec::new();
+    let parts: Vec<Option<Part>> = tables
+        .into_iter()
+        .map(|table| part(table, body, sets, &mut names))
+        .collect();
+    parts.into_iter().collect()
+}
+
+fn part(
+    table: Table<'_>,
+    body: &BodyRead,
+    sets: &SetNames,
+    names: &mut Vec<String>,
+) -> Option<Part> {
+    let name = table.required("name").and_then(|item| {
+        let name = item.text()?;
+        if names.contains(&name) {
+            item.report(Fault::BadName {
+                name,
+                reason: "another part has it",
+                allowed: "allowed: a name of its own for each part",
+            });
+            return None;
+        }
+        names.push(name.clone());
+        Some(name)
+    });
+    let place = table.exactly_one(PLACES).and_then(|(key, item)| match key {
+        "set" => sets.reference(&item).map(PartPlace::Set),
+        _ => set::blocks(&item).map(PartPlace::Blocks),
+    });
+    let density = table
+        .required("density")
+        .and_then(|item| item.positive(Quantity::Density));
+    let modulus = material::modulus(&table, body.state);
+    material::poisson_ratio(&table, body.state);
+    let fracture = material::fracture(&table);
+    for key in [
+        "model",
+        "horizon",
+        "horizon_ratio",
+        "influence",
+        "volume_correction",
+        "surface_correction",
+    ] {
+        table.forbid(key, "[material] says it for all bonds of the body");
+    }
+    table.finish();
+    Some(Part {
+        name: name?,
+        place: place?,
+        density: density?,
+        modulus: modulus?,
+        fracture: fracture?,
+    })
+}
+
+/// `[material.interface]`; `names` are those of the materials, the body's first.
+pub(crate) fn interface(table: Table<'_>, names: &[Option<String>]) -> Option<MaterialInterface> {
+    let rule = table.choice_or_first(
+        "rule",
+        "rule of interfaces",
+        &[
+            ("harmonic", InterfaceRule::Harmonic),
+            ("arithmetic", InterfaceRule::Arithmetic),
+            ("weaker", InterfaceRule::Weaker),
+        ],
+    );
+    let pairs: Vec<Option<([u8; 2], f64)>> = table
+        .tables("pair")
+        .into_iter()
+        .map(|table| {
+            let between = table
+                .required("between")
+                .and_then(|item| pair(&item, names));
+            let stretch = table
+                .required("critical_stretch")
+                .and_then(|item| item.positive(Quantity::Number));
+            table.finish();
+            Some((between?, stretch?))
+        })
+        .collect();
+    table.finish();
+    Some(MaterialInterface {
+        rule: rule?,
+        critical_stretches: pairs.into_iter().collect::<Option<_>>()?,
+    })
+}
+
+/// Two different names of materials, as their numbers.
+fn pair(item: &Item<'_>, names: &[Option<String>]) -> Option<[u8; 2]> {
+    let items = item.exactly(2, "two names of materials")?;
+    let number = |item: &Item<'_>| {
+        let name = item.text()?;
+        let found = names.iter().position(|known| known.as_ref() == Some(&name));
+        if found.is_none() {
+            let known = names.iter().flatten().map(String::as_str);
+            item.unknown_word("material", &name, known);
+        }
+        found.map(|number| number as u8)
+    };
+    let (first, second) = (number(&items[0]), number(&items[1]));
+    let pair = [first?, second?];
+    if pair[0] == pair[1] {
+        item.out_of_range("two different names of materials");
+        return None;
+    }
+    Some(pair)
+}

@@ -1,0 +1,75 @@
+//! The options of `scheme = "relaxation"`.
+
+use pericles::time::{Damping, RelaxationOptions};
+
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+
+/// Keys that belong to the scheme alone.
+pub(crate) const KEYS: [&str; 2] = ["damping", "load_steps"];
+
+/// The pseudo-time at which all loads have their final values, if the deck does not say.
+pub(crate) const END: f64 = 1.0;
+
+pub(crate) fn read(table: &Table<'_>) -> Option<RelaxationOptions> {
+    let default = RelaxationOptions::default();
+    let damping = match table.optional("damping") {
+        None => {
+            table.record("damping", "adaptive");
+            Some(Damping::Adaptive)
+        }
+        Some(item) => damping(&item),
+    };
+    let tolerance = table.or("tolerance", default.tolerance, |item| {
+        item.within(
+            Quantity::Number,
+            "a number from 1e-12 to 0.1, the forces out of balance over those that act",
+            |tolerance| (1e-12..=0.1).contains(&tolerance),
+        )
+    });
+    let iterations = table.or("iterations", default.iterations, |item| {
+        const MOST: u64 = 100_000_000;
+        let count = item.count()?;
+        if count <= MOST {
+            return Some(count as u32);
+        }
+        item.out_of_range("a whole number from 1 to 100000000");
+        None
+    });
+    Some(RelaxationOptions {
+        damping: damping?,
+        tolerance: tolerance?,
+        iterations: iterations?,
+    })
+}
+
+fn damping(item: &Item<'_>) -> Option<Damping> {
+    match item.word() {
+        Some("adaptive") => {
+            item.record("adaptive");
+            Some(Damping::Adaptive)
+        }
+        Some(word) if !word.contains(|c: char| c.is_ascii_digit()) => {
+            item.unknown_word("damping", word, std::iter::once("adaptive"));
+            None
+        }
+        _ => item
+            .within(
+                Quantity::Number,
+                "\"adaptive\", or a number above 0 and below 2, per iteration",
+                |c| c > 0.0 && c < 2.0,
+            )
+            .map(Damping::Viscous),
+    }
+}
+
+/// The number of static states on the way to the end.
+pub(crate) fn load_steps(table: &Table<'_>) -> Option<u64> {
+    for key in ["dt", "safety"] {
+        table.forbid(
+            key,
+            "scheme = \"relaxation\" goes from static state to static state: give load_steps",
+        );
+    }
+    table.or("load_steps", 1, |item| item.count())
+}

@@ -1,0 +1,394 @@
+//! Clouds of points from text: `x y z block volume`, a line for each point.
+//!
+//! | line | meaning |
+//! |---|---|
+//! | `# …`, `! …`, blank | nothing; what follows `#` or `!` is a comment anywhere |
+//! | `header: x y block_id volume`, `x, y, z, block, volume` | names of the columns, in any order; optional, before the points |
+//! | `0.5 0.0 0.0 1 1e-9`, `0.5, 0, 0, 1, 1e-9` | a point; numbers are separated by commas or blanks |
+//!
+//! Without a header the columns are `x y z block volume`, or, for bodies of fewer dimensions, also `x y block volume` and `x block volume`. Lengths are in m,
+//! volumes in m³. This is what PeriLab and Peridigm write.
+
+use std::path::{Path, PathBuf};
+
+use pericles::space::ListedPoints;
+
+use crate::IoError;
+
+/// Why a file gives no points.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PointsError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// A line that holds something else than it should.
+    #[error("{}:{line}: {reason}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// A file without points.
+    #[error("{}: it holds no point; each point is a line `x y z block volume`", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Reads the points of a body of this dimension. Coordinates beyond it must be the same for all points and are left out.
+///
+/// # Errors
+/// A file that cannot be read or holds no point; the first line that is wrong, with what is allowed there.
+pub fn read_points(path: impl AsRef<Path>, dimension: usize) -> Result<ListedPoints, PointsError> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
+    parse(&bytes, dimension).map_err(|wrong| match wrong {
+        Some(Wrong { line, reason }) => PointsError::Line {
+            path: path.into(),
+            line,
+            reason,
+        },
+        None => PointsError::Empty { path: path.into() },
+    })
+}
+
+/// What is wrong with a line.
+#[derive(Debug, PartialEq)]
+struct Wrong {
+    line: usize,
+    reason: String,
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Column {
+    Coordinate(usize),
+    Block,
+    Volume,
+}
+
+impl Column {
+    fn named(name: &str) -> Option<Self> {
+        Some(match name.to_lowercase().as_str() {
+            "x" => Self::Coordinate(0),
+            "y" => Self::Coordinate(1),
+            "z" => Self::Coordinate(2),
+            "block" | "block_id" | "blockid" => Self::Block,
+            "volume" | "vol" => Self::Volume,
+            _ => return None,
+        })
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Coordinate(c) => ["x", "y", "z"][c],
+            Self::Block => "block",
+            Self::Volume => "volume",
+        }
+    }
+}
+
+/// The points of a text; no reason if there are none.
+fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let mut points = ListedPoints::default();
+    let mut lines = Vec::new();
+    let mut columns: Option<Vec<Column>> = None;
+    for (k, text) in bytes.split(|&byte| byte == b'\n').enumerate() {
+        let wrong = |reason: String| {
+            Some(Wrong {
+                line: k + 1,
+                reason,
+            })
+        };
+        let text = std::str::from_utf8(text)
+            .map_err(|_| wrong("it is no text (UTF-8); points are listed as text".into()))?;
+        let words = words(text);
+        if words.is_empty() {
+            continue;
+        }
+        if is_header(&words) {
+            if columns.is_some() {
+                return Err(wrong(format!(
+                    "`{}` where a number is needed: names of columns stand before the points",
+                    words[0]
+                )));
+            }
+            columns = Some(header(&words, dimension).map_err(wrong)?);
+            continue;
+        }
+        let columns = match &columns {
+            Some(columns) => columns,
+            None => columns.insert(columns_of(words.len(), dimension).map_err(wrong)?),
+        };
+        read_point(&words, columns, &mut points).map_err(wrong)?;
+        lines.push(k + 1);
+    }
+    if lines.is_empty() {
+        return Err(None);
+    }
+    flatten(&mut points, dimension, &lines)?;
+    match points.first_twins() {
+        None => Ok(points),
+        Some((first, second)) => Err(Some(Wrong {
+            line: lines[second],
+            reason: format!(
+                "this point is at the same place as that of line {}",
+                lines[first]
+            ),
+        })),
+    }
+}
+
+/// What a line holds besides its comment.
+fn words(text: &str) -> Vec<&str> {
+    let text = text.split(['#', '!']).next().unwrap_or("");
+    text.split(|c: char| c == ',' || c.is_whitespace())
+        .filter(|word| !word.is_empty())
+        .collect()
+}
+
+/// Whether a line begins with a name. `nan` and `inf` are meant as numbers.
+fn is_header(words: &[&str]) -> bool {
+    let first = words[0];
+    first.starts_with(|c: char| c.is_alphabetic() || c == '_') && first.parse::<f64>().is_err()
+}
+
+fn header(words: &[&str], dimension: usize) -> Result<Vec<Column>, String> {
+    let allowed = "allowed: x, y, z, block (block_id) and volume, once each";
+    let names = match words {
+        [first, names @ ..] if first.eq_ignore_ascii_case("header:") => names,
+        names => names,
+    };
+    let mut columns = Vec::new();
+    for name in names {
+        let column =
+            Column::named(name).ok_or_else(|| format!("unknown column `{name}`; {allowed}"))?;
+        if columns.contains(&column) {
+            return Err(format!("the column `{name}` is named twice; {allowed}"));
+        }
+        columns.push(column);
+    }
+    let coordinates = (0..dimension).map(Column::Coordinate);
+    let needed = coordinates.chain([Column::Block, Column::Volume]);
+    match needed.into_iter().find(|column| !columns.contains(column)) {
+        None => Ok(columns),
+        Some(missing) => Err(format!(
+            "the column `{}` is missing, which a body of dimension {dimension} needs; {allowed}",
+            missing.name()
+        )),
+    }
+}
+
+/// Columns without a header.
+fn columns_of(count: usize, dimension: usize) -> Result<Vec<Column>, String> {
+    let coordinates = match count {
+        5 => 3,
+        _ if count == dimension + 2 => dimension,
+        _ => {
+            let own = match dimension {
+                1 => "`x block volume` or ",
+                2 => "`x y block volume` or ",
+                _ => "",
+            };
+            return Err(format!(
+                "{count} numbers; allowed: {own}`x y z block volume`, or names of the columns in a line before the points"
+            ));
+        }
+    };
+    let coordinates = (0..coordinates).map(Column::Coordinate);
+    Ok(coordinates.chain([Column::Block, Column::Volume]).collect())
+}
+
+fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> Result<(), String> {
+    if words.len() != columns.len() {
+        let names: Vec<&str> = columns.iter().map(|column| column.name()).collect();
+        return Err(format!(
+            "{} numbers where {} are needed: {}",
+            words.len(),
+            columns.len(),
+            names.join(" ")
+        ));
+    }
+    let mut place = [0.0; 3];
+    for (word, column) in words.iter().zip(columns) {
+        let refuse = |allowed: &str| {
+            Err(format!(
+                "the {} is `{word}`; allowed: {allowed}",
+                column.name()
+            ))
+        };
+        let number = word.parse().unwrap_or(f64::NAN);
+        match *column {
+            Column::Coordinate(c) if number.is_finite() => place[c] = number,
+            Column::Coordinate(_) => return refuse("a finite number, in m"),
+            // Many tools write all columns as reals.
+            Column::Block
+                if number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number) =>
+            {
+                points.blocks.push(number as u32);
+            }
+            Column::Block => return refuse("a whole number from 0 on"),
+            Column::Volume if number > 0.0 && number.is_finite() => points.volumes.push(number),
+            Column::Volume => return refuse("a positive number, in m³"),
+        }
+    }
+    points.positions.push(place);
+    Ok(())
+}
+
+/// Leaves out the coordinates that the body does not have.
+fn flatten(
+    points: &mut ListedPoints,
+    dimension: usize,
+    lines: &[usize],
+) -> Result<(), Option<Wrong>> {
+    let first = points.positions[0];
+    for (place, &line) in points.positions.iter_mut().zip(lines) {
+        for c in dimension..3 {
+            if place[c] != first[c] {
+                let axis = ["x", "y", "z"][c];
+                return Err(Some(Wrong {
+                    line,
+                    reason: format!(
+                        "{axis} is {} here and {} in line {}; in a body of dimension {dimension} all points have the same {axis}",
+                        place[c], first[c], lines[0]
+                    ),
+                }));
+            }
+            place[c] = 0.0;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str, dimension: usize) -> ListedPoints {
+        parse(text.as_bytes(), dimension).unwrap_or_else(|wrong| panic!("{wrong:?}"))
+    }
+
+    fn refusal(text: &str, dimension: usize) -> (usize, String) {
+        match parse(text.as_bytes(), dimension) {
+            Err(Some(Wrong { line, reason })) => (line, reason),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_forms_of_other_codes_are_one_cloud() {
+        let peridigm = "# x y z block volume\n0.5 0.0 0.25 1 1.0e-3\n1.5 0.0 0.25 2 2.0e-3\n";
+        let points = read(peridigm, 3);
+        assert_eq!(points.positions, [[0.5, 0.0, 0.25], [1.5, 0.0, 0.25]]);
+        assert_eq!(
+            (&points.blocks[..], &points.volumes[..]),
+            (&[1, 2][..], &[1e-3, 2e-3][..])
+        );
+        let perilab = "header: x y block_id volume\n0.5 0.0 1 1.0e-3\n1.5 0.0 2 2.0e-3";
+        let commas =
+            "\u{feff}y, x, volume, block\r\n0,0.5,1e-3,1.0 ! first\r\n\r\n0,1.5,2e-3,2\r\n";
+        let plane = read(perilab, 2);
+        assert_eq!(plane, read(commas, 2));
+        assert_eq!(plane, read("0.5 0 1 1e-3\n1.5\t0\t2\t2e-3", 2));
+        // A third coordinate that is the same everywhere is no third dimension.
+        assert_eq!(plane, read(peridigm, 2));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let cases = [
+            (
+                "0 0 0 1 1\n1 0 0 1",
+                3,
+                2,
+                "4 numbers where 5 are needed: x y z block volume",
+            ),
+            ("0 0 0\n", 3, 1, "3 numbers; allowed: `x y z block volume`"),
+            ("0 0 0\n", 2, 1, "`x y block volume`"),
+            (
+                "\n0 0 zero 1 1",
+                3,
+                2,
+                "the z is `zero`; allowed: a finite number",
+            ),
+            ("nan 0 0 1 1", 3, 1, "the x is `nan`"),
+            (
+                "0 0 0 1.5 1",
+                3,
+                1,
+                "the block is `1.5`; allowed: a whole number",
+            ),
+            ("0 0 0 -1 1", 3, 1, "the block is `-1`"),
+            (
+                "0 0 0 1 -2e-9",
+                3,
+                1,
+                "the volume is `-2e-9`; allowed: a positive number",
+            ),
+            ("0 0 0 1 0", 3, 1, "the volume is `0`"),
+            (
+                "x y z mass volume\n",
+                3,
+                1,
+                "unknown column `mass`; allowed: x, y, z, block",
+            ),
+            ("x y z block x\n", 3, 1, "`x` is named twice"),
+            (
+                "x y block volume\n0 0 1 1",
+                3,
+                1,
+                "the column `z` is missing",
+            ),
+            (
+                "0 0 0 1 1\nx y z block volume\n",
+                3,
+                2,
+                "names of columns stand before the points",
+            ),
+            ("0 0 1 1 1\n1 0 2 1 1", 2, 2, "z is 2 here and 1 in line 1"),
+            (
+                "0 0 0 1 1\n1 0 0 1 1\n# a comment\n0 -0.0 0 1 1",
+                3,
+                4,
+                "same place as that of line 1",
+            ),
+        ];
+        for (text, dimension, line, says) in cases {
+            let (found, reason) = refusal(text, dimension);
+            assert!(
+                found == line && reason.contains(says),
+                "{text:?}: {found}: {reason}"
+            );
+        }
+        assert_eq!(parse(b"# nothing\n\n", 3), Err(None));
+        assert!(parse(b"\xff\xfe\x00", 3).is_err());
+    }
+
+    #[test]
+    fn messages_name_the_file() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("cloud.txt");
+        let missing = read_points(&path, 3).unwrap_err().to_string();
+        assert!(missing.contains("cloud.txt"), "{missing}");
+        std::fs::write(&path, "0 0 0 1 one\n").unwrap();
+        let wrong = read_points(&path, 3).unwrap_err().to_string();
+        assert!(
+            wrong.contains("cloud.txt:1: the volume is `one`"),
+            "{wrong}"
+        );
+        std::fs::write(&path, "").unwrap();
+        assert!(
+            read_points(&path, 3)
+                .unwrap_err()
+                .to_string()
+                .contains("no point")
+        );
+    }
+}

@@ -1,0 +1,166 @@
+//! Bodies of several materials: the constants of a bond by the materials of its two ends.
+
+use super::BondConstants;
+use crate::error::{PericlesError, Result};
+
+/// The constant c of a bond between two materials, from theirs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum InterfaceRule {
+    /// 2 c₁c₂/(c₁ + c₂): two springs of half the length in a row.
+    #[default]
+    Harmonic,
+    /// (c₁ + c₂)/2.
+    Arithmetic,
+    /// min(c₁, c₂).
+    Weaker,
+}
+
+impl InterfaceRule {
+    fn mix(self, [a, b]: [f64; 2]) -> f64 {
+        match self {
+            // A mean of equals is that number, to the last bit.
+            _ if a == b => a,
+            Self::Harmonic => 2.0 * a * b / (a + b),
+            Self::Arithmetic => 0.5 * (a + b),
+            Self::Weaker => a.min(b),
+        }
+    }
+}
+
+/// The material of every point, and a small symmetric table of the constants for every pair of materials.
+///
+/// A bond between points of the materials a and b has the constant c_ab by the [`InterfaceRule`] and the smaller of the two critical stretches, unless
+/// [`PairClasses::set_critical_stretch`] says otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairClasses {
+    of_point: Vec<u8>,
+    count: usize,
+    micromodulus: Vec<f64>,
+    critical_stretch: Vec<f64>,
+}
+
+impl PairClasses {
+    /// The classes of materials with these constants; `of_point` gives the number of each point's material.
+    ///
+    /// # Errors
+    /// More than 256 materials, or a number without a material.
+    pub fn new(
+        of_point: Vec<u8>,
+        constants: &[BondConstants],
+        rule: InterfaceRule,
+    ) -> Result<Self> {
+        let count = constants.len();
+        if count > 256 {
+            return Err(PericlesError::OutOfRange {
+                quantity: "the number of materials",
+                value: count as f64,
+                allowed: "at most 256",
+            });
+        }
+        if let Some(&number) = of_point
+            .iter()
+            .find(|&&number| usize::from(number) >= count)
+        {
+            return Err(PericlesError::OutOfRange {
+                quantity: "the number of a point's material",
+                value: f64::from(number),
+                allowed: "numbers of the materials given, from 0",
+            });
+        }
+        let table = |entry: &dyn Fn(&BondConstants, &BondConstants) -> f64| {
+            let pairs = constants
+                .iter()
+                .flat_map(|a| constants.iter().map(move |b| (a, b)));
+            pairs.map(|(a, b)| entry(a, b)).collect()
+        };
+        Ok(Self {
+            of_point,
+            count,
+            micromodulus: table(&|a, b| rule.mix([a.micromodulus, b.micromodulus])),
+            critical_stretch: table(&|a, b| a.critical_stretch.min(b.critical_stretch)),
+        })
+    }
+
+    /// Gives bonds between two materials a critical stretch of their own; infinite: they never break.
+    ///
+    /// # Panics
+    /// If a material is not one of those given.
+    pub fn set_critical_stretch(&mut self, [a, b]: [u8; 2], stretch: f64) {
+        let (a, b) = (usize::from(a), usize::from(b));
+        assert!(
+            a < self.count && b < self.count,
+            "a pair of materials given"
+        );
+        self.critical_stretch[a * self.count + b] = stretch;
+        self.critical_stretch[b * self.count + a] = stretch;
+    }
+
+    /// The number of each point's material.
+    pub fn of_point(&self) -> &[u8] {
+        &self.of_point
+    }
+
+    /// The constant c of a bond between two points.
+    pub fn micromodulus(&self, i: usize, j: usize) -> f64 {
+        self.micromodulus[self.class(i, j)]
+    }
+
+    /// The critical stretch s₀ of a bond between two points; infinite if it never breaks.
+    pub fn critical_stretch(&self, i: usize, j: usize) -> f64 {
+        self.critical_stretch[self.class(i, j)]
+    }
+
+    /// The smallest critical stretch of all.
+    pub fn smallest_critical_stretch(&self) -> f64 {
+        let stretches = self.critical_stretch.iter();
+        stretches.copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Critical stretches by class.
+    pub(crate) fn critical_stretches(&self) -> &[f64] {
+        &self.critical_stretch
+    }
+
+    /// The class of a bond between two points.
+    #[inline(always)]
+    pub(crate) fn class(&self, i: usize, j: usize) -> usize {
+        usize::from(self.of_point[i]) * self.count + usize::from(self.of_point[j])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn constants(micromodulus: f64, critical_stretch: f64) -> BondConstants {
+        BondConstants {
+            micromodulus,
+            critical_stretch,
+            fracture_energy: f64::NAN,
+            young: f64::NAN,
+            stiffness_error: 0.0,
+        }
+    }
+
+    #[test]
+    fn mixed_bonds_follow_the_rule() {
+        let two = [constants(3.0, 0.01), constants(6.0, f64::INFINITY)];
+        let mixed = |rule| {
+            PairClasses::new(vec![0, 1, 1], &two, rule)
+                .unwrap()
+                .micromodulus(0, 2)
+        };
+        assert_eq!(mixed(InterfaceRule::Harmonic), 4.0);
+        assert_eq!(mixed(InterfaceRule::Arithmetic), 4.5);
+        assert_eq!(mixed(InterfaceRule::Weaker), 3.0);
+        let mut classes = PairClasses::new(vec![0, 1, 1], &two, InterfaceRule::Weaker).unwrap();
+        assert_eq!(classes.micromodulus(1, 2), 6.0);
+        assert_eq!(classes.critical_stretch(2, 0), 0.01);
+        assert_eq!(classes.critical_stretch(1, 2), f64::INFINITY);
+        classes.set_critical_stretch([1, 0], 0.002);
+        assert_eq!(classes.critical_stretch(0, 1), 0.002);
+        assert_eq!(classes.critical_stretch(2, 0), 0.002);
+        assert_eq!(classes.smallest_critical_stretch(), 0.002);
+        assert!(PairClasses::new(vec![2], &two, InterfaceRule::Weaker).is_err());
+    }
+}

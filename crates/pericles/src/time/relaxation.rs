@@ -1,0 +1,323 @@
+//! Static states by dynamic relaxation.
+
+use rayon::prelude::*;
+
+use super::{Integrator, State};
+use crate::archive::{Archive, Saved, Values};
+use crate::error::{PericlesError, Result};
+use crate::operator::{Accepted, On};
+use crate::parallel::{BLOCK, ordered_sum};
+use crate::system::System;
+
+/// How motion is damped on the way to an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Damping {
+    /// c = 2 √(dᵀK d / dᵀM d) for the displacement d since the start, from what the forces have changed by: critical for the shape that d has (Underwood 1983).
+    #[default]
+    Adaptive,
+    /// This c, per iteration; between 0 and 2.
+    Viscous(f64),
+}
+
+/// When a state counts as static, and how it is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelaxationOptions {
+    /// The damping.
+    pub damping: Damping,
+    /// Norm of the forces that are out of balance over that of loads or supports, the larger; the largest so far.
+    pub tolerance: f64,
+    /// The most iterations of one equilibrium.
+    pub iterations: u32,
+}
+
+impl Default for RelaxationOptions {
+    fn default() -> Self {
+        Self {
+            damping: Damping::Adaptive,
+            tolerance: 1e-6,
+            iterations: 100_000,
+        }
+    }
+}
+
+/// Each step goes from one static state to the next: loads and supports take their values of its end, and
+///
+/// M v̇ + c M v = f(u) + b
+///
+/// is followed in steps of 1 by central differences until the force F = f + b of the free points falls below the tolerance, with fictitious masses M for which a
+/// step of 1 is stable (Underwood, *Dynamic relaxation*, 1983; Kilic & Madenci, Theor. Appl. Fract. Mech. 53, 194, 2010):
+///
+/// v ← ((2 − c) v + 2 F/M)/(2 + c), u ← u + v.
+///
+/// Then bonds that are over-stretched break, all at once, and the body relaxes again at the same loads, until none does. Real masses play no part, and time only
+/// enters through what loads and supports do.
+///
+/// The energy account: between two static states loads and supports do the work of their mean forces, exact for linear forces. A bond that breaks dissipates its energy
+/// at the static state before. What the body then gives up on its way to the next equilibrium goes into the damping, as it would go into waves;
+/// it is measured as the loss of elastic energy less the work of the constant loads, and reported as the scheme's correction.
+#[derive(Debug, Clone)]
+pub struct Relaxation {
+    options: RelaxationOptions,
+    /// 1 over the fictitious mass, times the volume: per point.
+    mobility: f64,
+    /// 1 for free entries, 0 for held ones.
+    free: Vec<f64>,
+    force: Vec<f64>,
+    first_force: Vec<f64>,
+    velocity: Vec<f64>,
+    start: Vec<f64>,
+    before: Vec<f64>,
+    /// The largest norm of loads or supports at an equilibrium so far, N.
+    largest: f64,
+    /// Energy given to the damping after bonds broke, J.
+    damped: f64,
+    iterations: u64,
+}
+
+impl Relaxation {
+    /// The scheme for a system.
+    ///
+    /// # Errors
+    /// Options out of their ranges, a body whose stiffness at rest is zero or not known.
+    pub fn new(options: RelaxationOptions, system: &System) -> Result<Self> {
+        let refuse = |parameter, value, allowed| {
+            Err(PericlesError::SchemeParameter {
+                parameter,
+                value,
+                allowed,
+            })
+        };
+        if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
+            return refuse("the tolerance", options.tolerance, "above 0 and below 1");
+        }
+        if let Damping::Viscous(damping) = options.damping
+            && !(damping > 0.0 && damping < 2.0)
+        {
+            return refuse("the damping", damping, "above 0 and below 2");
+        }
+        // With unit densities: the bound is that of the stiffness itself.
+        let omega = system.operator().frequency_bound(&|_| 1.0);
+        if !(omega > 0.0 && omega.is_finite()) {
+            return Err(PericlesError::SchemeNotUsable {
+                scheme: "relaxation",
+                reason: "its bonds have no stiffness at rest, which sets the fictitious masses",
+            });
+        }
+        /// ω dt = 2 is the limit; bonds stiffen a little as they turn.
+        const OMEGA_DT: f64 = 1.8;
+        let entries = system.dimension() * system.points();
+        let zeros = || vec![0.0; entries];
+        Ok(Self {
+            options,
+            mobility: (OMEGA_DT / omega).powi(2),
+            free: zeros(),
+            force: zeros(),
+            first_force: zeros(),
+            velocity: zeros(),
+            start: zeros(),
+            before: zeros(),
+            largest: 0.0,
+            damped: 0.0,
+            iterations: 0,
+        })
+    }
+
+    /// Iterations of all equilibria so far.
+    pub fn iterations(&self) -> u64 {
+        self.iterations
+    }
+
+    /// Moves `u` to the equilibrium at time t with the bonds as they are.
+    fn relax(&mut self, system: &System, t: f64, u: &mut [f64]) -> Result<()> {
+        let RelaxationOptions {
+            damping,
+            tolerance,
+            iterations,
+        } = self.options;
+        system.place_on(t, &On::All, u);
+        self.free.fill(1.0);
+        system.hold_at(t, &mut self.free);
+        self.start.copy_from_slice(u);
+        self.velocity.fill(0.0);
+        system.load_density_into(t, &mut self.force);
+        let load = self.norm(system, &self.force, |free| free);
+        let mut first = f64::NAN;
+        let mut ratio = f64::NAN;
+        for iteration in 0..=iterations {
+            system.force_density_into(t, u, &mut self.force);
+            let residual = self.norm(system, &self.force, |free| free);
+            if iteration == 0 {
+                first = residual;
+                self.first_force.copy_from_slice(&self.force);
+            }
+            let support = self.norm(system, &self.force, |free| 1.0 - free);
+            // Of a body that comes apart nothing is left in the end to compare with: what acted before counts too. Where neither loads nor supports ever
+            // acted, what was out of balance at first is all there is.
+            let acting = match load.max(support).max(self.largest) {
+                0.0 => first,
+                acting => acting,
+            };
+            ratio = if residual == 0.0 {
+                0.0
+            } else {
+                residual / acting
+            };
+            if ratio <= tolerance {
+                self.largest = self.largest.max(load).max(support);
+                return Ok(());
+            }
+            if !ratio.is_finite() || iteration == iterations {
+                break;
+            }
+            self.iterations += 1;
+            let c = match damping {
+                Damping::Viscous(c) => c,
+                Damping::Adaptive => self.critical_damping(system, u),
+            };
+            self.advance(c, iteration == 0, u);
+        }
+        Err(PericlesError::NoEquilibrium {
+            t,
+            iterations,
+            residual: ratio,
+            tolerance,
+        })
+    }
+
+    /// √Σ (V F)² over the entries that `counts` weighs with 1, N.
+    fn norm(&self, system: &System, force: &[f64], counts: impl Fn(f64) -> f64 + Sync) -> f64 {
+        let (n, volumes) = (system.points(), system.cloud().volumes());
+        ordered_sum(force.len(), |entry| {
+            counts(self.free[entry]) * (force[entry] * volumes[entry % n]).powi(2)
+        })
+        .sqrt()
+    }
+
+    /// 2 √(dᵀK d / dᵀM d), with K d = F₀ − F for the displacement d since the start.
+    fn critical_damping(&self, system: &System, u: &[f64]) -> f64 {
+        /// From 2 on the motion would turn back at every step.
+        const MOST: f64 = 1.9;
+        let (n, volumes) = (system.points(), system.cloud().volumes());
+        let d = |entry: usize| u[entry] - self.start[entry];
+        let weighted = |entry: usize, x: f64| self.free[entry] * volumes[entry % n] * x;
+        let stiffness = ordered_sum(u.len(), |entry| {
+            weighted(
+                entry,
+                d(entry) * (self.first_force[entry] - self.force[entry]),
+            )
+        });
+        let mass = ordered_sum(u.len(), |entry| weighted(entry, d(entry).powi(2)));
+        if stiffness > 0.0 && mass > 0.0 {
+            (2.0 * (self.mobility * stiffness / mass).sqrt()).min(MOST)
+        } else {
+            0.0
+        }
+    }
+
+    /// One step of 1. The first starts from rest with half of one.
+    fn advance(&mut self, c: f64, from_rest: bool, u: &mut [f64]) {
+        let (keep, push) = if from_rest {
+            (0.0, 0.5 * self.mobility)
+        } else {
+            ((2.0 - c) / (2.0 + c), 2.0 * self.mobility / (2.0 + c))
+        };
+        self.velocity
+            .par_chunks_mut(BLOCK)
+            .zip(u.par_chunks_mut(BLOCK))
+            .zip(self.force.par_chunks(BLOCK))
+            .zip(self.free.par_chunks(BLOCK))
+            .for_each(|(((velocity, u), force), free)| {
+                for k in 0..u.len() {
+                    velocity[k] = free[k] * (keep * velocity[k] + push * force[k]);
+                    u[k] += velocity[k];
+                }
+            });
+    }
+
+    /// Breaks over-stretched bonds and relaxes again until none is left.
+    fn settle(&mut self, system: &mut System, state: &mut State, t: f64) -> Result<()> {
+        self.velocity.fill(0.0);
+        loop {
+            let broken = system.operator().broken_bonds();
+            let accepted = Accepted {
+                t,
+                u: &state.u,
+                mean_velocity: &self.velocity,
+                dt: 0.0,
+            };
+            system.accept_on(accepted, &On::All, &mut state.a);
+            if system.operator().broken_bonds() == broken {
+                return Ok(());
+            }
+            self.before.copy_from_slice(&state.u);
+            let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
+            self.relax(system, t, &mut state.u)?;
+            system.book_equilibrium(t, 0.0, [&self.before, &state.u], &mut state.a);
+            self.damped +=
+                elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
+            self.velocity.fill(0.0);
+        }
+    }
+}
+
+impl Integrator for Relaxation {
+    fn name(&self) -> &'static str {
+        "relaxation"
+    }
+
+    /// Of the work between static states, in the length of load steps.
+    fn order(&self) -> u32 {
+        2
+    }
+
+    /// Load steps of any length.
+    fn stability_limit(&self) -> Option<f64> {
+        None
+    }
+
+    /// What the damping took when bonds broke.
+    fn energy_correction(&self, _system: &System, _state: &State, _dt: f64) -> f64 {
+        self.damped
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        system.place_on(state.t, &On::All, &mut state.u);
+        state.v.fill(0.0);
+        let u = state.u.clone();
+        system.book_equilibrium(state.t, 0.0, [&u, &state.u], &mut state.a);
+        state.a.fill(0.0);
+    }
+
+    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+        let dt = t_next - state.t;
+        let before = state.u.clone();
+        self.relax(system, t_next, &mut state.u)?;
+        system.book_equilibrium(t_next, dt, [&before, &state.u], &mut state.a);
+        if system.operator().can_break() {
+            self.settle(system, state, t_next)?;
+        }
+        state.v.fill(0.0);
+        state.a.fill(0.0);
+        state.t = t_next;
+        state.step += 1;
+        Ok(())
+    }
+}
+
+impl Saved for Relaxation {
+    fn save(&self, archive: &mut Archive) {
+        let account = vec![self.damped, self.largest];
+        archive.put("relaxation/account", Values::F64(account));
+        archive.put("relaxation/iterations", Values::U64(vec![self.iterations]));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let mut account = [0.0; 2];
+        archive.f64_into("relaxation/account", &mut account)?;
+        [self.damped, self.largest] = account;
+        archive.u64_into(
+            "relaxation/iterations",
+            std::slice::from_mut(&mut self.iterations),
+        )
+    }
+}
