@@ -6,7 +6,7 @@ use pericles::{Control, Simulation};
 use pericles_deck::Deck;
 
 /// An example ready to run, and the point of each probe by name.
-fn example(name: &str, overrides: &[&str]) -> (Simulation, impl Fn(&str) -> usize) {
+fn example(name: &str, overrides: &[&str]) -> (Simulation, impl Fn(&str) -> usize + use<>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../examples")
         .join(name);
