@@ -32,6 +32,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         None => lines.extend(material(&deck, &facts)),
     }
     lines.extend(time(&facts));
+    for end in &facts.ends {
+        lines.push(("absorbing end", end.line()));
+    }
     if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
         // A step goes from static state to static state: one would be the whole run.
         let note = "that of as many iterations as each static state takes";

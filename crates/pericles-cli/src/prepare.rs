@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use pericles::Simulation;
+use pericles::boundary::absorbing::{EndReport, KernelMethod, Side};
 use pericles::cache::{Cache, NoCache};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
@@ -19,6 +20,7 @@ use crate::args::Caching;
 use crate::console;
 use crate::error::CliError;
 use crate::refinement::RefinementFacts;
+use crate::units::bytes;
 
 /// What is known about a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -46,13 +48,60 @@ pub(crate) struct Facts {
     pub(crate) highest_frequency: Option<f64>,
     pub(crate) frequency_converged: Option<bool>,
     pub(crate) stable_step: Option<f64>,
-    /// Points, state and bonds, bytes.
+    /// Points, state, bonds and histories, bytes.
     pub(crate) memory_estimate: u64,
     pub(crate) scheme: &'static str,
     /// None for schemes with one time step.
     pub(crate) refinement: Option<RefinementFacts>,
+    /// The absorbing ends.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) ends: Vec<EndFacts>,
     pub(crate) instruction_set: &'static str,
     pub(crate) warnings: Vec<String>,
+}
+
+/// How an absorbing end is made.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct EndFacts {
+    pub(crate) side: &'static str,
+    pub(crate) method: &'static str,
+    pub(crate) history: &'static str,
+    pub(crate) memory: u64,
+    /// None for exact histories.
+    pub(crate) exponentials: Option<usize>,
+    /// Error of the fit on its samples.
+    pub(crate) residual: Option<f64>,
+    /// Distance from the exact kernels, where `verify` asks for it.
+    pub(crate) distance: Option<f64>,
+}
+
+impl EndFacts {
+    fn of((side, report): &(Side, EndReport)) -> Self {
+        Self {
+            side: side.name(),
+            method: report.method.name(),
+            history: report.history,
+            memory: report.bytes as u64,
+            exponentials: report.exponentials,
+            residual: report.residual,
+            distance: report.distance,
+        }
+    }
+
+    /// In a line.
+    pub(crate) fn line(&self) -> String {
+        let mut line = format!("{}: {}, {}", self.side, self.history, bytes(self.memory));
+        if self.method != KernelMethod::Discrete.name() {
+            line += &format!(", {} kernels", self.method);
+        }
+        if let (Some(count), Some(residual)) = (self.exponentials, self.residual) {
+            line += &format!(", {count} terms, error {residual:.1e}");
+        }
+        if let Some(distance) = self.distance {
+            line += &format!(", {distance:.1e} from the exact kernels");
+        }
+        line
+    }
 }
 
 impl Facts {
@@ -64,6 +113,7 @@ impl Facts {
         let constants = &model.constants;
         let finite = |x: f64| x.is_finite().then_some(x);
         // Position and volume, then displacement, velocity and acceleration.
+        let ends: usize = model.ends.iter().map(|(_, end)| end.bytes).sum();
         let numbers = points * (dimension + 1) + 3 * points * dimension;
         Self {
             dimension,
@@ -89,9 +139,10 @@ impl Facts {
             highest_frequency: model.frequency.map(|f| f.estimate),
             frequency_converged: model.frequency.map(|f| f.converged),
             stable_step: model.stable_step(),
-            memory_estimate: (operator.bytes() + numbers * size_of::<f64>()) as u64,
+            memory_estimate: (operator.bytes() + numbers * size_of::<f64>() + ends) as u64,
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
+            ends: model.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
             warnings: model
                 .warnings

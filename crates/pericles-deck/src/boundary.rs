@@ -1,6 +1,8 @@
-//! `[[boundary]]`: ends through which waves leave.
+//! `[[boundary]]`: ends and sides through which waves leave.
 
-use pericles::boundary::absorbing::Side;
+use pericles::boundary::absorbing::history::HistoryForm;
+use pericles::boundary::absorbing::{EndPlan, KernelMethod, Side};
+use pericles::space::Face;
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
@@ -13,85 +15,135 @@ pub enum BoundaryCondition {
     Absorbing {
         /// The end.
         side: Side,
-        /// How its history is kept.
-        history: HistoryForm,
+        /// Its kernels, and how its history is kept.
+        plan: EndPlan,
+        /// How far the initial fields go on beyond the end, m; none where nothing moves there.
+        exterior_data: Option<f64>,
     },
-}
-
-/// How the history of an absorbing end is kept.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum HistoryForm {
-    /// By blocks with Fourier transforms: exact.
-    Blocked,
-    /// By direct sums: exact, and slow.
-    Direct,
-    /// By sums of exponentials: memory for any number of steps in a few numbers.
-    Exponentials {
-        /// Error of a ghost's displacement, relative to displacements.
-        tolerance: f64,
+    /// A layer in which motion dies away, of any body.
+    DampingLayer {
+        /// The side.
+        face: Face,
+        /// Its depth, m.
+        thickness: f64,
+        /// Share of the amplitude of a long wave, head on, that comes back.
+        reflection: f64,
+        /// The power with which the damping grows.
+        power: f64,
     },
-}
-
-#[derive(Clone, Copy)]
-enum Form {
-    Blocked,
-    Direct,
-    Exponentials,
 }
 
 #[derive(Clone, Copy)]
 enum Kind {
     Absorbing,
+    DampingLayer,
 }
 
 pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
+    let kinds = [
+        ("absorbing", Kind::Absorbing),
+        ("damping-layer", Kind::DampingLayer),
+    ];
     let kind = table
         .required("kind")
-        .and_then(|item| item.choice("kind of boundary", &[("absorbing", Kind::Absorbing)]));
+        .and_then(|item| item.choice("kind of boundary", &kinds));
+    match kind {
+        Some(Kind::DampingLayer) => damping_layer(table),
+        // Of a kind that nobody knows, the rest is read as of the first.
+        _ => absorbing(table).filter(|_| kind.is_some()),
+    }
+}
+
+fn absorbing(table: Table<'_>) -> Option<BoundaryCondition> {
     let sides = [Side::Left, Side::Right].map(|side| (side.name(), side));
     let side = table
         .required("side")
         .and_then(|item| item.choice("side", &sides));
+    let methods = [
+        KernelMethod::Discrete,
+        KernelMethod::SemiDiscrete,
+        KernelMethod::Historical,
+    ];
+    let method = table.choice_or_first("method", "method", &methods.map(|m| (m.name(), m)));
     let form = table.choice_or_first(
         "history",
         "history",
         &[
-            ("blocked", Form::Blocked),
-            ("direct", Form::Direct),
-            ("exponentials", Form::Exponentials),
+            ("auto", None),
+            ("blocked", Some(HistoryForm::Blocked)),
+            ("direct", Some(HistoryForm::Direct)),
+            ("exponentials", Some(HistoryForm::Exponentials)),
         ],
     );
-    let history = match form {
-        Some(Form::Exponentials) => {
-            tolerance(&table).map(|tolerance| HistoryForm::Exponentials { tolerance })
-        }
-        other => {
+    let exact = |form| matches!(form, Some(HistoryForm::Blocked | HistoryForm::Direct));
+    let discrete = method == Some(KernelMethod::Discrete);
+    let (mut tolerance, mut verify) = (Some(None), Some(false));
+    if form.is_some_and(exact) || !discrete {
+        let why = "it belongs to exponentials (history = \"auto\" or \"exponentials\", method = \"discrete\"); the other histories are exact";
+        table.forbid("tolerance", why);
+        table.forbid("verify", why);
+        if form == Some(Some(HistoryForm::Exponentials)) && method.is_some() {
             table.forbid(
-                "tolerance",
-                "a tolerance belongs to history = \"exponentials\"; the others are exact",
+                "history",
+                "\"auto\", \"blocked\" or \"direct\": exponentials are fitted to method = \"discrete\" only",
             );
-            other.map(|form| match form {
-                Form::Direct => HistoryForm::Direct,
-                _ => HistoryForm::Blocked,
-            })
         }
+    } else {
+        tolerance = table.maybe("tolerance", |item| {
+            item.within(
+                Quantity::Number,
+                "a number above 1e-14 and below 1",
+                |tolerance| tolerance > 1e-14 && tolerance < 1.0,
+            )
+        });
+        verify = table.or("verify", false, |item| item.boolean());
+    }
+    let exterior_data = match method {
+        Some(KernelMethod::SemiDiscrete | KernelMethod::Historical) => {
+            table.forbid("exterior_data", "it belongs to method = \"discrete\"");
+            Some(None)
+        }
+        _ => table.maybe("exterior_data", |item| item.positive(Quantity::Length)),
     };
     table.finish();
-    let Kind::Absorbing = kind?;
     Some(BoundaryCondition::Absorbing {
         side: side?,
-        history: history?,
+        plan: EndPlan {
+            method: method?,
+            form: form?,
+            tolerance: tolerance?,
+            verify: verify?,
+        },
+        exterior_data: exterior_data?,
     })
 }
 
-fn tolerance(table: &Table<'_>) -> Option<f64> {
-    const TOLERANCE: f64 = 1e-9;
-    table.or("tolerance", TOLERANCE, |item| {
+fn damping_layer(table: Table<'_>) -> Option<BoundaryCondition> {
+    let sides = ["-x", "+x", "-y", "+y", "-z", "+z"];
+    let face = table
+        .required("side")
+        .and_then(|item| item.choice("side", &sides.map(|side| (side, Face::named(side)))))
+        .flatten();
+    let thickness = table
+        .required("thickness")
+        .and_then(|item| item.positive(Quantity::Length));
+    let reflection = table.or("reflection", 1e-3, |item| {
         item.within(
             Quantity::Number,
-            "a number above 1e-14 and below 1",
-            |tolerance| tolerance > 1e-14 && tolerance < 1.0,
+            "a number above 1e-12 and below 1",
+            |share| share > 1e-12 && share < 1.0,
         )
+    });
+    let power = table.or("power", 2.0, |item| {
+        item.within(Quantity::Number, "a number from 0 to 10", |power| {
+            (0.0..=10.0).contains(&power)
+        })
+    });
+    table.finish();
+    Some(BoundaryCondition::DampingLayer {
+        face: face?,
+        thickness: thickness?,
+        reflection: reflection?,
+        power: power?,
     })
 }

@@ -95,6 +95,14 @@ pub enum Caution {
         /// The shortest wave that it carries, m.
         length: f64,
     },
+    /// Kernels whose errors grow.
+    #[error(
+        "the historical kernels are off by {growth:.1e} of the largest at the end of the run: their errors grow with time"
+    )]
+    HistoricalKernels {
+        /// The error of the Green functions.
+        growth: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -135,6 +143,9 @@ impl Subject for Caution {
             Self::ShortWaves { .. } => {
                 "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
             }
+            Self::HistoricalKernels { .. } => {
+                "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -154,6 +165,7 @@ impl Subject for Caution {
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
+            Self::HistoricalKernels { .. } => "historical",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }

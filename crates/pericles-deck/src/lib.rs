@@ -144,8 +144,19 @@
 //! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet"
 //! kind = "absorbing"                     # the bar goes on for ever beyond this end, as its outermost points are; exact
 //! side = "-x"                            # or +x
-//! history = "blocked"                    # default; or direct: slow, for comparison; or exponentials: not exact, but little memory, with
-//! # tolerance = 1e-9                     # of a displacement beyond the end, relative
+//! history = "auto"                       # default: the cheaper of the exact forms direct and blocked, and of exponentials if a tolerance is given; or one of the three
+//! # tolerance = 1e-9                     # allowed error of displacements beyond the end, relative to those before it: exponentials, in little memory
+//! # verify = true                        # default false: compares the exponentials with the exact kernels; `check` and run.json say how far they are apart
+//! # method = "discrete"                  # default: exact for the scheme; or semi-discrete (exact in continuous time, by the trapezoidal rule); or historical (the same from a
+//! #                                        chain that is closed by an identity; errors grow)
+//! # exterior_data = "40 mm"              # optional: the [[initial]] fields of set "all" go on that far beyond the end, and move there from the start
+//!
+//! [[boundary]]                           # a layer in which motion dies away; any body, scheme = "velocity-verlet"; reflects a little
+//! kind = "damping-layer"
+//! side = "+y"
+//! thickness = "20 mm"                    # of the body's own material; a few wavelengths are best
+//! reflection = 1e-3                      # default: share of the amplitude of a long wave, head on, that is to come back from the side
+//! power = 2                              # default: the damping grows as this power of the depth
 //!
 //! [[probe]]                              # displacement and velocity in the history
 //! name = "middle"
@@ -290,7 +301,7 @@ mod units;
 mod vocabulary;
 
 pub use body::{Body, Quadrature};
-pub use boundary::{BoundaryCondition, HistoryForm};
+pub use boundary::BoundaryCondition;
 pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
 pub use caution::Caution;
 pub use component::{Component, VectorField};

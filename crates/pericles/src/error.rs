@@ -221,6 +221,12 @@ pub enum PericlesError {
         /// Name of the scheme.
         scheme: &'static str,
     },
+    /// A damping layer that cannot be.
+    #[error("damping layer: {reason}")]
+    BadDampingLayer {
+        /// Why, and what is allowed.
+        reason: String,
+    },
     /// Nothing in the body resists motion, so that no stable step can be found.
     #[error("the body has no bond that resists motion: the stable step cannot be found; give dt")]
     NoStiffness,

@@ -1,27 +1,32 @@
-//! Absorbing ends of a model.
+//! Absorbing ends and damping layers of a model.
 
-use pericles::System;
-use pericles::boundary::absorbing::history::{
-    BlockedHistory, DirectHistory, ExponentialHistory, History,
-};
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, ExponentialKernels, OuterLayer, Side, cached_kernels,
+    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, OuterLayer, Side,
 };
+use pericles::boundary::{DampingLayer, DampingProfile};
 use pericles::cache::Cache;
+use pericles::material::BondConstants;
+use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
+use pericles::{PericlesError, System};
 
 use super::Sets;
 use super::step::Steps;
-use crate::boundary::{BoundaryCondition, HistoryForm};
+use crate::boundary::BoundaryCondition;
+use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
+use crate::finding::Warning;
 use crate::reader::Path;
+use crate::set::ALL;
 
 /// An end to be made once the step is known.
 pub(super) struct End {
     path: Path,
     layer: OuterLayer,
-    history: HistoryForm,
+    plan: EndPlan,
+    /// Displacements and velocities of the exterior's sites.
+    beyond: Option<[Vec<f64>; 2]>,
 }
 
 impl Deck {
@@ -33,34 +38,67 @@ impl Deck {
         sets: &Sets,
         integrator: &dyn Integrator,
     ) -> Result<Vec<End>, DeckError> {
-        if self.boundaries.is_empty() {
-            return Ok(Vec::new());
-        }
         let no_fail = self.union_of(sets, &self.material.no_fail)?;
         let mut ends = Vec::new();
         let mut sides: Vec<Side> = Vec::new();
         for (k, boundary) in self.boundaries.iter().enumerate() {
             let path = Path::from("boundary").index(k);
-            let BoundaryCondition::Absorbing { side, history } = *boundary;
-            let refuse = |error| self.at_path(&path, pericles::PericlesError::from(error).into());
-            if sides.contains(&side) {
-                let side = side.name();
-                return Err(refuse(AbsorbingError::Twice { side }));
-            }
+            let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
             let (scheme, needed) = (integrator.name(), AbsorbingEnd::SCHEME);
             if scheme != needed {
                 let error = AbsorbingError::Scheme { scheme, needed };
                 return Err(self.at("time.scheme", error.into()));
             }
+            let BoundaryCondition::Absorbing {
+                side,
+                plan,
+                exterior_data,
+            } = *boundary
+            else {
+                continue;
+            };
+            if sides.contains(&side) {
+                let side = side.name();
+                return Err(refuse(AbsorbingError::Twice { side }));
+            }
             sides.push(side);
-            let layer = OuterLayer::of(system, side, state, &no_fail).map_err(refuse)?;
+            let (layer, beyond) = match exterior_data {
+                None => (OuterLayer::of(system, side, state, &no_fail), None),
+                Some(depth) => {
+                    let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
+                    (layer, Some(self.fields_beyond(side, depth, system.cloud())))
+                }
+            };
             ends.push(End {
+                layer: layer.map_err(refuse)?,
                 path,
-                layer,
-                history,
+                plan,
+                beyond,
             });
         }
         Ok(ends)
+    }
+
+    /// The initial fields of all points, continued beyond an end; displacement and velocity of each site.
+    fn fields_beyond(&self, side: Side, depth: f64, cloud: &PointCloud) -> [Vec<f64>; 2] {
+        let spacing = cloud.spacing();
+        let (last, step) = match side {
+            Side::Left => (cloud.point(0), -spacing),
+            Side::Right => (cloud.point(cloud.len() - 1), spacing),
+        };
+        let count = (depth / spacing).ceil() as usize;
+        let mut fields = [vec![0.0; count], vec![0.0; count]];
+        for initial in self.initial.iter().filter(|initial| initial.set == ALL) {
+            let given = [&initial.displacement, &initial.velocity];
+            for (field, vector) in fields.iter_mut().zip(given) {
+                let Some(vector) = vector else { continue };
+                for (n, value) in field.iter_mut().enumerate() {
+                    let x = last[0] + (n + 1) as f64 * step;
+                    *value = vector[0].value([x, last[1], last[2]], 0.0);
+                }
+            }
+        }
+        fields
     }
 
     /// Makes the ends for the run's steps.
@@ -70,23 +108,69 @@ impl Deck {
         ends: Vec<End>,
         steps: &Steps,
         cache: &dyn Cache,
-    ) -> Result<(), DeckError> {
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Vec<(Side, EndReport)>, DeckError> {
+        let mut reports = Vec::new();
         for end in ends {
             let path = end.path;
-            let refuse = |error| self.at_path(&path, pericles::PericlesError::from(error).into());
+            let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
             let stencil = end.layer.stencil.clone();
+            stencil.check_step(steps.dt).map_err(refuse)?;
             let count = steps.count as usize;
-            let kernels = || cached_kernels(&stencil, steps.dt, count, cache);
-            let history: Box<dyn History> = match end.history {
-                HistoryForm::Blocked => Box::new(BlockedHistory::new(kernels())),
-                HistoryForm::Direct => Box::new(DirectHistory::new(kernels())),
-                HistoryForm::Exponentials { tolerance } => {
-                    let fit = ExponentialKernels::fit(&stencil, steps.dt, count, tolerance);
-                    Box::new(ExponentialHistory::new(fit.map_err(refuse)?))
-                }
+            let make = || end.plan.history(&stencil, steps.dt, count, cache);
+            let (history, report) = make().map_err(refuse)?;
+            if let Some(growth) = report.growth {
+                warnings
+                    .push(self.finding(&path.key("method"), Caution::HistoricalKernels { growth }));
+            }
+            reports.push((end.layer.side, report));
+            let mut made = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
+            if let Some([u, v]) = &end.beyond {
+                let histories = [make().map_err(refuse)?.0, make().map_err(refuse)?.0];
+                let wave = FreeWave::new(&stencil, steps.dt, [u, v], histories);
+                let refuse = |error| {
+                    self.at_path(
+                        &path.key("exterior_data"),
+                        PericlesError::from(error).into(),
+                    )
+                };
+                made = made.with_free_wave(wave.map_err(refuse)?);
+            }
+            system.add_boundary(Box::new(made));
+        }
+        Ok(reports)
+    }
+
+    /// Makes the damping layers.
+    pub(super) fn add_damping_layers(
+        &self,
+        system: &mut System,
+        constants: &BondConstants,
+        steps: &Steps,
+    ) -> Result<(), DeckError> {
+        for (k, boundary) in self.boundaries.iter().enumerate() {
+            let BoundaryCondition::DampingLayer {
+                face,
+                thickness,
+                reflection,
+                power,
+            } = *boundary
+            else {
+                continue;
             };
-            let end = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
-            system.add_boundary(Box::new(end));
+            let path = Path::from("boundary").index(k);
+            let refuse = |error: PericlesError| self.at_path(&path, error.into());
+            if self.surface.is_some() {
+                let reason = "a closed surface has no sides".into();
+                return Err(refuse(PericlesError::BadDampingLayer { reason }));
+            }
+            // Of the first material, where there are several.
+            let modulus = self.body.state.longitudinal_modulus(constants.young);
+            let speed = (modulus / system.density().at(0)).sqrt();
+            let profile = DampingProfile::of_reflection(thickness, reflection, power, speed);
+            let frequency = steps.frequency.map(|frequency| frequency.estimate);
+            let layer = DampingLayer::new(system, face, profile, steps.dt, frequency);
+            system.add_boundary(Box::new(layer.map_err(refuse)?));
         }
         Ok(())
     }

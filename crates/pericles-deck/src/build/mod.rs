@@ -21,6 +21,7 @@ pub use resources::{PointsReader, Resources, SurfaceReader};
 
 use std::sync::Arc;
 
+use pericles::boundary::absorbing::{EndReport, Side};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody};
@@ -73,6 +74,8 @@ pub struct Model {
     pub steps: u64,
     /// Where the motion is read.
     pub probes: Vec<PointProbe>,
+    /// The absorbing ends.
+    pub ends: Vec<(Side, EndReport)>,
     /// A known solution to compare with.
     pub exact: Option<ExactReference>,
     /// What is odd.
@@ -158,7 +161,8 @@ impl Deck {
         let exterior = boundary::exterior_frequency(&ends);
         let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
-        self.add_ends(&mut system, ends, &steps, cache)?;
+        let ends = self.add_ends(&mut system, ends, &steps, cache, &mut warnings)?;
+        self.add_damping_layers(&mut system, &constants, &steps)?;
         Ok(Model {
             cloud,
             surface,
@@ -174,6 +178,7 @@ impl Deck {
             dt: steps.dt,
             steps: steps.count,
             probes,
+            ends,
             exact,
             warnings,
         })

@@ -1,11 +1,13 @@
 //! Loads, prescribed motion, and boundaries with memory.
 
 pub mod absorbing;
+mod damping;
 mod function;
 mod load;
 mod motion;
 mod table;
 
+pub use damping::{DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};

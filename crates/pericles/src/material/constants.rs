@@ -41,6 +41,15 @@ impl StressState {
         }
     }
 
+    /// ρ c² of longitudinal waves for a Young's modulus, Pa: 1, 9/8 (plane stress) and 6/5 of it.
+    pub fn longitudinal_modulus(self, young: f64) -> f64 {
+        match self {
+            Self::Uniaxial => young,
+            Self::PlaneStress => young * 9.0 / 8.0,
+            Self::PlaneStrain | Self::Spatial => young * 6.0 / 5.0,
+        }
+    }
+
     /// In words.
     pub fn name(self) -> &'static str {
         match self {

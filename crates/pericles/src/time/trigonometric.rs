@@ -129,7 +129,7 @@ impl Trigonometric {
         }
         if system.has_boundaries() {
             return refuse(
-                "boundaries with a memory act at stages, which it does not have; use velocity-verlet",
+                "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
             );
         }
         if system.releases_points() {

@@ -5,7 +5,10 @@
 //! exact for the scheme stand beside them. Numbers marked as recomputed come from a separate code.
 
 mod bar;
+mod cost;
 mod figures;
+mod layer;
+mod table_1;
 mod tables;
 
 use super::Study;
@@ -13,10 +16,13 @@ use super::Study;
 const PAPER: &str = "Ji, Pang, Zhang, Yang, Perdikaris, Exact artificial boundary conditions of 1D semi-discretized peridynamics";
 
 /// The topic's studies.
-pub(super) const STUDIES: [Study; 5] = [
+pub(super) const STUDIES: [Study; 8] = [
+    table_1::TABLE_1,
     tables::TABLE_2,
     tables::TABLE_3,
     tables::TABLE_4,
     tables::TABLE_5,
     tables::TABLE_6,
+    cost::COST,
+    layer::DAMPING_LAYER,
 ];

@@ -1,7 +1,7 @@
 //! The end of a bar that lets waves leave.
 
 use super::history::History;
-use super::{AbsorbingError, OuterLayer};
+use super::{AbsorbingError, FreeWave, OuterLayer};
 use crate::archive::{Archive, Saved, Values};
 use crate::boundary::{Boundary, Exchange};
 use crate::error::Result;
@@ -19,6 +19,7 @@ const FIRST: f64 = 0.5;
 pub struct AbsorbingEnd {
     layer: OuterLayer,
     history: Box<dyn History>,
+    free: Option<FreeWave>,
     /// Whether the initial displacement has been taken.
     started: bool,
     own: Vec<f64>,
@@ -47,12 +48,20 @@ impl AbsorbingEnd {
         Ok(Self {
             layer,
             history,
+            free: None,
             started: false,
             own: vec![0.0; reach],
             ghosts: vec![0.0; reach],
             pull: vec![0.0; reach],
             pull_before: vec![0.0; reach],
         })
+    }
+
+    /// With initial fields beyond the end.
+    #[must_use]
+    pub fn with_free_wave(mut self, free: FreeWave) -> Self {
+        self.free = Some(free);
+        self
     }
 
     /// The outer layer.
@@ -68,12 +77,25 @@ impl AbsorbingEnd {
     /// Takes the ghosts of the present from the history, and the present into it.
     fn advance(&mut self) {
         self.history.ghosts_into(&mut self.ghosts);
+        if let Some(free) = &mut self.free {
+            if self.started {
+                free.step();
+            }
+            for (ghost, (_, beyond)) in self.ghosts.iter_mut().zip(free.outer()) {
+                *ghost += beyond;
+            }
+        }
         std::mem::swap(&mut self.pull, &mut self.pull_before);
         let weights = self.layer.stencil.weights();
         for (p, pull) in self.pull.iter_mut().enumerate() {
             // Outer point p + 1 spacings from ghost 0 reaches ghosts 0 … K − p − 1.
             let bonds = weights[p..].iter().zip(&self.ghosts);
             *pull = bonds.map(|(a, ghost)| a * (ghost - self.own[p])).sum();
+        }
+        // The history is that of what the body sends out.
+        for (k, (own, beyond)) in self.free.iter().flat_map(FreeWave::outer).enumerate() {
+            self.own[k] -= own;
+            self.ghosts[k] -= beyond;
         }
         if !self.started {
             self.own.iter_mut().for_each(|u| *u *= FIRST);
@@ -122,12 +144,18 @@ impl Saved for AbsorbingEnd {
         let name = self.name();
         archive.put(format!("{name}/pull"), Values::F64(self.pull.clone()));
         self.history.save(&name, archive);
+        if let Some(free) = &self.free {
+            free.save(&name, archive);
+        }
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let name = self.name();
         archive.f64_into(&format!("{name}/pull"), &mut self.pull)?;
         self.history.restore(&name, archive)?;
+        if let Some(free) = &mut self.free {
+            free.restore(&name, archive)?;
+        }
         self.started = true;
         Ok(())
     }

@@ -150,8 +150,8 @@ pub enum AbsorbingError {
     },
     /// An initial field that reaches the end.
     #[error(
-        "the initial field reaches the end {side}: point {point} has {found:e}, the largest is {largest:e}; beyond an absorbing end all is at rest, so move the \
-         end outwards"
+        "the initial field reaches the end {side}: point {point} has {found:e}, the largest is {largest:e}; beyond an absorbing end all is at rest unless \
+         `exterior_data` says how far the field goes on; else move the end outwards"
     )]
     NotAtRest {
         /// The side.
@@ -161,6 +161,19 @@ pub enum AbsorbingError {
         /// |u| or |v| there.
         found: f64,
         /// Its largest in the body.
+        largest: f64,
+    },
+    /// Initial data beyond an end that go on for ever.
+    #[error(
+        "the initial field beyond the end does not die away within the {sites} sites of `exterior_data`: {found:e} is left at the last ones, the largest is {largest:e}; \
+         give more of it, or move the end inwards or outwards to where the field is nothing"
+    )]
+    ExteriorData {
+        /// Sites with data.
+        sites: usize,
+        /// Largest |u| or |v| on the outermost sites.
+        found: f64,
+        /// Largest on all.
         largest: f64,
     },
     /// A scheme that the history is not made for.

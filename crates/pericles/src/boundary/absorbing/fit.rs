@@ -1,10 +1,12 @@
 //! Kernels as sums of exponentials, fitted to the symbol.
 
+use std::f64::consts::PI;
+
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
 use super::contour::verlet_symbol;
-use super::rational::Rational;
+use super::loewner::Loewner;
 use super::roots::{expanded, factor_at};
 use super::{AbsorbingError, LatticeStencil};
 
@@ -14,14 +16,14 @@ type C = Complex<f64>;
 #[derive(Debug, Clone)]
 pub struct ExponentialKernels {
     pub(super) reach: usize,
-    pub(super) terms: Vec<Term>,
-    /// Largest error of a kernel's generating function on the samples, over dt-independent units: relative to displacements.
+    pub(super) terms: Vec<Exponential>,
+    /// Largest error of a kernel's generating function on the samples: of a ghost's displacement by unit displacements of all outer points.
     pub residual: f64,
 }
 
 /// An exponential with a residue of rank one.
 #[derive(Debug, Clone)]
-pub(super) struct Term {
+pub(super) struct Exponential {
     pub(super) decay: C,
     /// a_n, K numbers.
     pub(super) give: Vec<C>,
@@ -29,20 +31,30 @@ pub(super) struct Term {
     pub(super) take: Vec<C>,
 }
 
-/// Support points of the rational approximations that are tried.
-const MOST_PAIRS: usize = 60;
-/// Random combinations of the kernels that are approximated together.
-const COMBINATIONS: usize = 5;
-/// Sample points per decade about a branch point, and along the half circle.
-const PER_DECADE: usize = 12;
-const EQUISPACED: usize = 300;
+/// Directions per sample point that are tried: kernels with many branch points need more.
+const DIRECTIONS: [usize; 3] = [1, 2, 4];
+/// Singular values kept, as shares of the tolerance.
+const SHARES: [f64; 3] = [1e-2, 1e-3, 1e-5];
+/// More rows and columns than this take minutes.
+pub(super) const MOST_TANGENTS: usize = 900;
+/// A fit of more than this share of its rows is not supported by enough samples.
+const SUPPORTED: f64 = 0.36;
+/// Fits that miss the tolerance by more are not worth refining.
+const HOPELESS: f64 = 1e4;
+/// Sample points along a half circle without branch points.
+const ALONG: f64 = 60.0;
+/// Distance of samples over that from the nearest branch point.
+const GRADING: f64 = 0.2;
 
 impl ExponentialKernels {
     /// A fit for velocity Verlet with the step dt, good for about `steps` steps, whose generating functions miss the exact ones by at most `tolerance`.
     ///
-    /// The functions are sampled on the circle |w| = exp(−2/steps), densely about the branch points exp(±iφ), φ = 2 asin(ω dt/2), of the band's edges.
-    /// Poles are those of set-valued AAA approximations (Nakatsukasa, Sète & Trefethen 2018; Lietaert et al. 2022) of growing degree to random combinations of the
-    /// kernels; residues follow by real least squares, and are split into terms of rank one. The first fit that holds the tolerance is taken.
+    /// The functions are sampled on the circle |w| = exp(−2/steps), densely about the branch points exp(±iφ), φ = 2 asin(ω dt/2) for every stationary ω of the
+    /// band. Across a branch cut one root of the symbol turns into its reciprocal, so that the subspace of decaying solutions changes by one dimension and the matrix F by rank one:
+    /// interpolation along directions (the Loewner framework) finds as many exponentials as the band has branches, each with a residue of rank one. The singular
+    /// values say how many are needed; their `give` is then found again by real least squares. The first fit that holds the tolerance is taken.
+    ///
+    /// Common poles of all K² functions (set-valued AAA) are as many, but the residues of those off the cuts have full rank: for K = 7 five to six times the work.
     ///
     /// # Errors
     /// [`AbsorbingError::Fit`] if none does; a tolerance out of range.
@@ -55,29 +67,30 @@ impl ExponentialKernels {
         if !(tolerance > 1e-14 && tolerance < 1.0) {
             return Err(AbsorbingError::Tolerance { value: tolerance });
         }
-        let points = sample_points(stencil, dt, steps);
-        let values: Vec<Vec<C>> = points
-            .par_iter()
-            .map(|w| expanded(&factor_at(stencil, verlet_symbol(*w, dt))))
-            .collect();
+        let reach = stencil.reach();
+        let samples = Samples::new(stencil, dt, steps);
         let (mut best, mut fits) = (f64::INFINITY, 0);
-        for seed in 0..2 {
-            let functions = combined(&values, seed);
-            let mut rational = Rational::new(&points, &functions);
-            while rational.pairs() < MOST_PAIRS && rational.refine() {
-                // Small ones cannot be good enough, and neighbours are alike.
-                if rational.pairs() < 6 || rational.error() > 1e3 * tolerance {
-                    continue;
+        for directions in DIRECTIONS {
+            if samples.points.len() * directions > MOST_TANGENTS {
+                break;
+            }
+            let loewner = Loewner::new(&samples.points, &samples.values, directions);
+            for share in SHARES {
+                let order = loewner.rank(share * tolerance);
+                if order as f64 > SUPPORTED * loewner.size() as f64 {
+                    break;
                 }
+                let mut terms = loewner.exponentials(order);
+                let mut residual = samples.miss(&terms);
                 fits += 1;
-                let decays = rational.decays();
-                let fit = Residues::solve(&points, &values, &decays);
-                let terms = fit.terms(stencil.reach(), 0.1 * tolerance);
-                let residual = miss(&points, &values, &terms);
+                if residual > tolerance && residual < HOPELESS * tolerance {
+                    samples.refine(&mut terms);
+                    residual = samples.miss(&terms);
+                }
                 best = best.min(residual);
                 if residual <= tolerance {
                     return Ok(Self {
-                        reach: stencil.reach(),
+                        reach,
                         terms,
                         residual,
                     });
@@ -114,175 +127,147 @@ impl ExponentialKernels {
     }
 }
 
-/// Points of the upper half circle.
-fn sample_points(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<C> {
-    let radius = (-2.0 / steps as f64).exp();
-    let closest = 0.03 / steps as f64;
-    let branches = stencil.stationary_frequencies();
-    let branches = branches
-        .iter()
-        .map(|omega| 2.0 * (0.5 * omega * dt).min(1.0).asin());
-    let pi = std::f64::consts::PI;
-    let mut angles: Vec<f64> = (0..=EQUISPACED)
-        .map(|k| pi * k as f64 / EQUISPACED as f64)
-        .collect();
-    let decades = (0.7 / closest).log10();
-    let count = (decades * PER_DECADE as f64).ceil() as usize;
-    for branch in branches.chain([0.0]) {
-        for k in 0..=count {
-            let apart = closest * (0.7 / closest).powf(k as f64 / count as f64);
-            angles.extend([branch - apart, branch + apart]);
-        }
-        angles.push(branch);
-    }
-    angles.retain(|angle| (0.0..=pi).contains(angle));
-    angles.sort_by(f64::total_cmp);
-    angles.dedup_by(|a, b| (*a - *b).abs() < 1e-3 * closest);
-    let at = |angle: f64| C::from_polar(radius, angle);
-    angles.into_iter().map(at).collect()
+/// The matrices F(w)/w, whose exponentials are λ^j, on points of the upper half circle.
+struct Samples {
+    points: Vec<C>,
+    values: Vec<DMatrix<C>>,
 }
 
-/// Random real combinations of the kernels, sample by sample.
-fn combined(values: &[Vec<C>], seed: u64) -> Vec<Vec<C>> {
-    let count = values[0].len();
-    let weights = crate::noise::noise(COMBINATIONS * count, seed);
-    let norm = 1.0 / (count as f64).sqrt();
-    let one = |value: &Vec<C>| {
-        (0..COMBINATIONS)
-            .map(|c| {
-                let weights = &weights[c * count..(c + 1) * count];
-                value.iter().zip(weights).map(|(f, w)| f * (norm * w)).sum()
-            })
-            .collect()
-    };
-    values.iter().map(one).collect()
-}
-
-/// The residues of all kernels at given exponentials.
-struct Residues {
-    decays: Vec<C>,
-    /// One row per exponential, one entry per kernel.
-    residues: Vec<Vec<C>>,
-}
-
-/// w/(1 − λ w): the generating function of λ^{j−1}.
-fn generating(decay: C, w: C) -> C {
-    w / (C::new(1.0, 0.0) - decay * w)
-}
-
-impl Residues {
-    /// Least squares on the real and imaginary parts of all samples.
-    fn solve(points: &[C], values: &[Vec<C>], decays: &[C]) -> Self {
-        let (samples, kernels) = (points.len(), values[0].len());
-        let columns = 2 * decays.len();
-        let mut matrix = DMatrix::<f64>::zeros(2 * samples, columns);
-        for (p, decay) in decays.iter().enumerate() {
-            for (i, w) in points.iter().enumerate() {
-                let (one, other) = (generating(*decay, *w), generating(decay.conj(), *w));
-                let real = 0.5 * (one + other);
-                let imaginary = C::new(0.0, 0.5) * (one - other);
-                for (column, x) in [(2 * p, real), (2 * p + 1, imaginary)] {
-                    matrix[(2 * i, column)] = x.re;
-                    matrix[(2 * i + 1, column)] = x.im;
-                }
-            }
-        }
-        let mut right = DMatrix::<f64>::zeros(2 * samples, kernels);
-        for (i, value) in values.iter().enumerate() {
-            for (k, x) in value.iter().enumerate() {
-                right[(2 * i, k)] = x.re;
-                right[(2 * i + 1, k)] = x.im;
-            }
-        }
-        let norms: Vec<f64> = (0..columns)
-            .map(|c| matrix.column(c).norm().max(f64::MIN_POSITIVE))
-            .collect();
-        for (c, norm) in norms.iter().enumerate() {
-            matrix.column_mut(c).unscale_mut(*norm);
-        }
-        let (q, r) = matrix.qr().unpack();
-        let mut solution = q.transpose() * right;
-        // Exponentials that add nothing (a real one has no imaginary residue) are left out by a tiny diagonal.
-        let mut triangle = r;
-        for c in 0..columns {
-            if triangle[(c, c)].abs() < 1e-14 {
-                triangle[(c, c)] = f64::INFINITY;
-            }
-        }
-        triangle.solve_upper_triangular_mut(&mut solution);
-        let residues = (0..decays.len())
-            .map(|p| {
-                (0..kernels)
-                    .map(|k| {
-                        let part = |c: usize| {
-                            let x = solution[(c, k)] / norms[c];
-                            if x.is_finite() { x } else { 0.0 }
-                        };
-                        C::new(part(2 * p), part(2 * p + 1))
-                    })
-                    .collect()
-            })
-            .collect();
+impl Samples {
+    fn new(stencil: &LatticeStencil, dt: f64, steps: usize) -> Self {
+        let reach = stencil.reach();
+        let points = sample_points(stencil, dt, steps);
+        let value = |w: &C| {
+            let full = expanded(&factor_at(stencil, verlet_symbol(*w, dt)));
+            DMatrix::from_row_slice(reach, reach, &full) / *w
+        };
         Self {
-            decays: decays.to_vec(),
-            residues,
+            values: points.par_iter().map(value).collect(),
+            points,
         }
     }
 
-    /// Each residue matrix as a sum of products, without those below `negligible` in all.
-    fn terms(&self, reach: usize, negligible: f64) -> Vec<Term> {
-        let mut terms = Vec::new();
-        let share = negligible / self.decays.len() as f64;
-        for (decay, residue) in self.decays.iter().zip(&self.residues) {
-            let matrix = DMatrix::from_row_slice(reach, reach, residue);
-            let svd = matrix.svd(true, true);
-            let (Some(u), Some(vt)) = (svd.u, svd.v_t) else {
-                continue;
-            };
-            // A term's generating function is at most its residue over the distance to the circle.
-            let distance = (1.0 - decay.norm()).max(1e-12);
-            for (r, size) in svd.singular_values.iter().enumerate() {
-                if size / distance.min(1.0) < share {
-                    continue;
-                }
-                terms.push(Term {
-                    decay: *decay,
-                    give: (0..reach).map(|n| u[(n, r)] * *size).collect(),
-                    take: (0..reach).map(|m| vt[(r, m)]).collect(),
-                });
-            }
-        }
-        terms
-    }
-}
-
-/// The largest error on the samples, of the displacement of a ghost by unit displacements of all outer points.
-fn miss(points: &[C], values: &[Vec<C>], terms: &[Term]) -> f64 {
-    let errors: Vec<f64> = points
-        .par_iter()
-        .zip(values)
-        .map(|(w, value)| {
-            let mut left = value.clone();
-            for term in terms {
-                let half = 0.5;
-                let (one, other) = (
-                    generating(term.decay, *w) * half,
-                    generating(term.decay.conj(), *w) * half,
-                );
-                let reach = term.take.len();
-                for (n, a) in term.give.iter().enumerate() {
+    /// The largest error on the samples, of the displacement of a ghost by unit displacements of all outer points.
+    fn miss(&self, terms: &[Exponential]) -> f64 {
+        let pairs = self.points.par_iter().zip(&self.values);
+        let errors: Vec<f64> = pairs
+            .map(|(w, value)| {
+                let mut left = value.clone();
+                for term in terms {
+                    let [one, other] = generating(term.decay, *w);
                     for (m, b) in term.take.iter().enumerate() {
-                        let c = a * b;
-                        left[n * reach + m] -= c * one + c.conj() * other;
+                        for (n, a) in term.give.iter().enumerate() {
+                            let c = a * b;
+                            left[(n, m)] -= c * one + c.conj() * other;
+                        }
+                    }
+                }
+                let row = |n: usize| left.row(n).iter().map(|x| x.norm()).sum::<f64>();
+                (0..left.nrows()).map(row).fold(0.0, f64::max)
+            })
+            .collect();
+        // A NaN is kept.
+        let worse = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+        errors.into_iter().fold(0.0, worse)
+    }
+
+    /// Finds the `give` of all terms again, by least squares on the samples seen along some directions.
+    fn refine(&self, terms: &mut [Exponential]) {
+        const DIRECTIONS: usize = 8;
+        let reach = self.values[0].nrows();
+        let count = reach.min(DIRECTIONS);
+        let noise = crate::noise::noise(count * reach, 2);
+        let directions: Vec<&[f64]> = noise.chunks(reach).collect();
+        let rows = 2 * count * self.points.len();
+        let mut matrix = DMatrix::<f64>::zeros(rows, 2 * terms.len());
+        let mut right = DMatrix::<f64>::zeros(rows, reach);
+        for (p, term) in terms.iter().enumerate() {
+            let along = |r: &&[f64]| -> C { term.take.iter().zip(*r).map(|(b, r)| b * r).sum() };
+            let taken: Vec<C> = directions.iter().map(along).collect();
+            for (i, w) in self.points.iter().enumerate() {
+                let [one, other] = generating(term.decay, *w);
+                for (d, b) in taken.iter().enumerate() {
+                    let (x, y) = (b * one, b.conj() * other);
+                    let row = 2 * (i * count + d);
+                    for (column, z) in [(2 * p, x + y), (2 * p + 1, C::i() * (x - y))] {
+                        matrix[(row, column)] = z.re;
+                        matrix[(row + 1, column)] = z.im;
                     }
                 }
             }
-            let reach = (left.len() as f64).sqrt() as usize;
-            let row = |row: &[C]| row.iter().map(|x| x.norm()).sum::<f64>();
-            left.chunks(reach).map(row).fold(0.0, f64::max)
-        })
+        }
+        for (i, value) in self.values.iter().enumerate() {
+            for (d, direction) in directions.iter().enumerate() {
+                let row = 2 * (i * count + d);
+                for n in 0..reach {
+                    let pairs = value.row(n).into_iter().zip(*direction);
+                    let seen: C = pairs.map(|(f, r)| f * *r).sum();
+                    right[(row, n)] = seen.re;
+                    right[(row + 1, n)] = seen.im;
+                }
+            }
+        }
+        let solution = least_squares(matrix, right);
+        for (p, term) in terms.iter_mut().enumerate() {
+            for (n, a) in term.give.iter_mut().enumerate() {
+                *a = C::new(solution[(2 * p, n)], solution[(2 * p + 1, n)]);
+            }
+        }
+    }
+}
+
+/// 1/(1 − λ w), the generating function of λ^j, and its conjugate partner, each by half.
+fn generating(decay: C, w: C) -> [C; 2] {
+    [decay, decay.conj()].map(|decay| (C::new(1.0, 0.0) - decay * w).inv() * 0.5)
+}
+
+/// Columns are scaled to length one; those that add nothing, as the imaginary residue of a real exponential, get zero.
+fn least_squares(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> DMatrix<f64> {
+    let columns = matrix.ncols();
+    let norms: Vec<f64> = (0..columns)
+        .map(|c| matrix.column(c).norm().max(f64::MIN_POSITIVE))
         .collect();
-    errors
-        .into_iter()
-        .fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
+    for (c, norm) in norms.iter().enumerate() {
+        matrix.column_mut(c).unscale_mut(*norm);
+    }
+    let qr = matrix.qr();
+    qr.q_tr_mul(&mut right);
+    let mut triangle = qr.r();
+    for c in 0..columns {
+        if triangle[(c, c)].abs() < 1e-14 {
+            triangle[(c, c)] = f64::INFINITY;
+        }
+    }
+    let mut solution = right.rows(0, columns).into_owned();
+    triangle.solve_upper_triangular_mut(&mut solution);
+    for (c, norm) in norms.iter().enumerate() {
+        let scale = |x: &mut f64| *x = if x.is_finite() { *x / norm } else { 0.0 };
+        solution.row_mut(c).iter_mut().for_each(scale);
+    }
+    solution
+}
+
+/// Points of the upper half circle, graded towards the branch points: features on the circle are no finer than its distance from the unit circle.
+fn sample_points(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<C> {
+    let radius = (-2.0 / steps as f64).exp();
+    let finest = 1.0 / steps as f64;
+    let branches: Vec<f64> = stencil
+        .stationary_frequencies()
+        .iter()
+        .map(|omega| 2.0 * (0.5 * omega * dt).min(1.0).asin())
+        .collect();
+    let mut points = Vec::new();
+    let mut angle = 0.3 * GRADING * finest;
+    while angle < PI {
+        points.push(C::from_polar(radius, angle));
+        let apart = branches.iter().map(|branch| (angle - branch).abs());
+        let nearest = apart.fold(angle, f64::min);
+        angle += (GRADING * nearest.hypot(finest)).min(PI / ALONG);
+    }
+    points
+}
+
+/// Sample points of a fit: what its cost depends on.
+pub(super) fn sample_count(stencil: &LatticeStencil, dt: f64, steps: usize) -> usize {
+    sample_points(stencil, dt, steps).len()
 }

@@ -63,6 +63,22 @@ impl OuterLayer {
         start: &State,
         no_fail: &[u32],
     ) -> Result<Self, AbsorbingError> {
+        let layer = Self::with_motion_beyond(system, side, no_fail)?;
+        for field in [&start.u, &start.v] {
+            layer.check_at_rest(field, system.cloud())?;
+        }
+        Ok(layer)
+    }
+
+    /// The same of a body whose initial field may go on beyond the end: [`super::FreeWave`] must then say how.
+    ///
+    /// # Errors
+    /// As above, but for the field.
+    pub fn with_motion_beyond(
+        system: &System,
+        side: Side,
+        no_fail: &[u32],
+    ) -> Result<Self, AbsorbingError> {
         let cloud = system.cloud();
         check_bar(cloud)?;
         let n = cloud.len();
@@ -123,9 +139,6 @@ impl OuterLayer {
         layer.check_lasting(system, no_fail)?;
         layer.check_linear(&bonds)?;
         layer.check_free(system)?;
-        for field in [&start.u, &start.v] {
-            layer.check_at_rest(field, cloud)?;
-        }
         Ok(layer)
     }
 

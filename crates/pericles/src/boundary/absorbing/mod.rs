@@ -21,11 +21,17 @@
 //! | [`BlockedHistory`](history::BlockedHistory) | K N log² N + K² N log N | 7 K N numbers |
 //! | [`ExponentialHistory`](history::ExponentialHistory) | K p N, within a tolerance ([`ExponentialKernels`]) | K p numbers for p exponentials |
 //!
+//! [`EndPlan`] makes one or the other, the cheaper by [`HistoryCost`](history::HistoryCost) unless told. Exponentials are many where the band has many branches: constant micromodulus with
+//! K = 20 has twenty stationary frequencies and takes some 120 terms for 1e-6.
+//!
 //! **Kernels.** With the delay w of one step the factor 1 − Σ h_m z^m of the lattice's symbol whose zeros lie outside the unit circle gives u_{−n} = Σ_m h_m * u_{m−n}: K kernels instead
 //! of K², found as power series ([`factor_kernels`]); F follows by F_{n+1}^m = F_n^1 * h_m + F_n^{m+1}.
 //!
 //! **What must hold.** The outermost K points are linear, undamaged, of one material, without loads, prescribed motion or initial field ([`OuterLayer`] checks it against the body's own bonds);
-//! the rest of the body is free: heterogeneous, nonlinear, breaking, loaded.
+//! the rest of the body is free: heterogeneous, nonlinear, breaking, loaded. Initial fields may go on beyond the end, if [`FreeWave`] is told how.
+//!
+//! **Schemes.** Velocity Verlet only. The implicit midpoint rule has σ(w) = (4/dt²)((1 − w)/(1 + w))², whose kernels have an instantaneous part F\[0\] ≠ 0: ghosts would be unknowns of the step.
+//! The trigonometric rule multiplies by cos(dt W), which is not rational in the stiffness and reaches as far as its series does: ghosts of any number K would not be enough. Both refuse.
 //!
 //! Reference: Ji, Pang, Zhang, Yang, Perdikaris, *Exact artificial boundary conditions of 1D semi-discretized peridynamics* (equations 19–34), for the
 //! semi-discrete lattice; the discrete kernels, their factorisation and the fast histories are ours.
@@ -35,6 +41,7 @@ mod cached;
 mod contour;
 mod end;
 mod error;
+mod exterior;
 mod factor;
 mod fit;
 mod green;
@@ -42,7 +49,8 @@ mod historical;
 pub mod history;
 mod kernels;
 mod layer;
-mod rational;
+mod loewner;
+mod plan;
 mod roots;
 mod semi_discrete;
 mod stencil;
@@ -51,11 +59,13 @@ pub use cached::cached_kernels;
 pub use contour::contour_kernels;
 pub use end::AbsorbingEnd;
 pub use error::AbsorbingError;
+pub use exterior::FreeWave;
 pub use factor::factor_kernels;
 pub use fit::ExponentialKernels;
 pub use green::green_functions;
 pub use historical::green_functions_closed;
 pub use kernels::GhostKernels;
 pub use layer::{OuterLayer, Side};
+pub use plan::{EndPlan, EndReport, KernelMethod};
 pub use semi_discrete::{semi_discrete_kernels, trapezoidal_kernels};
 pub use stencil::LatticeStencil;

@@ -78,7 +78,9 @@ impl Implicit {
             })
         };
         if system.has_boundaries() {
-            return refuse("boundaries with a memory are stepped explicitly; use velocity-verlet");
+            return refuse(
+                "ghosts beyond an absorbing end would depend on the new step itself, which the solver does not know of; use velocity-verlet",
+            );
         }
         if system.releases_points() {
             return refuse(

@@ -1,11 +1,15 @@
 //! What the exterior remembers: histories of the outer sites, convolved with the ghosts' kernels.
 
 mod blocked;
+mod compare;
+mod cost;
 mod direct;
 mod exponential;
 mod record;
 
 pub use blocked::BlockedHistory;
+pub use compare::history_distance;
+pub use cost::{HistoryCost, HistoryForm};
 pub use direct::DirectHistory;
 pub use exponential::ExponentialHistory;
 

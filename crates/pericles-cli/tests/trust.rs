@@ -1,0 +1,184 @@
+//! The promises of the README over the examples: the same bytes on any number of threads, after a resume, after a death at any time.
+//!
+//! Long; run with `cargo test --release -p pericles-cli --test trust -- --ignored --nocapture`, which prints a table. The quick twins in `resume.rs` always run.
+
+mod common;
+
+use std::collections::hash_map::DefaultHasher;
+use std::fs;
+use std::hash::{Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use common::{assert_same_results, fail, pericles, report, results, succeed};
+
+/// The decks under `examples/`.
+fn decks() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let list = |folder: &Path| -> Vec<PathBuf> {
+        let entries = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path());
+        entries.collect()
+    };
+    let mut decks: Vec<PathBuf> = list(&root)
+        .iter()
+        .filter(|path| path.is_dir())
+        .flat_map(|topic| list(topic))
+        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+        .filter(|path| !path.ends_with("expected.toml"))
+        .collect();
+    decks.sort();
+    assert!(decks.len() >= 13);
+    decks
+}
+
+fn fingerprint(folder: &Path) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    results(folder).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// Lets a finished run look as if it had died after its last checkpoint but one.
+fn undo(folder: &Path) {
+    let path = folder.join("run.json");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("\"finished\"", "\"running\"")).unwrap();
+}
+
+#[test]
+#[ignore = "minutes: every example on 1, 2, 3 and 7 threads, run and resumed"]
+fn every_example_gives_the_same_bytes_on_any_number_of_threads_and_after_a_resume() {
+    let place = tempfile::tempdir().unwrap();
+    println!(
+        "| deck | threads 1 | 2 | 3 | 7 | resumed: 1 → 2 | 2 → 1 |\n|---|---|---|---|---|---|---|"
+    );
+    let mut wrong = Vec::new();
+    for deck in decks() {
+        let name = format!(
+            "{}/{}",
+            deck.parent().unwrap().file_name().unwrap().display(),
+            deck.file_stem().unwrap().display()
+        );
+        let run = |threads: usize, out: &str, more: &str| {
+            let deck = deck.display();
+            succeed(
+                place.path(),
+                &format!(
+                    "run {deck} --quiet --no-cache --threads {threads} --out {out} --force {more}"
+                ),
+            );
+            place.path().join(out)
+        };
+        let first = run(1, "one", "");
+        let steps = report(&first)["model"]["steps"].as_u64().unwrap();
+        let mut marks = vec![fingerprint(&first)];
+        for threads in [2, 3, 7] {
+            marks.push(fingerprint(&run(threads, "other", "")));
+        }
+        // One checkpoint, within the last half.
+        let every = format!("--set checkpoint.every={}", (3 * steps / 5).max(1));
+        for (before, after) in [(1, 2), (2, 1)] {
+            let folder = run(before, "resumed", &every);
+            undo(&folder);
+            succeed(
+                place.path(),
+                &format!("resume resumed --quiet --no-cache --threads {after}"),
+            );
+            assert_eq!(report(&folder)["status"], "finished");
+            marks.push(fingerprint(&folder));
+        }
+        let cells: Vec<String> = marks.iter().map(|mark| format!("{mark:016x}")).collect();
+        println!("| {name} | {} |", cells.join(" | "));
+        if marks.iter().any(|mark| *mark != marks[0]) {
+            wrong.push(name);
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// Numbers that look random and are the same every time (Steele, Lea and Flood's SplitMix64).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % limit
+    }
+}
+
+#[test]
+#[ignore = "minutes: 300 kills (or PERICLES_KILLS of them) over three decks"]
+fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
+    let kills: u64 = std::env::var("PERICLES_KILLS").map_or(300, |kills| kills.parse().unwrap());
+    let place = tempfile::tempdir().unwrap();
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    fs::write(place.path().join("plate.toml"), common::PLATE).unwrap();
+    let often = "--set checkpoint.every=37";
+    let cases = [
+        format!("plate.toml --set time.end=1e-3 --set output.fields.every=900 {often}"),
+        format!("{}/surface/torus.toml {often}", examples.display()),
+        format!("{}/absorbing/free-end.toml {often}", examples.display()),
+    ];
+    let mut dice = Dice(2026);
+    for (number, case) in cases.iter().enumerate() {
+        let began = std::time::Instant::now();
+        let whole = format!("whole-{number}");
+        succeed(
+            place.path(),
+            &format!("run {case} --quiet --threads 1 --out {whole}"),
+        );
+        let seconds = began.elapsed().as_secs_f64();
+        let (mut done, mut runs, mut lives) = (0, 0, 0);
+        while done < kills / 3 {
+            let out = format!("killed-{number}");
+            let _ = fs::remove_dir_all(place.path().join(&out));
+            let mut line = format!("run {case} --quiet --out {out}");
+            // A run is killed at moments between nothing and its whole time, again and again until it ends.
+            loop {
+                let threads = 1 + dice.below(2);
+                let arguments = format!("{line} --threads {threads}");
+                let mut child = pericles(place.path())
+                    .args(arguments.split_whitespace())
+                    .spawn()
+                    .unwrap();
+                let most = (1e3 * seconds) as u64;
+                std::thread::sleep(Duration::from_millis(dice.below(most.max(20))));
+                let ended = child.try_wait().unwrap();
+                child.kill().unwrap();
+                child.wait().unwrap();
+                lives += 1;
+                let folder = place.path().join(&out);
+                if let Some(status) = ended {
+                    assert!(status.success(), "{arguments}: {status}");
+                    break;
+                }
+                done += 1;
+                // Before its first checkpoint a run has nothing to go on from, and says so.
+                let begun = fs::read_dir(folder.join("checkpoints")).is_ok_and(|files| {
+                    files.flatten().any(|file| {
+                        file.path()
+                            .extension()
+                            .is_some_and(|ending| ending == "chk")
+                    })
+                });
+                line = if begun {
+                    format!("resume {out} --quiet")
+                } else {
+                    if folder.exists() {
+                        assert_eq!(fail(place.path(), &format!("resume {out}")).0, 3);
+                    }
+                    format!("run {case} --quiet --out {out} --force")
+                };
+            }
+            assert_same_results(&place.path().join(&whole), &place.path().join(&out));
+            runs += 1;
+        }
+        println!(
+            "case {number}: {done} kills in {lives} lives of {runs} runs, every one ended with the same bytes"
+        );
+    }
+}

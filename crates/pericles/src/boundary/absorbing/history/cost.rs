@@ -1,0 +1,77 @@
+//! Which form of a history is the cheapest.
+
+use crate::boundary::absorbing::LatticeStencil;
+use crate::boundary::absorbing::blocks::BLOCK;
+use crate::boundary::absorbing::fit::{MOST_TANGENTS, sample_count};
+
+/// Estimated cost of one end over a run, in multiply–adds, kernels included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HistoryCost {
+    /// K² N² sums, and the kernels.
+    pub direct: f64,
+    /// Blocks with Fourier transforms, and the kernels.
+    pub blocked: f64,
+    /// The fit and its exponentials; infinite where the fit would take too long.
+    pub exponentials: f64,
+}
+
+/// Forms that the estimate chooses from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HistoryForm {
+    /// [`super::DirectHistory`]
+    Direct,
+    /// [`super::BlockedHistory`]
+    Blocked,
+    /// [`super::ExponentialHistory`]
+    Exponentials,
+}
+
+/// Multiply–adds that one entry of a transform takes per halving: 2.5 floating-point operations and their memory traffic.
+const TRANSFORM: f64 = 3.0;
+/// Multiply–adds of a product of two complex numbers that come from memory.
+const PRODUCT: f64 = 4.0;
+
+impl HistoryCost {
+    /// Of N steps of length dt with kernels K apart.
+    pub fn estimate(stencil: &LatticeStencil, dt: f64, steps: usize) -> Self {
+        let (reach, n) = (stencil.reach() as f64, steps as f64);
+        let square = reach * reach;
+        // Block sizes of a run, each of which touches every step once, with lines of twice its length.
+        let online = |near: f64, lines: f64, products: f64| {
+            let mut cost = near * n * BLOCK as f64 / 2.0;
+            let mut size = BLOCK as f64;
+            while size < n {
+                cost += n * (2.0 * lines * TRANSFORM * (2.0 * size).log2() + products * PRODUCT);
+                size *= 2.0;
+            }
+            cost
+        };
+        let kernels = online(square, 2.0 * reach, square);
+        let branches = stencil.stationary_frequencies().len();
+        // One direction finds one branch; several want several.
+        let tangents = sample_count(stencil, dt, steps) * branches.min(4);
+        let exponentials = if tangents > MOST_TANGENTS {
+            f64::INFINITY
+        } else {
+            let tangents = tangents as f64;
+            // Two conjugates, of which about a third is needed: half of those are stored.
+            25.0 * tangents.powi(3) + n * 0.17 * tangents * (4.0 * reach + 4.0)
+        };
+        Self {
+            direct: kernels + 0.5 * square * n * n,
+            blocked: kernels + online(square, 3.0 * reach - 1.0, square),
+            exponentials,
+        }
+    }
+
+    /// The cheapest exact form; exponentials too if an error is allowed.
+    pub fn cheapest(&self, exact: bool) -> HistoryForm {
+        if !exact && self.exponentials < self.direct.min(self.blocked) {
+            HistoryForm::Exponentials
+        } else if self.direct < self.blocked {
+            HistoryForm::Direct
+        } else {
+            HistoryForm::Blocked
+        }
+    }
+}

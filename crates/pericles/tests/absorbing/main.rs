@@ -1,0 +1,7 @@
+//! Absorbing ends and damping layers.
+
+mod bar;
+mod damping;
+mod ends;
+mod exterior;
+mod kernels;
