@@ -1218,3 +1218,63 @@ fn what_makes_no_physical_sense_is_said() {
         &["the part `glue` has no point"],
     );
 }
+
+#[test]
+fn fields_go_on_beyond_an_end() {
+    // A bell at the end of the short bar, in the middle of the long one.
+    let bell = BAR.replace(
+        "set = \"middle\"\nvelocity = \"1 m/s\"",
+        "displacement = { expression = \"1e-6*exp(-((x-0.095)/0.01)^2)\" }",
+    );
+    let bell = bell.replace("[time]", "[time]\ndt = \"60 ns\"");
+    let displacement = |text: &str| {
+        let mut run = build(text).simulation();
+        run.run(|_| pericles::Control::Continue).unwrap();
+        run.state().u.clone()
+    };
+    let long = displacement(&bell.replace("100 mm", "200 mm"));
+    let data = "side = \"+x\"\nexterior_data = \"70 mm\"";
+    let short = displacement(&bell.replace("side = \"+x\"", data));
+    let pairs = long.iter().zip(&short);
+    let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs()));
+    assert!(error < 1e-12 * 1e-6 * 10.0, "{error:e}");
+    // Without, the field is refused; with too little, too.
+    let message = refusal(&bell).to_string();
+    assert!(message.contains("exterior_data"), "{message}");
+    let message = refusal(&bell.replace("side = \"+x\"", &data.replace("70", "20"))).to_string();
+    assert!(message.contains("does not die away"), "{message}");
+}
+
+#[test]
+fn histories_say_how_they_are_made() {
+    let ends =
+        |keys: &str| build(&BAR.replace("side = \"+x\"", &format!("side = \"+x\"\n{keys}"))).ends;
+    let (side, report) = ends("")[1];
+    assert_eq!((side.name(), report.history), ("+x", "direct"));
+    let (_, report) = ends("history = \"exponentials\"\nverify = true")[1];
+    assert!(report.exponentials.unwrap() > 3 && report.residual.unwrap() < 1e-9);
+    assert!(report.distance.unwrap() < 1e-8, "{report:?}");
+    let warned = build(&BAR.replace("side = \"+x\"", "side = \"+x\"\nmethod = \"historical\""));
+    let says = warned.warnings.iter().map(|w| w.line()).collect::<String>();
+    assert!(says.contains("their errors grow with time"), "{says}");
+}
+
+#[test]
+fn damping_layers_absorb() {
+    let text = BAR.replace(
+        "kind = \"absorbing\"\nside = \"+x\"",
+        "kind = \"damping-layer\"\nside = \"+x\"\nthickness = \"40 mm\"",
+    );
+    // The layer takes some of the margin of the step.
+    let text = text.replace("[time]", "[time]\nsafety = 0.7");
+    let mut run = build(&text).simulation();
+    run.run(|_| pericles::Control::Continue).unwrap();
+    let energies = run.snapshot().energies();
+    assert!(energies.work < -0.8 * energies.initial, "{energies:?}");
+    assert!(
+        energies.balance().abs() < 1e-12 * energies.initial,
+        "{energies:?}"
+    );
+    let message = refusal(&text.replace("40 mm", "100 mm")).to_string();
+    assert!(message.contains("less than the body"), "{message}");
+}
