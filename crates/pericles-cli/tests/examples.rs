@@ -122,10 +122,10 @@ fn an_interface_splits_a_pulse_as_impedances_say() {
     };
     let impedance = |young: f64, density: f64| (young * density).sqrt();
     let (first, second) = (impedance(210e9, 7850.0), impedance(70e9, 2700.0));
-    let sent = highest("before", 0.0);
-    let transmitted = highest("behind", 0.0) / sent;
+    let sent = highest("before_u_x", 0.0);
+    let transmitted = highest("behind_u_x", 0.0) / sent;
     // The pulse has left the first probe by then.
-    let reflected = highest("before", 45e-6) / sent;
+    let reflected = highest("before_u_x", 45e-6) / sent;
     let exact = 2.0 * first / (first + second);
     assert!(
         (transmitted / exact - 1.0).abs() < 0.02,
