@@ -111,21 +111,24 @@ fn list() -> Result<Exit, CliError> {
 
 fn find(id: &str) -> Result<Example, CliError> {
     let wanted = id.trim_end_matches(".toml");
-    // The name alone is enough where it is the only one.
+    // The name alone is enough where only one topic has it.
     let named = |example: &Example| {
         example.id() == wanted || example.file.name.trim_end_matches(".toml") == wanted
     };
-    let mut found = Example::all().filter(named);
-    if let (Some(example), None) = (found.next(), found.next()) {
+    let ids: Vec<String> = Example::all().filter(named).map(|e| e.id()).collect();
+    if let ([_], Some(example)) = (&ids[..], Example::all().find(named)) {
         return Ok(example);
     }
     let all = "`pericles new` lists all examples";
-    Err(CliError::unknown(
-        "example",
-        id,
-        Example::all().map(|example| example.id()),
-        all,
-    ))
+    if !ids.is_empty() {
+        return Err(CliError::Unknown {
+            kind: "single example",
+            name: id.to_owned(),
+            hint: format!("{}? {all}", ids.join(" or ")),
+        });
+    }
+    let ids = Example::all().map(|example| example.id());
+    Err(CliError::unknown("example", id, ids, all))
 }
 
 /// Writes a file that must not exist.

@@ -15,15 +15,20 @@ fn an_example_is_written_once_and_is_a_deck() {
     let said = text(&succeed(place.path(), "new wave/bar").stdout);
     assert!(said.contains("pericles run bar.toml"), "{said}");
     succeed(place.path(), "check bar.toml");
-    let (status, message) = fail(place.path(), "new bar");
+    let (status, message) = fail(place.path(), "new wave/bar");
     assert_eq!(status, 6, "{message}");
     assert!(message.contains("bar.toml exists already"), "{message}");
-    succeed(place.path(), "new bar mine.toml");
-    let shown = succeed(place.path(), "new bar -").stdout;
+    succeed(place.path(), "new wave/bar mine.toml");
+    let shown = succeed(place.path(), "new wave/bar -").stdout;
     assert_eq!(
         text(&shown),
         fs::read_to_string(place.path().join("mine.toml")).unwrap()
     );
+    // The name alone is enough where only one topic has it.
+    succeed(place.path(), "new branching");
+    let (status, message) = fail(place.path(), "new bar");
+    assert_eq!(status, 2);
+    assert!(message.contains("statics/bar or wave/bar"), "{message}");
     let (status, message) = fail(place.path(), "new wave/baar");
     assert_eq!(status, 2);
     assert!(message.contains("did you mean wave/bar?"), "{message}");

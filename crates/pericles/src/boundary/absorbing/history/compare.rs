@@ -2,7 +2,7 @@
 
 use super::History;
 
-/// The largest Σ_m Σ_j |F_n^m[j] − F'_n^m[j]| over ghosts n: the error of a ghost's displacement when no outer point ever moves farther than 1.
+/// The largest `Σ_m Σ_j |F_n^m[j] − F′_n^m[j]|` over ghosts n: the error of a ghost's displacement when no outer point ever moves farther than 1.
 ///
 /// Both are pushed a unit displacement of each of the K outer points in turn, and reset.
 pub fn history_distance(mut histories: [&mut dyn History; 2], reach: usize, steps: usize) -> f64 {
