@@ -72,6 +72,8 @@ fn run_time(
             &mut model.state,
             &mut *model.integrator,
             facts.dt,
+            // Not one more than the run has: histories of absorbing ends are no longer.
+            facts.steps,
             refinement::LONGEST,
         )?,
     };
