@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use pericles_io::read_csv;
-use serde_json::Value;
 
 use crate::args::InfoArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::results::Results;
+use crate::results::{Results, file_name};
 use crate::units::{bytes, count, duration, percent, quantity, threads};
 
 /// Describes the results of a run.
@@ -29,8 +28,8 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
         let text = format!(
             "{} in pictures/, {} to {}",
             pictures.len(),
-            name(first),
-            name(last)
+            file_name(first),
+            file_name(last)
         );
         lines.push(("pictures", text));
     }
@@ -143,7 +142,7 @@ fn described(table: &Path) -> Result<String, CliError> {
     let columns: Vec<&str> = data.columns.iter().map(|column| column.name()).collect();
     Ok(format!(
         "{}, {} rows: {}",
-        name(table),
+        file_name(table),
         count(data.rows() as u64),
         columns.join(", ")
     ))
@@ -155,7 +154,6 @@ fn audit(results: &Results) -> Option<(&'static str, String)> {
         let value = results.number(&format!("/audit/{name}"));
         quantity(value.unwrap_or(f64::NAN), "J")
     };
-    let broken = results.value("/audit/broken_bonds").and_then(Value::as_u64);
     Some((
         "audit",
         format!(
@@ -165,14 +163,7 @@ fn audit(results: &Results) -> Option<(&'static str, String)> {
             energy("dissipated_energy"),
             energy("external_work"),
             percent(results.number("/audit/energy_drift").unwrap_or(f64::NAN)),
-            count(broken.unwrap_or_default()),
+            count(results.count("/audit/broken_bonds")),
         ),
     ))
-}
-
-fn name(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }

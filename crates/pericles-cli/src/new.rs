@@ -115,17 +115,18 @@ fn find(id: &str) -> Result<Example, CliError> {
     let named = |example: &Example| {
         example.id() == wanted || example.file.name.trim_end_matches(".toml") == wanted
     };
-    let ids: Vec<String> = Example::all().filter(named).map(|e| e.id()).collect();
-    if let ([_], Some(example)) = (&ids[..], Example::all().find(named)) {
-        return Ok(example);
-    }
+    let mut found: Vec<Example> = Example::all().filter(named).collect();
     let all = "`pericles new` lists all examples";
-    if !ids.is_empty() {
+    if found.len() > 1 {
+        let ids: Vec<String> = found.iter().map(Example::id).collect();
         return Err(CliError::Unknown {
             kind: "single example",
             name: id.to_owned(),
             hint: format!("{}? {all}", ids.join(" or ")),
         });
+    }
+    if let Some(example) = found.pop() {
+        return Ok(example);
     }
     let ids = Example::all().map(|example| example.id());
     Err(CliError::unknown("example", id, ids, all))

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
-use pericles_io::{IoError, write_atomically};
+use pericles_io::{IoError, escaped, write_atomically};
 use serde_json::Value;
 
 use crate::args::ReportArgs;
@@ -14,7 +14,7 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
-use crate::results::Results;
+use crate::results::{Results, file_name};
 
 /// Pictures of one field on the page; of more, so many evenly spread ones.
 const MOST_PICTURES: usize = 6;
@@ -139,7 +139,7 @@ impl Page {
             // The last one is the one to see first.
             for path in spread(&paths).into_iter().rev() {
                 let png = std::fs::read(path).map_err(|error| IoError::reading(path, error))?;
-                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let name = file_name(path);
                 self.figure(&png, &format!("{} ({name})", field.replace('_', " ")));
             }
             if paths.len() > MOST_PICTURES {
@@ -152,11 +152,7 @@ impl Page {
 
     fn histories(&mut self, results: &Results) -> Result<(), CliError> {
         for table in results.tables() {
-            let file = table
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
+            let file = file_name(&table);
             let charts = charts::of_table(&table)?;
             if !charts.is_empty() {
                 self.heading(&file);
@@ -220,11 +216,4 @@ fn spread(paths: &[PathBuf]) -> Vec<&Path> {
     let last = paths.len() - 1;
     let pick = |k: usize| paths[k * last / (MOST_PICTURES - 1)].as_path();
     (0..MOST_PICTURES).map(pick).collect()
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }

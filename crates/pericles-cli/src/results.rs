@@ -138,3 +138,9 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     paths.sort();
     paths
 }
+
+/// The last part of a path, for people.
+pub(crate) fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}

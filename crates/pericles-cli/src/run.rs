@@ -1,6 +1,6 @@
 //! `run` and `resume`: a simulation in its folder, from a first step to its end or to a signal.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
@@ -39,10 +39,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     }
     // The folder is made once nothing in the deck can be wrong any more.
     let modelled = modelled(&deck, &args.caching)?;
-    let folder = match &args.out {
-        Some(path) => OutputFolder::create(path, args.force).map_err(folder_error)?,
-        None => OutputFolder::create_numbered(stem(&args.deck))?,
-    };
+    let folder = output_folder(args.out.as_deref(), args.force, &args.deck, "")?;
     let session = Session::begun(&deck, text, modelled, folder, quiet)?;
     session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?)
 }
@@ -82,20 +79,25 @@ pub(crate) fn modelled(deck: &Deck, caching: &Caching) -> Result<(Model, Facts),
     Ok((model, facts))
 }
 
-/// An error of making a folder, with what the command line can do about it.
-pub(crate) fn folder_error(error: IoError) -> CliError {
-    match error {
+/// The folder asked for; without one the first free of `./<deck's name><suffix>`, the same with `-2`, `-3` …
+///
+/// # Errors
+/// A folder that exists, unless `force` lets its results be replaced; one that cannot be made.
+pub(crate) fn output_folder(
+    out: Option<&Path>,
+    force: bool,
+    deck: &Path,
+    suffix: &str,
+) -> Result<OutputFolder, CliError> {
+    let Some(path) = out else {
+        let mut name = deck.file_stem().unwrap_or("run".as_ref()).to_owned();
+        name.push(suffix);
+        return Ok(OutputFolder::create_numbered(Path::new(".").join(name))?);
+    };
+    OutputFolder::create(path, force).map_err(|error| match error {
         IoError::FolderExists { path } => CliError::OutExists { path },
         other => other.into(),
-    }
-}
-
-/// The deck's name without its ending, in the present folder.
-pub(crate) fn stem(deck: &Path) -> PathBuf {
-    match deck.file_stem() {
-        Some(stem) => Path::new(".").join(stem),
-        None => "./run".into(),
-    }
+    })
 }
 
 fn momentum(simulation: &Simulation) -> [f64; 3] {

@@ -14,19 +14,6 @@ const SYNONYMS: [(&str, &[&str]); 10] = [
     ("critical_stretch", &["s0"]),
 ];
 
-/// The kinds of region.
-pub(crate) const REGIONS: &[&str] = &[
-    "all",
-    "box",
-    "ball",
-    "cylinder",
-    "half_space",
-    "layer",
-    "polygon",
-    "union",
-    "intersection",
-    "complement",
-];
 /// What makes a set: a region, a condition, blocks.
 pub(crate) const SELECTIONS: &[&str] = &[
     "all",
@@ -42,6 +29,8 @@ pub(crate) const SELECTIONS: &[&str] = &[
     "where",
     "block",
 ];
+/// The kinds of region: what makes a set, less conditions and blocks, which need the body's points.
+pub(crate) const REGIONS: &[&str] = SELECTIONS.split_at(SELECTIONS.len() - 2).0;
 /// The elastic modulus.
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
 /// The horizon.

@@ -53,7 +53,7 @@ mod vtk;
 pub use atomic::write_atomically;
 pub use cache::DiskCache;
 pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
-pub use csv::{Cell, Column, CsvData, CsvTable, read_csv};
+pub use csv::{Cell, Column, CsvData, CsvTable, csv_row, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
 pub use mesh::{
@@ -63,4 +63,4 @@ pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
 pub use points::{PointsError, read_points};
-pub use vtk::{PvdSeries, VtkField, VtuFile};
+pub use vtk::{PvdSeries, VtkField, VtuFile, escaped};

@@ -8,13 +8,14 @@ use pericles::analysis::tuning::{ScalingModel, continuum_speeds};
 use pericles::analysis::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
 use pericles::material::StressState;
 use pericles_deck::{Deck, Model};
-use pericles_io::{IoError, OutputFolder, write_atomically};
+use pericles_io::{OutputFolder, write_atomically};
 use serde_json::{Value as Json, json};
 
 use crate::args::DispersionArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::run;
 use crate::units::{percent, quantity, significant};
 use curves::{Curves, STEPS, write_bonds, write_classes, write_polar};
 use spectrum::write_spectrum;
@@ -28,16 +29,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
     let model = deck.build()?;
     let lattice = deck.bond_lattice(&model)?;
-    let folder = match &args.out {
-        Some(path) => OutputFolder::create(path, false).map_err(|error| match error {
-            IoError::FolderExists { path } => CliError::OutExists { path },
-            other => other.into(),
-        })?,
-        None => {
-            let stem = args.deck.file_stem().unwrap_or_default().to_string_lossy();
-            OutputFolder::create_numbered(format!("./{stem}-dispersion"))?
-        }
-    };
+    let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-dispersion")?;
     let study = Analysis::of(&deck, &model, lattice, args);
     let title = deck.title.clone().unwrap_or_default();
     let curves = study.curves();

@@ -15,7 +15,7 @@ mod summary;
 pub(crate) use axis::Axis;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
@@ -23,7 +23,7 @@ use pericles_deck::Deck;
 use pericles_io::{IoError, OutputFolder, write_atomically};
 use serde::{Deserialize, Serialize};
 
-use crate::args::{Caching, ResumeArgs, RunArgs};
+use crate::args::{Caching, Execution, Limits, ResumeArgs, RunArgs};
 use crate::checkpoint::DeckText;
 use crate::console;
 use crate::deadline::Deadline;
@@ -71,22 +71,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     for member in &members {
         member.deck.read()?;
     }
-    let folder = match &args.out {
-        Some(path) => OutputFolder::create(path, false).map_err(run::folder_error)?,
-        None => {
-            let mut stem = run::stem(&args.deck).into_os_string();
-            stem.push("-sweep");
-            OutputFolder::create_numbered(PathBuf::from(stem))?
-        }
-    };
+    let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-sweep")?;
     let text = serde_json::to_string_pretty(&record)?;
     write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
-    let settings = Settings {
-        threads: args.execution.threads.count_or(1),
-        caching: &args.caching,
-        deadline: Deadline::from_now(args.limits.wall_time),
-        quiet: args.execution.quiet,
-    };
+    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
     record.drive(&members, &folder, &settings)
 }
 
@@ -102,12 +90,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         path,
         reason: error.to_string(),
     })?;
-    let settings = Settings {
-        threads: args.execution.threads.count_or(1),
-        caching: &args.caching,
-        deadline: Deadline::from_now(args.limits.wall_time),
-        quiet: args.execution.quiet,
-    };
+    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
     record.drive(&record.members(), &folder, &settings)
 }
 
@@ -118,6 +101,18 @@ struct Settings<'a> {
     caching: &'a Caching,
     deadline: Option<Deadline>,
     quiet: bool,
+}
+
+impl<'a> Settings<'a> {
+    /// What the command line says; one thread a run unless it says otherwise.
+    fn new(execution: &Execution, caching: &'a Caching, limits: &Limits) -> Self {
+        Self {
+            threads: execution.threads.count_or(1),
+            caching,
+            deadline: Deadline::from_now(limits.wall_time),
+            quiet: execution.quiet,
+        }
+    }
 }
 
 impl Record {

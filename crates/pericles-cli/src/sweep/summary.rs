@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use pericles_io::{OutputFolder, read_csv, write_atomically};
+use pericles_io::{OutputFolder, csv_row, read_csv, write_atomically};
 
 use super::{Axis, Member};
 use crate::console;
@@ -76,10 +76,8 @@ pub(super) fn write(
         rows.push(row);
     }
     write_atomically(&folder.file("summary.csv"), |file| {
-        rows.iter().try_for_each(|row| {
-            let cells: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
-            writeln!(file, "{}", cells.join(","))
-        })
+        rows.iter()
+            .try_for_each(|row| file.write_all(csv_row(row).as_bytes()))
     })?;
     if quiet {
         return Ok(());
@@ -141,13 +139,4 @@ fn show(rows: &[Vec<String>], words: usize) -> Result<(), CliError> {
         console::print(format_args!("{}", line.join("  ").trim_end()))?;
     }
     Ok(())
-}
-
-/// A cell of a table, in quotation marks where it needs them.
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
-    }
 }

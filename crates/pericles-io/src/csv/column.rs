@@ -90,15 +90,17 @@ pub(super) fn header_row(path: &Path, columns: &[Column]) -> Result<String, IoEr
             reason: "a table needs at least one column, and names of one line".into(),
         });
     }
-    let quoted: Vec<_> = cells
-        .iter()
-        .map(|cell| {
-            if cell.contains(['"', ',']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.clone()
-            }
-        })
-        .collect();
-    Ok(quoted.join(",") + "\n")
+    Ok(csv_row(&cells))
+}
+
+/// A row of texts with its line end, those with commas, quotes or line ends quoted as in RFC 4180.
+pub fn csv_row(cells: &[String]) -> String {
+    let quoted = cells.iter().map(|cell| {
+        if cell.contains(['"', ',', '\n', '\r']) {
+            format!("\"{}\"", cell.replace('"', "\"\""))
+        } else {
+            cell.clone()
+        }
+    });
+    quoted.collect::<Vec<_>>().join(",") + "\n"
 }

@@ -24,6 +24,6 @@ mod column;
 mod read;
 mod table;
 
-pub use column::{Cell, Column};
+pub use column::{Cell, Column, csv_row};
 pub use read::{CsvData, read_csv};
 pub use table::CsvTable;

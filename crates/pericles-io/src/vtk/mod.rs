@@ -33,8 +33,8 @@ mod vtu;
 pub use pvd::PvdSeries;
 pub use vtu::{VtkField, VtuFile};
 
-/// Text as an XML attribute.
-fn escaped(text: &str) -> String {
+/// Text as it stands in an attribute or between the tags of XML and HTML.
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
         match character {

@@ -37,7 +37,7 @@ pub use verlet::VelocityVerlet;
 
 use crate::accounts::Completed;
 use crate::archive::{Archive, Saved, Values};
-use crate::error::Result;
+use crate::error::{PericlesError, Result};
 use crate::system::System;
 
 /// The state of a body: structure of arrays, component-major.
@@ -153,4 +153,21 @@ pub trait Integrator: Saved + Send {
     /// # Errors
     /// Schemes that iterate report when they do not converge.
     fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()>;
+}
+
+/// Refuses what a scheme cannot follow whose step is solved for, or reaches far, with the supports of its start: boundaries with a memory, for the reason given, and points
+/// that are let go.
+fn refuse_changes_of_support(
+    scheme: &'static str,
+    of_boundaries: &'static str,
+    system: &System,
+) -> Result<()> {
+    let reason = if system.has_boundaries() {
+        of_boundaries
+    } else if system.releases_points() {
+        "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme"
+    } else {
+        return Ok(());
+    };
+    Err(PericlesError::SchemeNotUsable { scheme, reason })
 }

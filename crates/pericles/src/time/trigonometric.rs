@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Integrator, State};
+use super::{Integrator, State, refuse_changes_of_support};
 use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
@@ -113,12 +113,6 @@ impl Trigonometric {
     /// A body without stiffness or with boundaries that have a memory; a negative regularisation; [`FunctionMethod::Fourier`] where the operator is
     /// not diagonal in plane waves.
     pub fn new(options: TrigonometricOptions, system: &System) -> Result<Self> {
-        let refuse = |reason| {
-            Err(PericlesError::SchemeNotUsable {
-                scheme: NAME,
-                reason,
-            })
-        };
         let regularisation = options.regularisation;
         if !(regularisation.is_finite() && regularisation >= 0.0) {
             return Err(PericlesError::SchemeParameter {
@@ -127,16 +121,11 @@ impl Trigonometric {
                 allowed: "zero (the default, and always right) or a positive number, 1/s²",
             });
         }
-        if system.has_boundaries() {
-            return refuse(
-                "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
-            );
-        }
-        if system.releases_points() {
-            return refuse(
-                "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme",
-            );
-        }
+        refuse_changes_of_support(
+            NAME,
+            "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
+            system,
+        )?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let reference = array();

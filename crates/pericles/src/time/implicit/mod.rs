@@ -7,7 +7,7 @@ use rayon::prelude::*;
 pub use solver::LinearSolver;
 use solver::StepSolver;
 
-use super::{Integrator, State};
+use super::{Integrator, State, refuse_changes_of_support};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
@@ -71,22 +71,11 @@ impl Implicit {
     /// # Errors
     /// As [`Implicit::new`].
     pub fn with_solver(rule: ImplicitRule, solver: LinearSolver, system: &System) -> Result<Self> {
-        let refuse = |reason| {
-            Err(PericlesError::SchemeNotUsable {
-                scheme: rule.name(),
-                reason,
-            })
-        };
-        if system.has_boundaries() {
-            return refuse(
-                "ghosts beyond an absorbing end would depend on the new step itself, which the solver does not know of; use velocity-verlet",
-            );
-        }
-        if system.releases_points() {
-            return refuse(
-                "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme",
-            );
-        }
+        refuse_changes_of_support(
+            rule.name(),
+            "ghosts beyond an absorbing end would depend on the new step itself, which the solver does not know of; use velocity-verlet",
+            system,
+        )?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         Ok(Self {
