@@ -48,6 +48,7 @@
 //! # }
 //! ```
 
+mod background;
 mod columns;
 mod cracks;
 mod fields;
