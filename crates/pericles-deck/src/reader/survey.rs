@@ -249,7 +249,8 @@ impl Survey {
                 Step::Key(key) => name = below(&name, key),
             }
         }
-        if self.bare.contains(path) {
+        // A definition says all of its entry.
+        if self.bare.contains(path) && !self.definitions.contains_key(path) {
             name += "[]";
         }
         name
