@@ -691,7 +691,7 @@ fn ends_that_cannot_be_continued_are_refused() {
             "[time]",
             "[time]\nscheme = \"rk4\"",
             (24, 10),
-            "made for velocity-verlet, not for rk4",
+            "made for velocity-verlet, implicit-midpoint or trapezoidal, not for rk4",
         ),
         ("[time]", "[time]\ndt = \"1 us\"", (24, 6), "is unstable"),
         (

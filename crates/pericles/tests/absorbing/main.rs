@@ -4,4 +4,5 @@ mod bar;
 mod damping;
 mod ends;
 mod exterior;
+mod implicit;
 mod kernels;

@@ -9,7 +9,7 @@ use pericles::boundary::absorbing::history::{
 };
 use pericles::boundary::absorbing::{
     AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, OuterLayer,
-    Side, factor_kernels,
+    LatticeStep, Side, factor_kernels,
 };
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
@@ -253,7 +253,7 @@ fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
     }
 
     let began = Instant::now();
-    let fit = ExponentialKernels::fit(&stencil, case.dt, steps, case.tolerance);
+    let fit = ExponentialKernels::fit(&stencil, LatticeStep::verlet(case.dt), steps, case.tolerance);
     let seconds_fit = began.elapsed().as_secs_f64();
     match fit {
         Ok(fit) => {
@@ -279,7 +279,7 @@ fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
         }
         Err(error) => return Err(PericlesError::from(error).into()),
     }
-    let form = HistoryCost::estimate(&stencil, case.dt, steps).cheapest(false);
+    let form = HistoryCost::estimate(&stencil, LatticeStep::verlet(case.dt), steps).cheapest(false);
     rows.push(Row::new(label("chosen"), "", None).note(format!("{form:?}")));
     Ok(rows)
 }
