@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use pericles::boundary::absorbing::history::{BlockedHistory, History};
-use pericles::boundary::absorbing::{AbsorbingEnd, GhostKernels, OuterLayer, Side, factor_kernels};
+use pericles::boundary::absorbing::{
+    AbsorbingEnd, GhostKernels, LatticeStep, OuterLayer, Side, contour_kernels,
+};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
@@ -92,7 +94,7 @@ pub(crate) fn add_ends(
 ) {
     for &side in sides {
         let layer = OuterLayer::of(system, side, state, &[]).unwrap();
-        let h = factor_kernels(&layer.stencil, dt, steps as usize);
+        let h = contour_kernels(&layer.stencil, LatticeStep::verlet(dt), steps as usize);
         let end = AbsorbingEnd::new(layer, history(GhostKernels::shift(h)), dt).unwrap();
         system.add_boundary(Box::new(end));
     }

@@ -1,8 +1,6 @@
 //! Ends that are part of implicit steps.
 
-use pericles::boundary::absorbing::history::{
-    BlockedHistory, DirectHistory, History, HistoryForm,
-};
+use pericles::boundary::absorbing::history::{BlockedHistory, DirectHistory, History, HistoryForm};
 use pericles::boundary::absorbing::{
     AbsorbingError, EndPlan, GhostKernels, KernelMethod, LatticeStencil, LatticeStep, MidpointEnd,
     OuterLayer, contour_kernels,
@@ -139,7 +137,9 @@ fn kernels_of_the_midpoint_rule_agree_in_all_forms() {
         Box::new(BlockedHistory::new(kernels)),
     ];
     for j in 0..steps {
-        let own: Vec<f64> = (0..7).map(|m| ((0.3 + 0.1 * m as f64) * j as f64).sin()).collect();
+        let own: Vec<f64> = (0..7)
+            .map(|m| ((0.3 + 0.1 * m as f64) * j as f64).sin())
+            .collect();
         let mut ghosts = [[0.0; 7]; 3];
         for (history, ghosts) in histories.iter_mut().zip(&mut ghosts) {
             history.ghosts_into(ghosts);

@@ -5,8 +5,9 @@ use pericles::boundary::absorbing::history::{
     history_distance,
 };
 use pericles::boundary::absorbing::{
-    AbsorbingError, EndPlan, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep, contour_kernels,
-    factor_kernels, green_functions, green_functions_closed, semi_discrete_kernels,
+    AbsorbingError, EndPlan, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
+    contour_kernels, factor_kernels, green_functions, green_functions_closed,
+    semi_discrete_kernels,
 };
 use pericles::cache::NoCache;
 
@@ -117,7 +118,8 @@ fn sums_of_exponentials_hold_their_tolerance() {
         let kernels = GhostKernels::shift(factor_kernels(&stencil, dt, steps));
         let exact = kernels.expanded();
         for tolerance in [1e-6, 1e-9] {
-            let fit = ExponentialKernels::fit(&stencil, LatticeStep::verlet(dt), steps, tolerance).unwrap();
+            let fit = ExponentialKernels::fit(&stencil, LatticeStep::verlet(dt), steps, tolerance)
+                .unwrap();
             assert!(fit.residual <= tolerance);
             // One branch of rank one: ten to twenty-five pairs, not that many for each of seven directions.
             assert!(fit.terms() <= 35, "{}", fit.terms());
@@ -164,7 +166,9 @@ fn the_cheapest_history_is_chosen() {
         ..EndPlan::default()
     };
     let name = |plan: EndPlan, steps| {
-        let (_, report) = plan.history(&stencil, LatticeStep::verlet(0.1), steps, &NoCache).unwrap();
+        let (_, report) = plan
+            .history(&stencil, LatticeStep::verlet(0.1), steps, &NoCache)
+            .unwrap();
         if let Some(distance) = report.distance {
             assert!(distance > 0.0 && distance < 1e-7, "{distance:e}");
         }

@@ -6,3 +6,4 @@ mod ends;
 mod exterior;
 mod implicit;
 mod kernels;
+mod strip;

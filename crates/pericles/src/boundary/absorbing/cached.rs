@@ -1,10 +1,10 @@
 //! Kernels kept from run to run.
 
-use super::{GhostKernels, LatticeScheme, LatticeStencil, LatticeStep, contour_kernels, factor_kernels};
+use super::{GhostKernels, LatticeStencil, LatticeStep, contour_kernels};
 use crate::archive::{Archive, Values};
 use crate::cache::{Cache, Key};
 
-/// The kernels of a scheme, from the cache if they are there, and checked: a set of arrays that does not satisfy its own equations is computed
+/// The kernels of [`contour_kernels`], from the cache if they are there, and checked: a set of arrays that does not satisfy its own equations is computed
 /// again.
 pub fn cached_kernels(
     stencil: &LatticeStencil,
@@ -12,7 +12,7 @@ pub fn cached_kernels(
     steps: usize,
     cache: &dyn Cache,
 ) -> GhostKernels {
-    let key = Key::new("absorbing-kernels-2")
+    let key = Key::new("absorbing-kernels-3")
         .f64s(stencil.weights())
         .f64s(&[step.dt])
         .u64s(&[step.scheme as u64])
@@ -24,10 +24,7 @@ pub fn cached_kernels(
     if let Some(series) = stored.filter(|series| holds(series, stencil, step.dt)) {
         return GhostKernels::shift(series);
     }
-    let series = match step.scheme {
-        LatticeScheme::VelocityVerlet => factor_kernels(stencil, step.dt, steps),
-        LatticeScheme::Midpoint => contour_kernels(stencil, step, steps),
-    };
+    let series = contour_kernels(stencil, step, steps);
     let mut arrays = Archive::default();
     for (k, series) in series.iter().enumerate() {
         arrays.put(name(k), Values::F64(series.clone()));

@@ -7,23 +7,19 @@ use rayon::prelude::*;
 
 use super::roots::Factor;
 use super::{LatticeStencil, LatticeStep};
-use crate::operator::linear::LineTransform;
+use crate::operator::linear::{LineTransform, smooth_length};
 
 /// Points of the circle that are found one from the other; the last of them is compared with its own roots.
 const CURVE: usize = 512;
 /// Factors that differ by more, relative to one another, belong to different roots.
 const SAME: f64 = 1e-6;
 
-/// h_1 … h_K with `steps + 1` coefficients each, of any scheme that has a symbol, from the factor on a circle of radius r < 1 at 8 points per coefficient with r^points = 10^−16.5.
+/// h_1 … h_K with `steps + 1` coefficients each, of any scheme that has a symbol, from the factor on a circle of radius r < 1 at 6 points per coefficient with r^points = 10^−16.5.
 ///
 /// The factor at a point follows from its neighbours by Newton's method: O(K³ N), on all threads. Rounding errors of points are independent of one another, so that they do not add up along
-/// time.
-pub fn contour_kernels(
-    stencil: &LatticeStencil,
-    step: LatticeStep,
-    steps: usize,
-) -> Vec<Vec<f64>> {
-    let points = (8 * (steps + 1)).next_power_of_two();
+/// time: the kernels of a bar with K = 7 are those of the infinite lattice to 1e-15 after 8192 steps, those of [`super::factor_kernels`] to 1e-13.
+pub fn contour_kernels(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Vec<Vec<f64>> {
+    let points = smooth_length(6 * (steps + 1));
     let radius = 10f64.powf(-16.5 / points as f64);
     let transform = LineTransform::new(points);
     // The transform's sign: coefficients of w^j come with exp(+i j φ) when w = r exp(−i φ).
@@ -79,7 +75,7 @@ fn follow(
         .fold(0.0, f64::max);
     let size = own.iter().map(|h| h.norm()).fold(0.0, f64::max);
     // A curve that went over to other roots, which neighbours so close hardly allow.
-    if !(apart <= SAME * size) {
+    if apart.is_nan() || apart > SAME * size {
         for (k, sample) in samples.chunks_exact_mut(reach).enumerate() {
             Factor::at(stencil, sigma(k)).kernels_into(sample);
         }

@@ -96,7 +96,6 @@ impl AbsorbingEnd {
         }
         self.history.push(&self.own, &self.ghosts);
     }
-
 }
 
 impl Boundary for AbsorbingEnd {

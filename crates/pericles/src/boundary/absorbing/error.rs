@@ -74,6 +74,14 @@ pub enum AbsorbingError {
         /// Its dimension.
         dimension: usize,
     },
+    /// A body that is no strip whose exterior could be found by Fourier modes.
+    #[error(
+        "an absorbing end of a strip needs a homogeneous plate that is periodic along y: {reason}"
+    )]
+    NotAStrip {
+        /// What it is or has.
+        reason: &'static str,
+    },
     /// Points that do not follow each other at equal distances.
     #[error(
         "an exact absorbing end needs a regular grid without holes: point {point} is not one spacing from the next"
@@ -196,7 +204,11 @@ pub enum AbsorbingError {
         largest: f64,
     },
     /// A scheme that the history is not made for.
-    #[error("{what} is made for {}, not for {scheme}{}", listed(needed), why_not(scheme))]
+    #[error(
+        "{what} is made for {}, not for {scheme}{}",
+        listed(needed),
+        why_not(scheme)
+    )]
     Scheme {
         /// The boundary.
         what: &'static str,
@@ -206,7 +218,9 @@ pub enum AbsorbingError {
         needed: &'static [&'static str],
     },
     /// What needs an explicit scheme.
-    #[error("{what} needs scheme = \"velocity-verlet\": its kernels are those of an explicit scheme")]
+    #[error(
+        "{what} needs scheme = \"velocity-verlet\": its kernels are those of an explicit scheme"
+    )]
     VerletOnly {
         /// What was asked for.
         what: &'static str,

@@ -47,8 +47,6 @@ struct Tangents {
 
 /// A row and a column of what the crosses before leave of L, divided by their common entry.
 struct Cross {
-    row: usize,
-    column: usize,
     entry: f64,
     /// Down the column.
     down: Vec<f64>,
@@ -61,12 +59,7 @@ const PATIENCE: usize = 4;
 
 impl Loewner {
     /// With `directions` random directions at each point, up to crosses below a `share` of the largest.
-    pub(super) fn new(
-        points: &[C],
-        values: &[DMatrix<C>],
-        directions: usize,
-        share: f64,
-    ) -> Self {
+    pub(super) fn new(points: &[C], values: &[DMatrix<C>], directions: usize, share: f64) -> Self {
         let reach = values[0].nrows();
         let noise = crate::noise::noise(2 * points.len() * directions * reach, 1);
         let mut noise = noise.chunks(reach).map(|v| {
@@ -201,13 +194,7 @@ impl Tangents {
             for x in along.iter_mut().chain(&mut down) {
                 *x /= entry;
             }
-            crosses.push(Cross {
-                row,
-                column,
-                entry,
-                down,
-                along,
-            });
+            crosses.push(Cross { entry, down, along });
             let Some(next) = next else {
                 return crosses;
             };

@@ -5,8 +5,9 @@ use super::history::{
     history_distance,
 };
 use super::{
-    AbsorbingError, ExponentialKernels, GhostKernels, LatticeScheme, LatticeStencil, LatticeStep, cached_kernels,
-    green_functions, green_functions_closed, semi_discrete_kernels, trapezoidal_kernels,
+    AbsorbingError, ExponentialKernels, GhostKernels, LatticeScheme, LatticeStencil, LatticeStep,
+    cached_kernels, green_functions, green_functions_closed, semi_discrete_kernels,
+    trapezoidal_kernels,
 };
 use crate::cache::Cache;
 

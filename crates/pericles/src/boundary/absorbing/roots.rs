@@ -66,20 +66,19 @@ impl<'a> Factor<'a> {
         self.b = product.iter().map(|x| x * scale).collect();
         self.before = None;
         for _ in 0..2 {
-            self.correct(centre);
+            self.correct(sigma);
         }
     }
 
     /// Goes on to a σ nearby: from the line through the last two factors by Newton's method, from the roots where that does not converge.
     pub(super) fn follow(&mut self, sigma: C) {
-        let centre = sigma + 2.0 * self.stencil.sum();
         let last = self.b.clone();
         if let Some(before) = &self.before {
             for (b, before) in self.b.iter_mut().zip(before) {
                 *b += *b - before;
             }
         }
-        let converged = (0..CORRECTIONS).any(|_| self.correct(centre) < SMALL);
+        let converged = (0..CORRECTIONS).any(|_| self.correct(sigma) < SMALL);
         if converged {
             self.before = Some(last);
         } else {
@@ -103,16 +102,18 @@ impl<'a> Factor<'a> {
     }
 
     /// A Newton step; its size relative to the factor. At a branch point, where there is no unique solution, the factor stands as it is.
-    fn correct(&mut self, centre: C) -> f64 {
+    ///
+    /// In place of the equation for k = 0 stands the sum of all, (Σ b)² = D(1) = σ: the other would lose the digits of σ beside 2Σa, and an exterior with a little stiffness to the ground returns an
+    /// error that grows with the square of time.
+    fn correct(&mut self, sigma: C) -> f64 {
         let n = self.b.len();
         let (b, a) = (&self.b, self.stencil.weights());
-        for k in 0..n {
-            let wanted = match k {
-                0 => centre,
-                _ => C::new(-a[k - 1], 0.0),
-            };
+        let sum: C = b.iter().sum();
+        self.step[0] = sigma - sum * sum;
+        self.system[..n].fill(2.0 * sum);
+        for k in 1..n {
             let product: C = b.iter().zip(&b[k..]).map(|(x, y)| x * y).sum();
-            self.step[k] = wanted - product;
+            self.step[k] = -a[k - 1] - product;
             let row = &mut self.system[k * n..(k + 1) * n];
             for (i, entry) in row.iter_mut().enumerate() {
                 let above = b.get(i + k).copied().unwrap_or_default();

@@ -1,8 +1,8 @@
 //! Which form of a history is the cheapest.
 
-use crate::boundary::absorbing::{LatticeStencil, LatticeStep};
 use crate::boundary::absorbing::blocks::BLOCK;
 use crate::boundary::absorbing::fit::sample_count;
+use crate::boundary::absorbing::{LatticeStencil, LatticeStep};
 
 /// Estimated cost of one end over a run, in multiply–adds, kernels included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,9 @@ impl HistoryCost {
             }
             cost
         };
-        let kernels = online(square, 2.0 * reach, square);
+        // Three points of the upper half circle per step, each with an elimination of K + 1 complex unknowns.
+        let elimination = (reach + 1.0).powi(3) / 3.0 + 4.0 * square;
+        let kernels = 3.0 * n * PRODUCT * elimination;
         let points = sample_count(stencil, step, steps) as f64;
         let branches = stencil.stationary_frequencies().len() as f64;
         // Singular values that are kept, as measured from one to twenty branches; half of them are exponentials, the others their conjugates.
