@@ -145,17 +145,17 @@ impl LineChart {
         if let Some((_, _, ticks)) = &bar {
             right = (f64::from(self.width) - ColourBar::room(ticks, &sizes)).round();
         }
-        let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
-        let x_text = AxisText {
-            ticks: x.ticks(wanted),
-            label: x_shown.label(&self.x.name),
-        };
         let beside = self.key_beside && bar.is_none();
         if beside {
             // A third of the picture at most: longer names are fitted.
             let key = self.key_size((right - left) / 3.0, &sizes);
             right -= (key.width + sizes.gap).round();
         }
+        let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
+        let x_text = AxisText {
+            ticks: x.ticks(wanted),
+            label: x_shown.label(&self.x.name),
+        };
         // A label under the right end must not be cut.
         let overhang = x_text
             .ticks

@@ -128,14 +128,16 @@ fn without_waves_across_each_component_is_a_bar() {
             let at = |i: &usize| (system.cloud().axis(0)[*i] - d as f64).abs() < 0.1;
             force[c * n + (0..n).find(at).unwrap()] / size
         };
-        let weights: Vec<f64> = (1..=REACH).map(weight).collect();
+        // Across, the bonds of three columns along have no stiffness.
+        let reach = REACH - c;
+        let weights: Vec<f64> = (1..=reach).map(weight).collect();
         let stencil = LatticeStencil::new(&weights).unwrap();
         let bar = GhostKernels::shift(factor_kernels(&stencil, DT, steps)).expanded();
-        for ghost in 0..REACH {
-            for m in 0..REACH {
+        for ghost in 0..reach {
+            for m in 0..reach {
                 let series = |a: usize| &kernels.series()[(2 * ghost + c) * 2 * REACH + 2 * m + a];
                 for j in 0..=steps {
-                    let apart = series(c)[j] - bar.series()[ghost * REACH + m][j];
+                    let apart = series(c)[j] - bar.series()[ghost * reach + m][j];
                     assert!(apart.abs() < 1e-13, "{apart:e}");
                     assert!(series(1 - c)[j].abs() < 1e-14);
                 }
