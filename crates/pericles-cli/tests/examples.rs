@@ -232,6 +232,26 @@ fn gauss_nodes_by_the_midpoint_rule_keep_their_energy() {
 }
 
 #[test]
+fn waves_leave_a_bar_without_ends() {
+    let (_place, out) = check("absorbing", "infinite-bar");
+    let history = table(&out, "history.csv");
+    let last = |name: &str| *history.column(name).unwrap().last().unwrap();
+    assert!(last("kinetic_energy") + last("elastic_energy") < 1e-20 * -last("external_work"));
+}
+
+#[test]
+fn a_free_end_moves_twice_as_fast() {
+    let (_place, out) = check("absorbing", "free-end");
+    let probes = table(&out, "probes.csv");
+    let fastest = |name: &str| {
+        let column = probes.column(name).unwrap();
+        column.iter().fold(0.0, |a: f64, v| a.max(*v))
+    };
+    let ratio = fastest("free_end_v_x") / fastest("absorbing_end_v_x");
+    assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
+}
+
+#[test]
 fn waves_in_the_periodic_plate() {
     let (_place, out) = check("wave", "plate");
     // The bound of the energy holds.

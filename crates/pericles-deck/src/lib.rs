@@ -130,7 +130,7 @@
 //! function = { kind = "ramp", duration = "1 us" }
 //! from = "0 s"                           # optional, as `until`: when the load acts
 //!
-//! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet"
+//! [[boundary]]                           # a boundary with memory; 1D, scheme = "velocity-verlet", "implicit-midpoint" or "trapezoidal"
 //! kind = "absorbing"                     # the bar goes on for ever beyond this end, as its outermost points are; exact
 //! side = "-x"                            # or +x
 //! history = "auto"                       # default: the cheaper of the exact forms direct and blocked, and of exponentials if a tolerance is given; or one of the three

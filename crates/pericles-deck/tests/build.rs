@@ -662,6 +662,21 @@ fn waves_leave_through_absorbing_ends() {
 }
 
 #[test]
+fn waves_leave_in_implicit_steps_beyond_the_explicit_limit() {
+    for scheme in ["implicit-midpoint", "trapezoidal"] {
+        let time = format!("[time]\nscheme = \"{scheme}\"\ndt = \"1 us\"");
+        let mut run = build(&BAR.replace("[time]", &time)).simulation();
+        run.run(|_| pericles::Control::Continue).unwrap();
+        let energies = run.snapshot().energies();
+        assert!(energies.work < -0.8 * energies.initial, "{energies:?}");
+        assert!(
+            energies.balance().abs() < 1e-11 * energies.initial,
+            "{energies:?}"
+        );
+    }
+}
+
+#[test]
 fn histories_by_exponentials_keep_their_tolerance() {
     let displacement = |text: &str| {
         let mut run = build(text).simulation();
@@ -680,7 +695,19 @@ fn histories_by_exponentials_keep_their_tolerance() {
 
 #[test]
 fn ends_that_cannot_be_continued_are_refused() {
-    let cases: [(&str, &str, (usize, usize), &str); 7] = [
+    let cases: [(&str, &str, (usize, usize), &str); 9] = [
+        (
+            "[time]",
+            "[time]\nscheme = \"trigonometric\"\ndt = \"1 us\"",
+            (24, 10),
+            "past any layer of ghosts",
+        ),
+        (
+            "side = \"+x\"\n[time]",
+            "side = \"+x\"\nexterior_data = \"9 mm\"\n[time]\nscheme = \"implicit-midpoint\"\ndt = \"1 us\"",
+            (20, 1),
+            "exterior_data needs scheme = \"velocity-verlet\"",
+        ),
         (
             "side = \"+x\"",
             "side = \"-x\"",
@@ -691,7 +718,7 @@ fn ends_that_cannot_be_continued_are_refused() {
             "[time]",
             "[time]\nscheme = \"rk4\"",
             (24, 10),
-            "made for velocity-verlet, not for rk4",
+            "made for velocity-verlet, implicit-midpoint or trapezoidal, not for rk4",
         ),
         ("[time]", "[time]\ndt = \"1 us\"", (24, 6), "is unstable"),
         (

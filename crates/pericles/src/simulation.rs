@@ -197,8 +197,15 @@ impl Simulation {
     fn check_boundaries(&self) -> Result<(), PericlesError> {
         let (scheme, steps) = (self.integrator.name(), self.steps);
         for boundary in self.system.boundaries() {
-            if let Some(needed) = boundary.scheme().filter(|needed| *needed != scheme) {
-                return Err(AbsorbingError::Scheme { scheme, needed }.into());
+            let needed = boundary.schemes();
+            if !needed.is_empty() && !needed.contains(&scheme) {
+                let what = "a boundary of this run";
+                return Err(AbsorbingError::Scheme {
+                    what,
+                    scheme,
+                    needed,
+                }
+                .into());
             }
             if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
                 return Err(AbsorbingError::TooManySteps { steps, made_for }.into());

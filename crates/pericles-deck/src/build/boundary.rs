@@ -1,7 +1,8 @@
 //! Absorbing ends and damping layers of a model.
 
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, OuterLayer, Side,
+    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStep,
+    MidpointEnd, OuterLayer, Side,
 };
 use pericles::boundary::{DampingLayer, DampingProfile};
 use pericles::cache::Cache;
@@ -24,6 +25,7 @@ use crate::set::ALL;
 pub(super) struct End {
     path: Path,
     layer: OuterLayer,
+    scheme: LatticeScheme,
     plan: EndPlan,
     /// Displacements and velocities of the exterior's sites.
     beyond: Option<[Vec<f64>; 2]>,
@@ -44,19 +46,34 @@ impl Deck {
         for (k, boundary) in self.boundaries.iter().enumerate() {
             let path = Path::from("boundary").index(k);
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
-            let (scheme, needed) = (integrator.name(), AbsorbingEnd::SCHEME);
-            if scheme != needed {
-                let error = AbsorbingError::Scheme { scheme, needed };
-                return Err(self.at("time.scheme", error.into()));
-            }
+            let scheme = integrator.name();
+            let wrong_scheme = |what, needed| {
+                let error = AbsorbingError::Scheme {
+                    what,
+                    scheme,
+                    needed,
+                };
+                self.at("time.scheme", error.into())
+            };
             let BoundaryCondition::Absorbing {
                 side,
                 plan,
                 exterior_data,
             } = *boundary
             else {
-                continue;
+                let needed = LatticeScheme::VelocityVerlet.names();
+                if needed.contains(&scheme) {
+                    continue;
+                }
+                return Err(wrong_scheme("a damping layer", needed));
             };
+            let Some(scheme) = LatticeScheme::of(scheme) else {
+                return Err(wrong_scheme("an absorbing end", LatticeScheme::NAMES));
+            };
+            if scheme != LatticeScheme::VelocityVerlet && exterior_data.is_some() {
+                let what = "exterior_data";
+                return Err(refuse(AbsorbingError::VerletOnly { what }));
+            }
             if sides.contains(&side) {
                 let side = side.name();
                 return Err(refuse(AbsorbingError::Twice { side }));
@@ -72,6 +89,7 @@ impl Deck {
             ends.push(End {
                 layer: layer.map_err(refuse)?,
                 path,
+                scheme,
                 plan,
                 beyond,
             });
@@ -115,15 +133,24 @@ impl Deck {
             let path = end.path;
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
             let stencil = end.layer.stencil.clone();
-            stencil.check_step(steps.dt).map_err(refuse)?;
+            let step = LatticeStep {
+                scheme: end.scheme,
+                dt: steps.dt,
+            };
+            step.check(&stencil).map_err(refuse)?;
             let count = steps.count as usize;
-            let make = || end.plan.history(&stencil, steps.dt, count, cache);
+            let make = || end.plan.history(&stencil, step, count, cache);
             let (history, report) = make().map_err(refuse)?;
             if let Some(growth) = report.growth {
                 warnings
                     .push(self.finding(&path.key("method"), Caution::HistoricalKernels { growth }));
             }
             reports.push((end.layer.side, report));
+            if end.scheme == LatticeScheme::Midpoint {
+                let made = MidpointEnd::new(end.layer, history, steps.dt);
+                system.add_boundary(Box::new(made.map_err(refuse)?));
+                continue;
+            }
             let mut made = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
             if let Some([u, v]) = &end.beyond {
                 let histories = [make().map_err(refuse)?.0, make().map_err(refuse)?.0];

@@ -21,8 +21,18 @@ pub struct LineChart {
     header: Header,
     curves: Vec<Curve>,
     backdrop: Option<Backdrop>,
+    key_beside: bool,
     width: u32,
     height: u32,
+}
+
+/// The names of curves with samples of their pens: its measures in pixels.
+struct KeySize {
+    sample: f64,
+    /// Of a name.
+    room: f64,
+    width: f64,
+    height: f64,
 }
 
 impl LineChart {
@@ -34,6 +44,7 @@ impl LineChart {
             header: Header::default(),
             curves: Vec::new(),
             backdrop: None,
+            key_beside: false,
             width: 1200,
             height: 750,
         }
@@ -65,6 +76,12 @@ impl LineChart {
     pub fn backdrop(mut self, backdrop: Backdrop) -> Self {
         self.header.bar_label.clone_from(&backdrop.name);
         self.backdrop = Some(backdrop);
+        self
+    }
+
+    /// Puts the key to the right of the plot, where it hides nothing; else it stands in the emptiest corner. Beside a backdrop's colour bar there is no room for it.
+    pub fn key_beside(mut self) -> Self {
+        self.key_beside = true;
         self
     }
 
@@ -128,6 +145,12 @@ impl LineChart {
         if let Some((_, _, ticks)) = &bar {
             right = (f64::from(self.width) - ColourBar::room(ticks, &sizes)).round();
         }
+        let beside = self.key_beside && bar.is_none();
+        if beside {
+            // A third of the picture at most: longer names are fitted.
+            let key = self.key_size((right - left) / 3.0, &sizes);
+            right -= (key.width + sizes.gap).round();
+        }
         let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
         let x_text = AxisText {
             ticks: x.ticks(wanted),
@@ -137,7 +160,7 @@ impl LineChart {
         let overhang = x_text
             .ticks
             .longest(|label| text::width(label, sizes.tick_text));
-        if bar.is_none() {
+        if bar.is_none() && !beside {
             right -= (0.5 * overhang - sizes.gap).max(0.0).round();
         }
         let area = Area {
@@ -189,8 +212,15 @@ impl LineChart {
             drawn.push(pieces);
         }
         frame.draw_axes(&mut drawing, &x_text, &y_text, &sizes);
-        self.draw_key(&mut drawing, area, &drawn, &sizes);
-        let end = if bar.is_some() { end } else { right };
+        match beside {
+            true => {
+                let key = self.key_size((end - left) / 3.0, &sizes);
+                let place = (area.right + sizes.gap, area.top);
+                self.draw_key(&mut drawing, &key, place, &sizes);
+            }
+            false => self.draw_key_within(&mut drawing, area, &drawn, &sizes),
+        }
+        let end = if bar.is_some() || beside { end } else { right };
         self.header.draw(&mut drawing, left, end, &sizes);
         Ok(drawing)
     }
@@ -231,29 +261,39 @@ impl LineChart {
         Ok(())
     }
 
+    /// The curves that have a name, with their numbers.
+    fn named(&self) -> impl Iterator<Item = (usize, &Curve)> {
+        let curves = self.curves.iter().enumerate();
+        curves.filter(|(_, curve)| !curve.name.is_empty())
+    }
+
+    /// The key's size where it may be this wide.
+    fn key_size(&self, most: f64, sizes: &Sizes) -> KeySize {
+        let sample = 2.2 * sizes.tick_text;
+        let room = most - sample - 3.0 * sizes.gap;
+        let longest = self
+            .named()
+            .map(|(_, curve)| text::width(&curve.name, sizes.tick_text))
+            .fold(0.0, f64::max);
+        KeySize {
+            sample,
+            room,
+            width: sample + 3.0 * sizes.gap + longest.min(room),
+            height: 1.5 * sizes.tick_text * self.named().count() as f64 + sizes.gap,
+        }
+    }
+
     /// The key, in the corner where it hides the least of the curves.
-    fn draw_key(
+    fn draw_key_within(
         &self,
         drawing: &mut Drawing,
         area: Area,
         drawn: &[Vec<Vec<(f64, f64)>>],
         sizes: &Sizes,
     ) {
-        let named: Vec<_> = (self.curves.iter().enumerate())
-            .filter(|(_, curve)| !curve.name.is_empty())
-            .collect();
-        if named.is_empty() {
-            return;
-        }
-        let (gap, row) = (sizes.gap, 1.5 * sizes.tick_text);
-        let sample = 2.2 * sizes.tick_text;
-        let longest = named
-            .iter()
-            .map(|(_, curve)| text::width(&curve.name, sizes.tick_text))
-            .fold(0.0, f64::max);
-        let room = area.width() - sample - 5.0 * gap;
-        let width = sample + 3.0 * gap + longest.min(room);
-        let height = row * named.len() as f64 + gap;
+        let gap = sizes.gap;
+        let key = self.key_size(area.width() - 2.0 * gap, sizes);
+        let KeySize { width, height, .. } = key;
         let places = [
             (area.right - gap - width, area.top + gap),
             (area.left + gap, area.top + gap),
@@ -270,26 +310,34 @@ impl LineChart {
             let pieces = drawn.iter().flatten();
             pieces.map(|piece| length_inside(piece, area)).sum::<f64>()
         };
-        let Some(place) = places
+        let emptiest = places
             .into_iter()
-            .min_by(|a, b| hidden(a).total_cmp(&hidden(b)))
-        else {
+            .min_by(|a, b| hidden(a).total_cmp(&hidden(b)));
+        if let Some(place) = emptiest {
+            self.draw_key(drawing, &key, place, sizes);
+        }
+    }
+
+    /// The key with its upper left corner at a place.
+    fn draw_key(&self, drawing: &mut Drawing, key: &KeySize, place: (f64, f64), sizes: &Sizes) {
+        if self.named().next().is_none() {
             return;
-        };
-        let corner = (place.0 + width, place.1 + height);
+        }
+        let (gap, row) = (sizes.gap, 1.5 * sizes.tick_text);
+        let corner = (place.0 + key.width, place.1 + key.height);
         drawing.fill_rectangle(place, corner, WHITE, 0.85);
         drawing.outline(place, corner, 1.0, [200, 200, 200]);
-        for (line, (number, curve)) in named.into_iter().enumerate() {
+        for (line, (number, curve)) in self.named().enumerate() {
             let pen = Pen::of(number, curve, sizes);
             let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
-            let (from, to) = (place.0 + gap, place.0 + gap + sample);
+            let (from, to) = (place.0 + gap, place.0 + gap + key.sample);
             if curve.line {
                 pen.stroke(drawing, vec![vec![(from, y), (to, y)]]);
             }
             if curve.markers {
                 pen.mark(drawing, (0.5 * (from + to), y));
             }
-            let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, room);
+            let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, key.room);
             drawing.text(&curve.name, (to + gap, y), style.colour(INK));
         }
     }

@@ -1,6 +1,6 @@
 //! Layers in which motion dies away: an approximate absorbing side of bodies in any dimension.
 
-use super::absorbing::AbsorbingEnd;
+use super::absorbing::LatticeScheme;
 use super::{Boundary, Exchange};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
@@ -180,8 +180,8 @@ impl Boundary for DampingLayer {
         }
     }
 
-    fn scheme(&self) -> Option<&'static str> {
-        Some(AbsorbingEnd::SCHEME)
+    fn schemes(&self) -> &'static [&'static str] {
+        LatticeScheme::VelocityVerlet.names()
     }
 }
 

@@ -25,6 +25,21 @@ pub struct Exchange {
     pub impulse: [f64; 3],
 }
 
+/// What a boundary gives the body within a step whose end is an unknown: an acceleration that depends linearly on it.
+///
+/// With displacements u at the middle of the step the acceleration is d − S u, where d is what the boundary remembers of the steps before, and S is symmetric and positive semidefinite when weighed by
+/// masses.
+pub trait WithinStep {
+    /// Adds the acceleration that is part of the present state's.
+    fn add_present(&self, acceleration: &mut [f64]);
+
+    /// Adds d − S u.
+    fn add_middle(&self, u: &[f64], acceleration: &mut [f64]);
+
+    /// Adds S u.
+    fn add_stiffness(&self, u: &[f64], out: &mut [f64]);
+}
+
 /// A boundary that acts on the state around force evaluations: ghost points, absorbing ends, damping layers.
 pub trait Boundary: Saved + Send + Sync {
     /// Called before the force is evaluated at time t, with the displacement and velocity of that stage.
@@ -42,8 +57,13 @@ pub trait Boundary: Saved + Send + Sync {
     /// Called after the accelerations of a stage are known; may change them.
     fn after_stage(&mut self, t: f64, u: &[f64], v: &[f64], acceleration: &mut [f64]);
 
-    /// The only scheme it works with, by its name in decks; none if any.
-    fn scheme(&self) -> Option<&'static str> {
+    /// The schemes it works with, by their names in decks; empty if any.
+    fn schemes(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Its part in a step that is solved for as a whole; none for boundaries that explicit schemes alone can follow.
+    fn within_step(&self) -> Option<&dyn WithinStep> {
         None
     }
 

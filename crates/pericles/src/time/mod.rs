@@ -162,12 +162,19 @@ fn refuse_changes_of_support(
     of_boundaries: &'static str,
     system: &System,
 ) -> Result<()> {
-    let reason = if system.has_boundaries() {
-        of_boundaries
-    } else if system.releases_points() {
-        "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme"
-    } else {
+    if system.has_boundaries() {
+        let reason = of_boundaries;
+        return Err(PericlesError::SchemeNotUsable { scheme, reason });
+    }
+    refuse_released_points(scheme, system)
+}
+
+/// Refuses points that are let go.
+fn refuse_released_points(scheme: &'static str, system: &System) -> Result<()> {
+    if !system.releases_points() {
         return Ok(());
-    };
+    }
+    let reason =
+        "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme";
     Err(PericlesError::SchemeNotUsable { scheme, reason })
 }

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use pericles::boundary::absorbing::history::{BlockedHistory, History};
-use pericles::boundary::absorbing::{AbsorbingEnd, GhostKernels, OuterLayer, Side, factor_kernels};
+use pericles::boundary::absorbing::{
+    AbsorbingEnd, GhostKernels, LatticeStep, OuterLayer, Side, contour_kernels,
+};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
@@ -28,6 +30,15 @@ pub(crate) fn weights() -> Vec<f64> {
 
 /// A bar of nodes −half … half, x = 0 in the middle, whose inner part |x| < 4 is softer by β.
 pub(crate) fn bar(half: usize, beta: f64) -> System {
+    bar_with(half, beta, f64::INFINITY)
+}
+
+/// The plain bar, whose bonds with both ends beyond |x| = 2 never break.
+pub(crate) fn breaking_bar(half: usize) -> System {
+    bar_with(half, 1.0, 0.6)
+}
+
+fn bar_with(half: usize, beta: f64, critical_stretch: f64) -> System {
     let nodes = 2 * half + 1;
     let cloud = Grid {
         shape: Shape::Box {
@@ -42,9 +53,11 @@ pub(crate) fn bar(half: usize, beta: f64) -> System {
     let bonds = BondList::new(&cloud, (REACH as f64 + 0.5) * DX, VolumeCorrection::None).unwrap();
     let x = cloud.axis(0).to_vec();
     let hard = |i: usize| x[i].abs() > 4.0 - 1e-9;
+    let lasting = |i: &u32| x[*i as usize].abs() > 2.0;
+    let no_fail: Vec<u32> = (0..nodes as u32).filter(lasting).collect();
     let breaking = Breaking {
-        critical_stretch: f64::INFINITY,
-        no_fail: &[],
+        critical_stretch,
+        no_fail: &no_fail,
     };
     let force = BondForce::<LinearBond, 1>::with_pair_stiffness(
         cloud.clone(),
@@ -81,7 +94,7 @@ pub(crate) fn add_ends(
 ) {
     for &side in sides {
         let layer = OuterLayer::of(system, side, state, &[]).unwrap();
-        let h = factor_kernels(&layer.stencil, dt, steps as usize);
+        let h = contour_kernels(&layer.stencil, LatticeStep::verlet(dt), steps as usize);
         let end = AbsorbingEnd::new(layer, history(GhostKernels::shift(h)), dt).unwrap();
         system.add_boundary(Box::new(end));
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pericles::boundary::absorbing::history::{ExponentialHistory, History};
 use pericles::boundary::absorbing::{
-    AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, OuterLayer, Side,
+    AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep, OuterLayer, Side,
 };
 use pericles::boundary::{Load, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
@@ -134,7 +134,7 @@ fn one_free_end_doubles_and_reflects() {
 fn exponentials(_: GhostKernels) -> Box<dyn History> {
     let stencil = LatticeStencil::new(&weights()).unwrap();
     Box::new(ExponentialHistory::new(
-        ExponentialKernels::fit(&stencil, 0.1, 333, 1e-8).unwrap(),
+        ExponentialKernels::fit(&stencil, LatticeStep::verlet(0.1), 333, 1e-8).unwrap(),
     ))
 }
 

@@ -5,8 +5,9 @@ use pericles::boundary::absorbing::history::{
     history_distance,
 };
 use pericles::boundary::absorbing::{
-    AbsorbingError, EndPlan, ExponentialKernels, GhostKernels, LatticeStencil, contour_kernels,
-    factor_kernels, green_functions, green_functions_closed, semi_discrete_kernels,
+    AbsorbingError, EndPlan, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
+    contour_kernels, factor_kernels, green_functions, green_functions_closed,
+    semi_discrete_kernels,
 };
 use pericles::cache::NoCache;
 
@@ -71,7 +72,7 @@ fn routes_to_the_kernels_agree() {
         let stencil = LatticeStencil::new(&weights).unwrap();
         let steps = 300;
         let series = factor_kernels(&stencil, dt, steps);
-        let contour = contour_kernels(&stencil, dt, steps);
+        let contour = contour_kernels(&stencil, LatticeStep::verlet(dt), steps);
         for (a, b) in series.iter().flatten().zip(contour.iter().flatten()) {
             assert!((a - b).abs() < 1e-14, "{a:e} {b:e}");
         }
@@ -117,7 +118,8 @@ fn sums_of_exponentials_hold_their_tolerance() {
         let kernels = GhostKernels::shift(factor_kernels(&stencil, dt, steps));
         let exact = kernels.expanded();
         for tolerance in [1e-6, 1e-9] {
-            let fit = ExponentialKernels::fit(&stencil, dt, steps, tolerance).unwrap();
+            let fit = ExponentialKernels::fit(&stencil, LatticeStep::verlet(dt), steps, tolerance)
+                .unwrap();
             assert!(fit.residual <= tolerance);
             // One branch of rank one: ten to twenty-five pairs, not that many for each of seven directions.
             assert!(fit.terms() <= 35, "{}", fit.terms());
@@ -136,7 +138,7 @@ fn sums_of_exponentials_hold_their_tolerance() {
     }
     let stencil = LatticeStencil::new(&weights()).unwrap();
     assert!(matches!(
-        ExponentialKernels::fit(&stencil, 0.05, 1000, 0.0),
+        ExponentialKernels::fit(&stencil, LatticeStep::verlet(0.05), 1000, 0.0),
         Err(AbsorbingError::Tolerance { .. })
     ));
 }
@@ -147,7 +149,7 @@ fn several_branches_need_more_exponentials() {
     let stencil = LatticeStencil::new(&[0.15; 5]).unwrap();
     assert!(stencil.stationary_frequencies().len() > 2);
     let (dt, steps) = (0.2, 500);
-    let fit = ExponentialKernels::fit(&stencil, dt, steps, 1e-7).unwrap();
+    let fit = ExponentialKernels::fit(&stencil, LatticeStep::verlet(dt), steps, 1e-7).unwrap();
     let exact = GhostKernels::shift(factor_kernels(&stencil, dt, steps)).expanded();
     let pairs = fit.series(steps);
     let pairs = pairs.iter().flatten().zip(exact.series().iter().flatten());
@@ -164,7 +166,9 @@ fn the_cheapest_history_is_chosen() {
         ..EndPlan::default()
     };
     let name = |plan: EndPlan, steps| {
-        let (_, report) = plan.history(&stencil, 0.1, steps, &NoCache).unwrap();
+        let (_, report) = plan
+            .history(&stencil, LatticeStep::verlet(0.1), steps, &NoCache)
+            .unwrap();
         if let Some(distance) = report.distance {
             assert!(distance > 0.0 && distance < 1e-7, "{distance:e}");
         }
@@ -176,7 +180,7 @@ fn the_cheapest_history_is_chosen() {
     assert_eq!(name(plan(Some(1e-8)), 20_000), "exponentials");
     // Exact forms grow faster than the one with few states, so that there is one crossing each.
     let forms: Vec<HistoryForm> = (4..24)
-        .map(|k| HistoryCost::estimate(&stencil, 0.1, 1 << k).cheapest(false))
+        .map(|k| HistoryCost::estimate(&stencil, LatticeStep::verlet(0.1), 1 << k).cheapest(false))
         .collect();
     let rank = |form: &HistoryForm| match form {
         HistoryForm::Direct => 0,

@@ -4,4 +4,6 @@ mod bar;
 mod damping;
 mod ends;
 mod exterior;
+mod implicit;
 mod kernels;
+mod strip;

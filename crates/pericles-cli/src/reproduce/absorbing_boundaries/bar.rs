@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pericles::boundary::absorbing::history::BlockedHistory;
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, GhostKernels, LatticeStencil, OuterLayer, Side, factor_kernels,
+    AbsorbingEnd, GhostKernels, LatticeStencil, LatticeStep, OuterLayer, Side, contour_kernels,
     semi_discrete_kernels,
 };
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeCourse, TimeFunction};
@@ -125,7 +125,9 @@ pub(super) fn kernels(kind: Kind, dt: f64, steps: usize) -> Result<GhostKernels,
     let stencil = stencil()?;
     Ok(match kind {
         Kind::SemiDiscrete => semi_discrete_kernels(&stencil, dt, steps),
-        Kind::Discrete => GhostKernels::shift(factor_kernels(&stencil, dt, steps)),
+        Kind::Discrete => {
+            GhostKernels::shift(contour_kernels(&stencil, LatticeStep::verlet(dt), steps))
+        }
     })
 }
 

@@ -8,8 +8,8 @@ use pericles::boundary::absorbing::history::{
     BlockedHistory, DirectHistory, ExponentialHistory, History, HistoryCost,
 };
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, OuterLayer,
-    Side, factor_kernels,
+    AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
+    OuterLayer, Side, contour_kernels,
 };
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
@@ -94,8 +94,9 @@ fn constant(_: f64) -> f64 {
     3.0
 }
 
-/// Direct sums of more steps take minutes.
+/// Direct sums of more steps take long, and minutes beyond.
 const MOST_DIRECT: usize = 2048;
+const MOST_DIRECT_LONG: usize = 8192;
 /// Steps of the test for growth.
 const ENDLESS: usize = 1_000_000;
 
@@ -203,7 +204,7 @@ fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     for case in &CASES {
         let long = if context.full { case.long } else { &[] };
         for &steps in case.steps.iter().chain(long) {
-            rows.extend(compared(case, steps)?);
+            rows.extend(compared(case, steps, context.full)?);
         }
     }
     if context.full {
@@ -213,7 +214,7 @@ fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// The ways to the same displacements, one after the other.
-fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
+fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, CliError> {
     let stencil = case.stencil()?;
     let label = |what: &str| format!("{}, N = {steps}: {what}", case.name);
     let time = |what: &str, seconds: f64| Row::new(label(what), "s", Some(seconds));
@@ -232,7 +233,8 @@ fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
     ];
 
     let began = Instant::now();
-    let kernels = GhostKernels::shift(factor_kernels(&stencil, case.dt, steps));
+    let step = LatticeStep::verlet(case.dt);
+    let kernels = GhostKernels::shift(contour_kernels(&stencil, step, steps));
     let seconds_kernels = began.elapsed().as_secs_f64();
     let blocked = case.with_ends(steps, || BlockedHistory::new(kernels.clone()))?;
     let mega = |bytes: usize| format!("{:.2} MB for both ends", 1e-6 * bytes as f64);
@@ -245,7 +247,8 @@ fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
     );
     let error = apart(&blocked.u);
     rows.push(Row::new(label("by blocks, error"), "", Some(error)).within(0.0, 1e-12));
-    if steps <= MOST_DIRECT {
+    let most = if full { MOST_DIRECT_LONG } else { MOST_DIRECT };
+    if steps <= most {
         let direct = case.with_ends(steps, || DirectHistory::new(kernels.clone()))?;
         rows.push(time("direct sums, kernels cached", direct.seconds).note(mega(direct.bytes)));
         let error = apart(&direct.u);
@@ -253,7 +256,12 @@ fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
     }
 
     let began = Instant::now();
-    let fit = ExponentialKernels::fit(&stencil, case.dt, steps, case.tolerance);
+    let fit = ExponentialKernels::fit(
+        &stencil,
+        LatticeStep::verlet(case.dt),
+        steps,
+        case.tolerance,
+    );
     let seconds_fit = began.elapsed().as_secs_f64();
     match fit {
         Ok(fit) => {
@@ -279,7 +287,7 @@ fn compared(case: &Case, steps: usize) -> Result<Vec<Row>, CliError> {
         }
         Err(error) => return Err(PericlesError::from(error).into()),
     }
-    let form = HistoryCost::estimate(&stencil, case.dt, steps).cheapest(false);
+    let form = HistoryCost::estimate(&stencil, step, steps).cheapest(false);
     rows.push(Row::new(label("chosen"), "", None).note(format!("{form:?}")));
     Ok(rows)
 }
@@ -289,7 +297,8 @@ fn endless(case: &Case) -> Result<Vec<Row>, CliError> {
     let case = Case { dt: 0.249, ..*case };
     let stencil = case.stencil()?;
     let began = Instant::now();
-    let kernels = GhostKernels::shift(factor_kernels(&stencil, case.dt, ENDLESS));
+    let step = LatticeStep::verlet(case.dt);
+    let kernels = GhostKernels::shift(contour_kernels(&stencil, step, ENDLESS));
     let seconds_kernels = began.elapsed().as_secs_f64();
     let made = case.with_ends(ENDLESS, || BlockedHistory::new(kernels.clone()))?;
     let largest = made.u.iter().fold(0.0, |a: f64, u| a.max(u.abs()));

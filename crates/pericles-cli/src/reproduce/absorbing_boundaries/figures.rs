@@ -54,7 +54,8 @@ pub(super) fn homogeneous(context: &Context<'_>) -> Result<(), CliError> {
         .map(|i| (i as f64 - HALF as f64) * SPACING)
         .collect();
     let mut chart = LineChart::new(Axis::new("x", ""), Axis::new("u", ""))
-        .title("a bell in a bar with absorbing ends");
+        .title("a bell in a bar with absorbing ends")
+        .key_beside();
     for (t, state) in times.iter().zip(&states) {
         chart = chart.curve(Curve::line(format!("t = {t}"), &x, &state.u));
     }
@@ -65,7 +66,8 @@ pub(super) fn homogeneous(context: &Context<'_>) -> Result<(), CliError> {
 pub(super) fn interfaces(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let betas = [1.0, 0.5, 0.1];
     let mut chart = LineChart::new(Axis::new("t", ""), Axis::new("u", ""))
-        .title("displacement at x = 0 between interfaces of stiffness β");
+        .title("displacement at x = 0 between interfaces of stiffness β")
+        .key_beside();
     let mut left = Vec::new();
     for beta in betas {
         let [middle] = histories(&Bar::infinite(beta), [HALF], 60.0)?;
@@ -100,6 +102,7 @@ pub(super) fn seismic(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     if let Some(path) = context.figure("seismic.png") {
         LineChart::new(Axis::new("t", ""), Axis::new("u", ""))
             .title("a wavelet from x = 0")
+            .key_beside()
             .curve(Curve::line("absorbing end", &left.t, &left.u))
             .curve(Curve::line("free end", &right.t, &right.u))
             .write(path)?;

@@ -8,6 +8,8 @@ mod bar;
 mod cost;
 mod figures;
 mod layer;
+mod midpoint;
+mod strip;
 mod table_1;
 mod tables;
 
@@ -16,7 +18,7 @@ use super::Study;
 const PAPER: &str = "Ji, Pang, Zhang, Yang, Perdikaris, Exact artificial boundary conditions of 1D semi-discretized peridynamics";
 
 /// The topic's studies.
-pub(super) const STUDIES: [Study; 8] = [
+pub(super) const STUDIES: [Study; 10] = [
     table_1::TABLE_1,
     tables::TABLE_2,
     tables::TABLE_3,
@@ -25,4 +27,6 @@ pub(super) const STUDIES: [Study; 8] = [
     tables::TABLE_6,
     cost::COST,
     layer::DAMPING_LAYER,
+    midpoint::MIDPOINT,
+    strip::STRIP,
 ];

@@ -1,29 +1,30 @@
 //! Kernels kept from run to run.
 
-use super::{GhostKernels, LatticeStencil, factor_kernels};
+use super::{GhostKernels, LatticeStencil, LatticeStep, contour_kernels};
 use crate::archive::{Archive, Values};
 use crate::cache::{Cache, Key};
 
-/// The kernels of [`factor_kernels`], from the cache if they are there, and checked: a set of arrays that does not satisfy its own equations is computed
+/// The kernels of [`contour_kernels`], from the cache if they are there, and checked: a set of arrays that does not satisfy its own equations is computed
 /// again.
 pub fn cached_kernels(
     stencil: &LatticeStencil,
-    dt: f64,
+    step: LatticeStep,
     steps: usize,
     cache: &dyn Cache,
 ) -> GhostKernels {
-    let key = Key::new("absorbing-kernels-1")
+    let key = Key::new("absorbing-kernels-3")
         .f64s(stencil.weights())
-        .f64s(&[dt])
+        .f64s(&[step.dt])
+        .u64s(&[step.scheme as u64])
         .u64s(&[steps as u64]);
     let reach = stencil.reach();
     let stored = cache
         .load(&key)
         .and_then(|arrays| read(&arrays, reach, steps));
-    if let Some(series) = stored.filter(|series| holds(series, stencil, dt)) {
+    if let Some(series) = stored.filter(|series| holds(series, stencil, step.dt)) {
         return GhostKernels::shift(series);
     }
-    let series = factor_kernels(stencil, dt, steps);
+    let series = contour_kernels(stencil, step, steps);
     let mut arrays = Archive::default();
     for (k, series) in series.iter().enumerate() {
         arrays.put(name(k), Values::F64(series.clone()));

@@ -1,7 +1,7 @@
-//! The end of a bar that lets waves leave.
+//! The end of a bar that lets waves leave, stepped by velocity Verlet.
 
 use super::history::History;
-use super::{AbsorbingError, FreeWave, OuterLayer};
+use super::{AbsorbingError, FreeWave, LatticeScheme, OuterLayer};
 use crate::archive::{Archive, Saved, Values};
 use crate::boundary::{Boundary, Exchange};
 use crate::error::Result;
@@ -31,9 +31,6 @@ pub struct AbsorbingEnd {
 }
 
 impl AbsorbingEnd {
-    /// The scheme that the ends are made for.
-    pub const SCHEME: &str = "velocity-verlet";
-
     /// An end whose history gives the ghosts of the layer.
     ///
     /// # Errors
@@ -86,12 +83,8 @@ impl AbsorbingEnd {
             }
         }
         std::mem::swap(&mut self.pull, &mut self.pull_before);
-        let weights = self.layer.stencil.weights();
-        for (p, pull) in self.pull.iter_mut().enumerate() {
-            // Outer point p + 1 spacings from ghost 0 reaches ghosts 0 … K − p − 1.
-            let bonds = weights[p..].iter().zip(&self.ghosts);
-            *pull = bonds.map(|(a, ghost)| a * (ghost - self.own[p])).sum();
-        }
+        self.layer
+            .pull_into(&self.own, &self.ghosts, &mut self.pull);
         // The history is that of what the body sends out.
         for (k, (own, beyond)) in self.free.iter().flat_map(FreeWave::outer).enumerate() {
             self.own[k] -= own;
@@ -102,10 +95,6 @@ impl AbsorbingEnd {
             self.started = true;
         }
         self.history.push(&self.own, &self.ghosts);
-    }
-
-    fn name(&self) -> String {
-        format!("absorbing/{}", self.layer.side.name())
     }
 }
 
@@ -130,8 +119,8 @@ impl Boundary for AbsorbingEnd {
         }
     }
 
-    fn scheme(&self) -> Option<&'static str> {
-        Some(Self::SCHEME)
+    fn schemes(&self) -> &'static [&'static str] {
+        LatticeScheme::VelocityVerlet.names()
     }
 
     fn steps(&self) -> Option<u64> {
@@ -141,7 +130,7 @@ impl Boundary for AbsorbingEnd {
 
 impl Saved for AbsorbingEnd {
     fn save(&self, archive: &mut Archive) {
-        let name = self.name();
+        let name = self.layer.name();
         archive.put(format!("{name}/pull"), Values::F64(self.pull.clone()));
         self.history.save(&name, archive);
         if let Some(free) = &self.free {
@@ -150,7 +139,7 @@ impl Saved for AbsorbingEnd {
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let name = self.name();
+        let name = self.layer.name();
         archive.f64_into(&format!("{name}/pull"), &mut self.pull)?;
         self.history.restore(&name, archive)?;
         if let Some(free) = &mut self.free {

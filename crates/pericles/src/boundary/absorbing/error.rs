@@ -1,5 +1,24 @@
 //! What an absorbing end refuses.
 
+/// The names with commas and an "or".
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_string(),
+        [all @ .., last] => format!("{} or {last}", all.join(", ")),
+    }
+}
+
+/// The reason behind a scheme that one may expect to work.
+fn why_not(scheme: &str) -> &'static str {
+    match scheme {
+        "trigonometric" => {
+            ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
+        }
+        _ => "",
+    }
+}
+
 /// Why there can be no absorbing end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -54,6 +73,14 @@ pub enum AbsorbingError {
     NotABar {
         /// Its dimension.
         dimension: usize,
+    },
+    /// A body that is no strip whose exterior could be found by Fourier modes.
+    #[error(
+        "an absorbing end of a strip needs a homogeneous plate that is periodic along y: {reason}"
+    )]
+    NotAStrip {
+        /// What it is or has.
+        reason: &'static str,
     },
     /// Points that do not follow each other at equal distances.
     #[error(
@@ -177,12 +204,32 @@ pub enum AbsorbingError {
         largest: f64,
     },
     /// A scheme that the history is not made for.
-    #[error("an absorbing end is made for {needed}, not for {scheme}")]
+    #[error(
+        "{what} is made for {}, not for {scheme}{}",
+        listed(needed),
+        why_not(scheme)
+    )]
     Scheme {
+        /// The boundary.
+        what: &'static str,
         /// The scheme of the run.
         scheme: &'static str,
-        /// The scheme of the end.
-        needed: &'static str,
+        /// The schemes of the boundary.
+        needed: &'static [&'static str],
+    },
+    /// What needs an explicit scheme.
+    #[error(
+        "{what} needs scheme = \"velocity-verlet\": its kernels are those of an explicit scheme"
+    )]
+    VerletOnly {
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// A step that is no step.
+    #[error("the time step is {dt:e} s: it must be positive")]
+    BadStep {
+        /// The step, s.
+        dt: f64,
     },
     /// A run longer than the kernels.
     #[error(

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! Every h_m starts with w, so the coefficient of w^j on the right needs those before j only: the series are computed one coefficient after the other, the
-//! products by blocks with Fourier transforms (relaxed multiplication, van der Hoeven 2002). No roots, no contour, no aliasing: O(K² N log N + K N log² N), exact
-//! to round-off. Ji, Pang, Zhang, Yang & Perdikaris march the exterior instead.
+//! products by blocks with Fourier transforms (relaxed multiplication, van der Hoeven 2002). No roots, no contour, no aliasing: O(K² N log N + K N log² N). Rounding errors of the
+//! coefficients add up at low frequencies: runs are exact to 1.2e-13 after 8192 steps and 2e-12 after 32 768 (K = 7, dt = 0.01), which [`super::contour_kernels`] avoids. Ji, Pang, Zhang, Yang & Perdikaris march the exterior instead.
 
 use realfft::num_complex::Complex;
 
@@ -23,13 +23,22 @@ pub fn factor_kernels(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<Ve
     Factor::new(stencil, dt, steps).run()
 }
 
+/// The rounded sum of some numbers, and the sum of its rounding errors (Knuth).
+fn exact_sum(numbers: &[f64]) -> [f64; 2] {
+    numbers.iter().fold([0.0; 2], |[sum, error], x| {
+        let next = sum + x;
+        let taken = next - sum;
+        [next, error + (sum - (next - taken)) + (x - taken)]
+    })
+}
+
 struct Factor {
     reach: usize,
     length: usize,
     /// dt² a_k.
     weights: Vec<f64>,
-    /// 2 s.
-    pull: f64,
+    /// 2 s, and what its rounding left.
+    pull: [f64; 2],
     h: Vec<Vec<f64>>,
     g: Vec<f64>,
     /// The last difference of g.
@@ -49,11 +58,12 @@ impl Factor {
         let length = steps + 1;
         let levels = Levels::new(length);
         let series = || vec![0.0; length];
+        let weights: Vec<f64> = stencil.weights().iter().map(|a| dt * dt * a).collect();
         Self {
             reach,
             length,
-            weights: stencil.weights().iter().map(|a| dt * dt * a).collect(),
-            pull: 2.0 * dt * dt * stencil.sum(),
+            pull: exact_sum(&weights).map(|s| 2.0 * s),
+            weights,
             h: (0..reach).map(|_| series()).collect(),
             g: series(),
             slope: 0.0,
@@ -88,7 +98,9 @@ impl Factor {
         // By increments: 2 g[j − 1] − g[j − 2] would lose digits for small steps.
         let before = if j > 0 { self.g[j - 1] } else { 0.0 };
         let source = if j > 0 { self.sums[0][j] } else { 1.0 };
-        self.slope += source - self.pull * before;
+        // The weights' sum to the last digit: a lattice with a little stiffness to the ground returns an error that grows with the square of time.
+        let [pull, rest] = self.pull;
+        self.slope += source - pull * before - rest * before;
         self.g[j] = before + self.slope;
     }
 

@@ -5,18 +5,19 @@ use std::f64::consts::PI;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
-use super::contour::verlet_symbol;
 use super::loewner::Loewner;
 use super::roots::{expanded, factor_at};
-use super::{AbsorbingError, LatticeStencil};
+use super::{AbsorbingError, LatticeStencil, LatticeStep};
 
 type C = Complex<f64>;
 
-/// `F_n^m[j]` ≈ Re Σ_p a_{n,p} b_{m,p} λ_p^{j−1}, j ≥ 1.
+/// `F_n^m[j]` ≈ Re Σ_p a_{n,p} b_{m,p} λ_p^{j−1}, j ≥ 1, and `F_n^m[0]` as it is.
 #[derive(Debug, Clone)]
 pub struct ExponentialKernels {
     pub(super) reach: usize,
     pub(super) terms: Vec<Exponential>,
+    /// `F_n^m[0]`, m running faster.
+    pub(super) present: Vec<f64>,
     /// Largest error of a kernel's generating function on the samples: of a ghost's displacement by unit displacements of all outer points.
     pub residual: f64,
 }
@@ -32,11 +33,13 @@ pub(super) struct Exponential {
 }
 
 /// Directions per sample point that are tried: kernels with many branch points need more.
-const DIRECTIONS: [usize; 3] = [1, 2, 4];
+const DIRECTIONS: [usize; 4] = [1, 2, 4, 8];
 /// Singular values kept, as shares of the tolerance.
-const SHARES: [f64; 3] = [1e-2, 1e-3, 1e-5];
+const SHARES: [f64; 2] = [1e-3, 1e-5];
+/// What crosses may leave of the smallest singular value kept.
+const LEFT: f64 = 0.1;
 /// More rows and columns than this take minutes.
-pub(super) const MOST_TANGENTS: usize = 900;
+const MOST_TANGENTS: usize = 6000;
 /// A fit of more than this share of its rows is not supported by enough samples.
 const SUPPORTED: f64 = 0.36;
 /// Fits that miss the tolerance by more are not worth refining.
@@ -47,9 +50,9 @@ const ALONG: f64 = 60.0;
 const GRADING: f64 = 0.2;
 
 impl ExponentialKernels {
-    /// A fit for velocity Verlet with the step dt, good for about `steps` steps, whose generating functions miss the exact ones by at most `tolerance`.
+    /// A fit for a scheme and its step, good for about `steps` steps, whose generating functions miss the exact ones by at most `tolerance`.
     ///
-    /// The functions are sampled on the circle |w| = exp(−2/steps), densely about the branch points exp(±iφ), φ = 2 asin(ω dt/2) for every stationary ω of the
+    /// The functions are sampled on the circle |w| = exp(−2/steps), densely about the branch points exp(±iφ), where φ is the phase of a step (2 asin(ω dt/2) for velocity Verlet) for every stationary ω of the
     /// band. Across a branch cut one root of the symbol turns into its reciprocal, so that the subspace of decaying solutions changes by one dimension and the matrix F by rank one:
     /// interpolation along directions (the Loewner framework) finds as many exponentials as the band has branches, each with a residue of rank one. The singular
     /// values say how many are needed; their `give` is then found again by real least squares. The first fit that holds the tolerance is taken.
@@ -60,7 +63,7 @@ impl ExponentialKernels {
     /// [`AbsorbingError::Fit`] if none does; a tolerance out of range.
     pub fn fit(
         stencil: &LatticeStencil,
-        dt: f64,
+        step: LatticeStep,
         steps: usize,
         tolerance: f64,
     ) -> Result<Self, AbsorbingError> {
@@ -68,14 +71,15 @@ impl ExponentialKernels {
             return Err(AbsorbingError::Tolerance { value: tolerance });
         }
         let reach = stencil.reach();
-        let samples = Samples::new(stencil, dt, steps);
+        let samples = Samples::new(stencil, step, steps);
         let (mut best, mut fits) = (f64::INFINITY, 0);
         for directions in DIRECTIONS {
             if samples.points.len() * directions > MOST_TANGENTS {
                 break;
             }
-            let loewner = Loewner::new(&samples.points, &samples.values, directions);
             for share in SHARES {
+                let least = LEFT * share * tolerance;
+                let loewner = Loewner::new(&samples.points, &samples.values, directions, least);
                 let order = loewner.rank(share * tolerance);
                 if order as f64 > SUPPORTED * loewner.size() as f64 {
                     break;
@@ -92,6 +96,7 @@ impl ExponentialKernels {
                     return Ok(Self {
                         reach,
                         terms,
+                        present: samples.present.iter().map(|x| x.re).collect(),
                         residual,
                     });
                 }
@@ -111,7 +116,12 @@ impl ExponentialKernels {
 
     /// `F_n^m[j]` for j = 0 … steps, m running faster: for comparison with exact kernels.
     pub fn series(&self, steps: usize) -> Vec<Vec<f64>> {
-        let mut series = vec![vec![0.0; steps + 1]; self.reach * self.reach];
+        let start = |first: &f64| {
+            let mut series = vec![0.0; steps + 1];
+            series[0] = *first;
+            series
+        };
+        let mut series: Vec<Vec<f64>> = self.present.iter().map(start).collect();
         for term in &self.terms {
             for (n, a) in term.give.iter().enumerate() {
                 for (m, b) in term.take.iter().enumerate() {
@@ -127,23 +137,30 @@ impl ExponentialKernels {
     }
 }
 
-/// The matrices F(w)/w, whose exponentials are λ^j, on points of the upper half circle.
+/// The matrices (F(w) − F(0))/w, whose exponentials are λ^j, on points of the upper half circle.
 struct Samples {
+    /// F(0)
+    present: Vec<C>,
     points: Vec<C>,
     values: Vec<DMatrix<C>>,
 }
 
 impl Samples {
-    fn new(stencil: &LatticeStencil, dt: f64, steps: usize) -> Self {
+    fn new(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Self {
         let reach = stencil.reach();
-        let points = sample_points(stencil, dt, steps);
+        let points = sample_points(stencil, step, steps);
+        let complex = |x: &f64| C::new(*x, 0.0);
+        let h: Vec<C> = step.present(stencil).iter().map(complex).collect();
+        let present = expanded(&h);
         let value = |w: &C| {
-            let full = expanded(&factor_at(stencil, verlet_symbol(*w, dt)));
-            DMatrix::from_row_slice(reach, reach, &full) / *w
+            let full = expanded(&factor_at(stencil, step.symbol(*w)));
+            let past = full.iter().zip(&present).map(|(f, now)| (f - now) / *w);
+            DMatrix::from_row_iterator(reach, reach, past)
         };
         Self {
             values: points.par_iter().map(value).collect(),
             points,
+            present,
         }
     }
 
@@ -248,13 +265,13 @@ fn least_squares(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> DMatrix<f
 }
 
 /// Points of the upper half circle, graded towards the branch points: features on the circle are no finer than its distance from the unit circle.
-fn sample_points(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<C> {
+fn sample_points(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Vec<C> {
     let radius = (-2.0 / steps as f64).exp();
     let finest = 1.0 / steps as f64;
     let branches: Vec<f64> = stencil
         .stationary_frequencies()
         .iter()
-        .map(|omega| 2.0 * (0.5 * omega * dt).min(1.0).asin())
+        .map(|omega| step.phase(*omega))
         .collect();
     let mut points = Vec::new();
     let mut angle = 0.3 * GRADING * finest;
@@ -268,6 +285,6 @@ fn sample_points(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<C> {
 }
 
 /// Sample points of a fit: what its cost depends on.
-pub(super) fn sample_count(stencil: &LatticeStencil, dt: f64, steps: usize) -> usize {
-    sample_points(stencil, dt, steps).len()
+pub(super) fn sample_count(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> usize {
+    sample_points(stencil, step, steps).len()
 }

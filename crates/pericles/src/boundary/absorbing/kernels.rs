@@ -92,6 +92,23 @@ impl GhostKernels {
         }
     }
 
+    /// Adds to the ghosts what they owe to displacements of the same step, those of the body's outer points and of ghosts before them.
+    pub fn settle(&self, own: &[f64], ghosts: &mut [f64]) {
+        let site = |place: usize, ghosts: &[f64]| match self.form {
+            KernelForm::Full => own[place],
+            // Site place + 2 − K.
+            KernelForm::Shift if place + 1 >= self.reach => own[place + 1 - self.reach],
+            KernelForm::Shift => ghosts[self.reach - 2 - place],
+        };
+        for n in 0..self.reach {
+            let terms = self.terms(n);
+            let share: f64 = terms
+                .map(|(place, kernel)| self.series[kernel][0] * site(place, ghosts))
+                .sum();
+            ghosts[n] += share;
+        }
+    }
+
     /// The K² kernels F_n^m: F_{n+1}^m = F_n^1 * h_m + F_n^{m+1} (n counted away from the body), by products of `steps` coefficients. Slow; for tests and
     /// reports.
     pub fn expanded(&self) -> Self {

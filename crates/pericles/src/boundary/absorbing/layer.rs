@@ -142,6 +142,20 @@ impl OuterLayer {
         Ok(layer)
     }
 
+    /// What its end's arrays are called in checkpoints.
+    pub(super) fn name(&self) -> String {
+        format!("absorbing/{}", self.side.name())
+    }
+
+    /// The accelerations of its points, displaced by `own`, by their bonds to the ghosts 0, −1 … beyond.
+    pub(super) fn pull_into(&self, own: &[f64], ghosts: &[f64], pull: &mut [f64]) {
+        for (p, (pull, own)) in pull.iter_mut().zip(own).enumerate() {
+            // A point p + 1 spacings from ghost 0 reaches ghosts 0 … K − p − 1.
+            let bonds = self.stencil.weights()[p..].iter().zip(ghosts);
+            *pull = bonds.map(|(a, ghost)| a * (ghost - own)).sum();
+        }
+    }
+
     /// No bond of the layer can break.
     fn check_lasting(&self, system: &System, no_fail: &[u32]) -> Result<(), AbsorbingError> {
         let held = |i: &usize| no_fail.binary_search(&(*i as u32)).is_ok();

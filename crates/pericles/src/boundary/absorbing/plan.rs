@@ -5,15 +5,16 @@ use super::history::{
     history_distance,
 };
 use super::{
-    AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, cached_kernels,
-    green_functions, green_functions_closed, semi_discrete_kernels, trapezoidal_kernels,
+    AbsorbingError, ExponentialKernels, GhostKernels, LatticeScheme, LatticeStencil, LatticeStep,
+    cached_kernels, green_functions, green_functions_closed, semi_discrete_kernels,
+    trapezoidal_kernels,
 };
 use crate::cache::Cache;
 
 /// Which lattice the ends stand for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum KernelMethod {
-    /// That stepped by velocity Verlet: exact for the scheme.
+    /// That stepped as the body is: exact for the scheme.
     #[default]
     Discrete,
     /// That in continuous time, by the trapezoidal rule: second order, the paper's.
@@ -69,30 +70,34 @@ impl EndPlan {
     /// Of a fit that no tolerance is given for.
     pub const TOLERANCE: f64 = 1e-9;
 
-    /// Makes the history of an end for N steps; exact kernels come from the cache. A fit that is tried because it would be cheaper gives way to blocks if it misses
+    /// Makes the history of an end for N steps of a scheme; exact kernels come from the cache. A fit that is tried because it would be cheaper gives way to blocks if it misses
     /// the tolerance.
     ///
     /// # Errors
     /// [`AbsorbingError::Fit`] and [`AbsorbingError::Tolerance`] where exponentials are asked for, or where they are verified and farther from the exact kernels than ten
-    /// times the tolerance.
+    /// times the tolerance. [`AbsorbingError::VerletOnly`] for continuous-time kernels with another scheme.
     pub fn history(
         &self,
         stencil: &LatticeStencil,
-        dt: f64,
+        step: LatticeStep,
         steps: usize,
         cache: &dyn Cache,
     ) -> Result<(Box<dyn History>, EndReport), AbsorbingError> {
+        if self.method != KernelMethod::Discrete && step.scheme != LatticeScheme::VelocityVerlet {
+            let what = self.method.name();
+            return Err(AbsorbingError::VerletOnly { what });
+        }
         let form = self.form.unwrap_or_else(|| {
             let exact = self.tolerance.is_none() || self.method != KernelMethod::Discrete;
-            HistoryCost::estimate(stencil, dt, steps).cheapest(exact)
+            HistoryCost::estimate(stencil, step, steps).cheapest(exact)
         });
         if form == HistoryForm::Exponentials {
-            match self.exponentials(stencil, dt, steps, cache) {
+            match self.exponentials(stencil, step, steps, cache) {
                 Err(AbsorbingError::Fit { .. }) if self.form.is_none() => {}
                 made => return made,
             }
         }
-        let (kernels, growth) = self.kernels(stencil, dt, steps, cache);
+        let (kernels, growth) = self.kernels(stencil, step, steps, cache);
         let history: Box<dyn History> = match form {
             HistoryForm::Direct => Box::new(DirectHistory::new(kernels)),
             _ => Box::new(BlockedHistory::new(kernels)),
@@ -112,12 +117,13 @@ impl EndPlan {
     fn kernels(
         &self,
         stencil: &LatticeStencil,
-        dt: f64,
+        step: LatticeStep,
         steps: usize,
         cache: &dyn Cache,
     ) -> (GhostKernels, Option<f64>) {
+        let dt = step.dt;
         match self.method {
-            KernelMethod::Discrete => (cached_kernels(stencil, dt, steps, cache), None),
+            KernelMethod::Discrete => (cached_kernels(stencil, step, steps, cache), None),
             KernelMethod::SemiDiscrete => (semi_discrete_kernels(stencil, dt, steps), None),
             KernelMethod::Historical => {
                 let closed = green_functions_closed(stencil, dt, steps);
@@ -130,17 +136,17 @@ impl EndPlan {
     fn exponentials(
         &self,
         stencil: &LatticeStencil,
-        dt: f64,
+        step: LatticeStep,
         steps: usize,
         cache: &dyn Cache,
     ) -> Result<(Box<dyn History>, EndReport), AbsorbingError> {
         let tolerance = self.tolerance.unwrap_or(Self::TOLERANCE);
-        let fit = ExponentialKernels::fit(stencil, dt, steps, tolerance)?;
+        let fit = ExponentialKernels::fit(stencil, step, steps, tolerance)?;
         let (terms, residual) = (fit.terms(), fit.residual);
         let mut history = ExponentialHistory::new(fit);
         let mut distance = None;
         if self.verify {
-            let mut exact = BlockedHistory::new(cached_kernels(stencil, dt, steps, cache));
+            let mut exact = BlockedHistory::new(cached_kernels(stencil, step, steps, cache));
             let apart = history_distance([&mut history, &mut exact], stencil.reach(), steps);
             // Sums over time of an error whose spectrum holds the tolerance.
             if apart.is_nan() || apart > 10.0 * tolerance {

@@ -1,42 +1,175 @@
-//! The factor of the symbol at a complex frequency, from its roots.
+//! The factor of the symbol at complex frequencies, from its roots and along curves.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 use super::LatticeStencil;
 
 type C = Complex<f64>;
 
 /// h_1 … h_K at s² → σ: (−1)^{m+1} e_m of the roots of D(z) = σ + 2Σa_k − Σ a_k (z^k + z^{−k}) inside the unit circle.
-///
-/// With x = (z + 1/z)/2 the symbol is a Chebyshev series in x, whose zeros are the eigenvalues of its colleague matrix (Good 1961); two Newton steps on the
-/// autocorrelation c P(z) P(1/z) = D then give full accuracy.
 pub(super) fn factor_at(stencil: &LatticeStencil, sigma: C) -> Vec<C> {
-    let (reach, a) = (stencil.reach(), stencil.weights());
-    let centre = sigma + 2.0 * stencil.sum();
-    // P(z) = Π (1 − z_j z).
-    let mut factor = vec![C::new(1.0, 0.0)];
-    for x in chebyshev_zeros(centre, a) {
-        let root = (x * x - 1.0).sqrt();
-        let (one, other) = (x + root, x - root);
-        // The larger one has no cancellation; the other is its reciprocal.
-        let z = if one.norm_sqr() > other.norm_sqr() {
-            one.inv()
-        } else {
-            other.inv()
+    Factor::at(stencil, sigma).kernels()
+}
+
+/// c^½ (1, −h_1 … −h_K), the solution b of Σ_j b_j b_{j+k} = (σ + 2Σa, −a_1 … −a_K) whose zeros lie outside the unit circle.
+pub(super) struct Factor<'a> {
+    stencil: &'a LatticeStencil,
+    b: Vec<C>,
+    before: Option<Vec<C>>,
+    system: Vec<C>,
+    step: Vec<C>,
+}
+
+/// A correction so small, relative to the factor, leaves an error of its square.
+const SMALL: f64 = 1e-9;
+/// Corrections after which a curve is left.
+const CORRECTIONS: usize = 6;
+
+impl<'a> Factor<'a> {
+    /// With x = (z + 1/z)/2 the symbol is a Chebyshev series in x, whose zeros are the eigenvalues of its colleague matrix (Good 1961); two Newton steps on the
+    /// autocorrelation then give full accuracy.
+    pub(super) fn at(stencil: &'a LatticeStencil, sigma: C) -> Self {
+        let reach = stencil.reach();
+        let mut factor = Self {
+            stencil,
+            b: vec![C::default(); reach + 1],
+            before: None,
+            system: vec![C::default(); (reach + 1) * (reach + 1)],
+            step: vec![C::default(); reach + 1],
         };
-        factor.push(C::default());
-        for k in (1..factor.len()).rev() {
-            let below = factor[k - 1];
-            factor[k] -= z * below;
+        factor.restart(sigma);
+        factor
+    }
+
+    fn restart(&mut self, sigma: C) {
+        let (reach, a) = (self.stencil.reach(), self.stencil.weights());
+        let centre = sigma + 2.0 * self.stencil.sum();
+        // P(z) = Π (1 − z_j z).
+        let mut product = vec![C::new(1.0, 0.0)];
+        for x in chebyshev_zeros(centre, a) {
+            let root = (x * x - 1.0).sqrt();
+            let (one, other) = (x + root, x - root);
+            // The larger one has no cancellation; the other is its reciprocal.
+            let z = if one.norm_sqr() > other.norm_sqr() {
+                one.inv()
+            } else {
+                other.inv()
+            };
+            product.push(C::default());
+            for k in (1..product.len()).rev() {
+                let below = product[k - 1];
+                product[k] -= z * below;
+            }
+        }
+        // The coefficient of z^K is −a_K = c · product[K].
+        let scale = (-C::new(a[reach - 1], 0.0) / product[reach]).sqrt();
+        self.b = product.iter().map(|x| x * scale).collect();
+        self.before = None;
+        for _ in 0..2 {
+            self.correct(sigma);
         }
     }
-    // The coefficient of z^K is −a_K = c · factor[K].
-    let scale = (-C::new(a[reach - 1], 0.0) / factor[reach]).sqrt();
-    let mut b = DVector::from_iterator(reach + 1, factor.iter().map(|x| x * scale));
-    for _ in 0..2 {
-        polish(&mut b, centre, a);
+
+    /// Goes on to a σ nearby: from the line through the last two factors by Newton's method, from the roots where that does not converge.
+    pub(super) fn follow(&mut self, sigma: C) {
+        let last = self.b.clone();
+        if let Some(before) = &self.before {
+            for (b, before) in self.b.iter_mut().zip(before) {
+                *b += *b - before;
+            }
+        }
+        let converged = (0..CORRECTIONS).any(|_| self.correct(sigma) < SMALL);
+        if converged {
+            self.before = Some(last);
+        } else {
+            self.restart(sigma);
+        }
     }
-    (1..=reach).map(|m| -b[m] / b[0]).collect()
+
+    /// h_1 … h_K.
+    pub(super) fn kernels(&self) -> Vec<C> {
+        let mut kernels = vec![C::default(); self.stencil.reach()];
+        self.kernels_into(&mut kernels);
+        kernels
+    }
+
+    /// The same into a buffer.
+    pub(super) fn kernels_into(&self, kernels: &mut [C]) {
+        let first = -self.b[0].inv();
+        for (h, b) in kernels.iter_mut().zip(&self.b[1..]) {
+            *h = b * first;
+        }
+    }
+
+    /// A Newton step; its size relative to the factor. At a branch point, where there is no unique solution, the factor stands as it is.
+    ///
+    /// In place of the equation for k = 0 stands the sum of all, (Σ b)² = D(1) = σ: the other would lose the digits of σ beside 2Σa, and an exterior with a little stiffness to the ground returns an
+    /// error that grows with the square of time.
+    fn correct(&mut self, sigma: C) -> f64 {
+        let n = self.b.len();
+        let (b, a) = (&self.b, self.stencil.weights());
+        let sum: C = b.iter().sum();
+        self.step[0] = sigma - sum * sum;
+        self.system[..n].fill(2.0 * sum);
+        for k in 1..n {
+            let product: C = b.iter().zip(&b[k..]).map(|(x, y)| x * y).sum();
+            self.step[k] = -a[k - 1] - product;
+            let row = &mut self.system[k * n..(k + 1) * n];
+            for (i, entry) in row.iter_mut().enumerate() {
+                let above = b.get(i + k).copied().unwrap_or_default();
+                let below = if i >= k { b[i - k] } else { C::default() };
+                *entry = above + below;
+            }
+        }
+        if !solve(&mut self.system, &mut self.step) {
+            return f64::INFINITY;
+        }
+        let square = |x: &[C]| x.iter().map(C::norm_sqr).sum::<f64>();
+        let size = (square(&self.step) / square(&self.b)).sqrt();
+        if size.is_finite() {
+            for (b, step) in self.b.iter_mut().zip(&self.step) {
+                *b += step;
+            }
+        }
+        size
+    }
+}
+
+/// Solves a small system by elimination with row pivots; the matrix, row by row, is used up. False if it is singular.
+fn solve(matrix: &mut [C], x: &mut [C]) -> bool {
+    let n = x.len();
+    for p in 0..n {
+        let size = |i: &usize| matrix[i * n + p].norm_sqr();
+        let pivot = (p..n).max_by(|i, j| size(i).total_cmp(&size(j)));
+        let Some(pivot) = pivot.filter(|i| size(i) > 0.0) else {
+            return false;
+        };
+        if pivot != p {
+            x.swap(pivot, p);
+            let (above, below) = matrix.split_at_mut(pivot * n);
+            above[p * n + p..(p + 1) * n].swap_with_slice(&mut below[p..n]);
+        }
+        let inverse = matrix[p * n + p].inv();
+        let (above, below) = matrix.split_at_mut((p + 1) * n);
+        let row = &above[p * n + p + 1..];
+        for (i, other) in below.chunks_exact_mut(n).enumerate() {
+            let factor = other[p] * inverse;
+            for (entry, of_pivot) in other[p + 1..].iter_mut().zip(row) {
+                *entry -= factor * of_pivot;
+            }
+            let pivot = x[p];
+            x[p + 1 + i] -= factor * pivot;
+        }
+    }
+    for p in (0..n).rev() {
+        let known: C = matrix[p * n + p + 1..(p + 1) * n]
+            .iter()
+            .zip(&x[p + 1..])
+            .map(|(a, x)| a * x)
+            .sum();
+        x[p] = (x[p] - known) / matrix[p * n + p];
+    }
+    true
 }
 
 /// The zeros of centre − 2 Σ a_k T_k(x).
@@ -70,35 +203,6 @@ fn chebyshev_zeros(centre: C, a: &[f64]) -> Vec<C> {
 pub(super) fn eigenvalues(matrix: DMatrix<C>) -> Vec<C> {
     let (_, triangle) = matrix.schur().unpack();
     triangle.diagonal().iter().copied().collect()
-}
-
-/// A Newton step on Σ_j b_j b_{j+k} = d_k with d = (centre, −a_1 … −a_K).
-fn polish(b: &mut DVector<C>, centre: C, a: &[f64]) {
-    let n = b.len();
-    let mut residual = DVector::<C>::zeros(n);
-    let mut jacobian = DMatrix::<C>::zeros(n, n);
-    for k in 0..n {
-        let wanted = if k == 0 {
-            centre
-        } else {
-            C::new(-a[k - 1], 0.0)
-        };
-        residual[k] = (0..n - k).map(|j| b[j] * b[j + k]).sum::<C>() - wanted;
-        for i in 0..n {
-            if i + k < n {
-                jacobian[(k, i)] += b[i + k];
-            }
-            if i >= k {
-                jacobian[(k, i)] += b[i - k];
-            }
-        }
-    }
-    // At a branch point, where there is no unique solution, the roots stand as they are.
-    if let Some(step) = jacobian.lu().solve(&residual)
-        && step.iter().all(|x| x.re.is_finite() && x.im.is_finite())
-    {
-        *b -= step;
-    }
 }
 
 /// F_n^m from h: F_{n+1}^m = F_n^1 h_m + F_n^{m+1}; m runs faster.

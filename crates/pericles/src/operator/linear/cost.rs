@@ -103,7 +103,7 @@ pub(super) fn one_transform(nodes: usize, reach: usize, periodic: bool) -> Piece
 }
 
 /// The least even number from `least` on (1 stays 1) without prime factors above 5, which transforms are fast for.
-pub(super) fn smooth_length(least: usize) -> usize {
+pub(crate) fn smooth_length(least: usize) -> usize {
     if least <= 1 {
         return 1;
     }

@@ -65,6 +65,7 @@ mod wanted;
 pub use comparison::CostComparison;
 pub use convolution_force::ConvolutionForce;
 pub use cost::Route;
+pub(crate) use cost::smooth_length;
 pub(crate) use fourier::LineTransform;
 pub use gauss_force::GaussForce;
 pub use spectral::{SpectralCubicForce, SpectralForce, Symbol};

@@ -1,5 +1,6 @@
 //! Implicit schemes of order two: the midpoint and the trapezoidal rule.
 
+mod ends;
 mod solver;
 
 use rayon::prelude::*;
@@ -7,7 +8,7 @@ use rayon::prelude::*;
 pub use solver::LinearSolver;
 use solver::StepSolver;
 
-use super::{Integrator, State, refuse_changes_of_support};
+use super::{Integrator, State, refuse_released_points};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
@@ -32,7 +33,7 @@ pub enum ImplicitRule {
 ///
 /// The unknown is w, half the increment of the displacement: (ρ + τ²/4 K) w = ρ [τ/2 v + τ²/4 (a + Δb/ρ)], symmetric and positive definite. Linear systems are solved by
 /// Cholesky's factor, kept from step to step, or by conjugate gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent, to a relative residual of 1e-14, or what
-/// rounding allows up to 1e-12. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
+/// rounding allows up to 1e-12. Absorbing ends ([`MidpointEnd`](crate::boundary::absorbing::MidpointEnd)) add a corner to the matrix and what they remember to the right-hand side. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
 pub struct Implicit {
     rule: ImplicitRule,
     /// Of linear bodies.
@@ -61,7 +62,7 @@ impl Implicit {
     /// A scheme for a body.
     ///
     /// # Errors
-    /// Boundaries that have a memory.
+    /// Boundaries that are not made for implicit schemes; points that are let go.
     pub fn new(rule: ImplicitRule, system: &System) -> Result<Self> {
         Self::with_solver(rule, LinearSolver::default(), system)
     }
@@ -71,11 +72,8 @@ impl Implicit {
     /// # Errors
     /// As [`Implicit::new`].
     pub fn with_solver(rule: ImplicitRule, solver: LinearSolver, system: &System) -> Result<Self> {
-        refuse_changes_of_support(
-            rule.name(),
-            "ghosts beyond an absorbing end would depend on the new step itself, which the solver does not know of; use velocity-verlet",
-            system,
-        )?;
+        refuse_explicit_boundaries(rule.name(), system)?;
+        refuse_released_points(rule.name(), system)?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         Ok(Self {
@@ -113,7 +111,7 @@ impl Implicit {
         solver: &mut StepSolver,
         system: &System,
         t: [f64; 2],
-        [v, a]: [&[f64]; 2],
+        [u, v, a]: [&[f64]; 3],
     ) -> Result<()> {
         let tau = t[1] - t[0];
         let quarter = 0.25 * tau * tau;
@@ -127,7 +125,12 @@ impl Implicit {
         each(&mut self.right, &self.change, |now, before| {
             *now = weight * quarter * (*now - before);
         });
-        each(&mut self.right, a, |right, a| *right += quarter * a);
+        // Boundaries: what they give at the middle, were the body where it is.
+        ends::without_present(system, a, &mut self.change);
+        ends::add_middle(system, u, &mut self.change);
+        each(&mut self.right, &self.change, |right, a| {
+            *right += quarter * a;
+        });
         each(&mut self.right, v, |right, v| *right += 0.5 * tau * v);
         if !system.motions().is_empty() {
             system.vibration_into(&self.half, &self.half, &mut self.change);
@@ -153,19 +156,21 @@ impl Implicit {
     ) -> Result<()> {
         let [u, v, a] = state;
         let tau = t[1] - t[0];
-        // w = τ/2 v + c f(u + s w), with what is known on the right.
-        let (place, reach, factor, known) = match self.rule {
-            ImplicitRule::Midpoint => (0.5 * (t[0] + t[1]), 1.0, 0.25 * tau * tau, 0.0),
-            ImplicitRule::Trapezoidal => (t[1], 2.0, 0.125 * tau * tau, 0.125 * tau * tau),
+        // w = τ/2 v + τ²/4 f(u + s w)/s, with what is known on the right.
+        let quarter = 0.25 * tau * tau;
+        let (place, reach, known) = match self.rule {
+            ImplicitRule::Midpoint => (0.5 * (t[0] + t[1]), 1.0, 0.0),
+            ImplicitRule::Trapezoidal => (t[1], 2.0, 0.5 * quarter),
         };
-        self.right.copy_from_slice(v);
-        each(&mut self.right, a, |right, a| {
-            *right = 0.5 * tau * *right + known * a;
+        // What boundaries give acts at the middle for both rules, and is no part of `a` here.
+        ends::without_present(system, a, &mut self.right);
+        each(&mut self.right, v, |right, v| {
+            *right = 0.5 * tau * v + known * *right;
         });
         system.hold(&mut self.right);
         // The first guess: the explicit step.
         each(&mut self.half, &self.right, |half, right| *half += right);
-        let total = 0.25 * tau * tau - known;
+        let total = quarter - known;
         let size = &mut self.force;
         size.copy_from_slice(a);
         system.hold(size);
@@ -184,11 +189,22 @@ impl Implicit {
             force: &mut self.force,
             t: place,
             reach,
-            factor,
+            quarter,
         };
         let solved = newton_krylov(&mut problem, &mut self.half, scale, &LIMITS, &mut self.work);
         good_enough(solved.map(|_| ()), scale)
     }
+}
+
+/// Boundaries that give something within a step must say what.
+fn refuse_explicit_boundaries(scheme: &'static str, system: &System) -> Result<()> {
+    if system.boundaries().all(|one| one.within_step().is_some()) {
+        return Ok(());
+    }
+    Err(PericlesError::SchemeNotUsable {
+        scheme,
+        reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
+    })
 }
 
 impl ImplicitRule {
@@ -201,7 +217,7 @@ impl ImplicitRule {
     }
 }
 
-/// The nonlinear equation of a step, weighed by masses: m [w − right − c f(u + s w)] = 0; held entries are always solved.
+/// The nonlinear equation of a step, weighed by masses: m [w − right − τ²/4 (f(u + s w)/s + g(u + w))] = 0 with the accelerations f of the body and g by boundaries; held entries are always solved.
 struct Stage<'a> {
     system: &'a mut System,
     mass: &'a [f64],
@@ -210,24 +226,32 @@ struct Stage<'a> {
     place: &'a mut [f64],
     force: &'a mut [f64],
     t: f64,
+    /// s
     reach: f64,
-    factor: f64,
+    /// τ²/4
+    quarter: f64,
 }
 
 impl Stage<'_> {
-    fn go_to(&mut self, half: &[f64]) {
+    /// Goes to u + reach · half.
+    fn go_to(&mut self, half: &[f64], reach: f64) {
         self.place.copy_from_slice(self.u);
-        let reach = self.reach;
         each(self.place, half, |place, half| *place += reach * half);
     }
 }
 
 impl Nonlinear for Stage<'_> {
     fn residual_into(&mut self, x: &[f64], out: &mut [f64]) {
-        self.go_to(x);
+        self.go_to(x, self.reach);
         self.system
             .free_acceleration(self.t, self.place, &On::All, self.force);
-        let factor = self.factor;
+        let share = 1.0 / self.reach;
+        self.force.iter_mut().for_each(|force| *force *= share);
+        if self.system.has_boundaries() {
+            self.go_to(x, 1.0);
+            ends::add_middle(self.system, self.place, self.force);
+        }
+        let factor = self.quarter;
         out.copy_from_slice(x);
         each(out, self.right, |out, right| *out -= right);
         each(out, self.force, |out, force| *out -= factor * force);
@@ -236,9 +260,10 @@ impl Nonlinear for Stage<'_> {
     }
 
     fn derivative_into(&mut self, x: &[f64], direction: &[f64], out: &mut [f64]) {
-        self.go_to(x);
+        self.go_to(x, self.reach);
         self.system.vibration_into(self.place, direction, out);
-        add_and_weigh(out, self.factor * self.reach, direction, self.mass);
+        ends::add_stiffness(self.system, direction, out);
+        add_and_weigh(out, self.quarter, direction, self.mass);
     }
 }
 
@@ -289,7 +314,7 @@ impl Integrator for Implicit {
         self.prescribe(system, t_next, u);
         match self.solver.take() {
             Some(mut solver) => {
-                let solved = self.solve_linear(&mut solver, system, [*t, t_next], [v, a]);
+                let solved = self.solve_linear(&mut solver, system, [*t, t_next], [u, v, a]);
                 self.solver = Some(solver);
                 solved?;
             }

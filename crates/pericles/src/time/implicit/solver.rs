@@ -1,6 +1,6 @@
 //! The linear systems of implicit steps: by a factor that is kept, or by iteration.
 
-use super::{LIMITS, add_and_weigh};
+use super::{LIMITS, add_and_weigh, ends};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::operator::{ForceOperator, LinearOperator};
@@ -149,10 +149,11 @@ impl StepSolver {
     }
 }
 
-/// M x + τ²/4 K x, with K x zero where motion is prescribed.
+/// M x + τ²/4 K x, boundaries included, with K x zero where motion is prescribed.
 fn product_into(system: &System, mass: &[f64], tau: f64, x: &[f64], out: &mut [f64]) {
     // The place about which a linear force is linearised does not matter.
     system.vibration_into(x, x, out);
+    ends::add_stiffness(system, x, out);
     add_and_weigh(out, 0.25 * tau * tau, x, mass);
 }
 

@@ -104,6 +104,10 @@ impl History for BlockedHistory {
         }
     }
 
+    fn settle(&self, own: &[f64], ghosts: &mut [f64]) {
+        self.kernels.settle(own, ghosts);
+    }
+
     fn push(&mut self, own: &[f64], ghosts: &[f64]) {
         self.kernels.gather(own, ghosts, &mut self.now);
         self.push_now();

@@ -1,8 +1,8 @@
 //! Which form of a history is the cheapest.
 
-use crate::boundary::absorbing::LatticeStencil;
 use crate::boundary::absorbing::blocks::BLOCK;
-use crate::boundary::absorbing::fit::{MOST_TANGENTS, sample_count};
+use crate::boundary::absorbing::fit::sample_count;
+use crate::boundary::absorbing::{LatticeStencil, LatticeStep};
 
 /// Estimated cost of one end over a run, in multiply–adds, kernels included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,9 +31,12 @@ const TRANSFORM: f64 = 3.0;
 /// Multiply–adds of a product of two complex numbers that come from memory.
 const PRODUCT: f64 = 4.0;
 
+/// Fits that keep more singular values take tens of seconds.
+const MOST_VALUES: f64 = 700.0;
+
 impl HistoryCost {
-    /// Of N steps of length dt with kernels K apart.
-    pub fn estimate(stencil: &LatticeStencil, dt: f64, steps: usize) -> Self {
+    /// Of N steps with kernels K apart.
+    pub fn estimate(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Self {
         let (reach, n) = (stencil.reach() as f64, steps as f64);
         let square = reach * reach;
         // Block sizes of a run, each of which touches every step once, with lines of twice its length.
@@ -46,16 +49,19 @@ impl HistoryCost {
             }
             cost
         };
-        let kernels = online(square, 2.0 * reach, square);
-        let branches = stencil.stationary_frequencies().len();
-        // One direction finds one branch; several want several.
-        let tangents = sample_count(stencil, dt, steps) * branches.min(4);
-        let exponentials = if tangents > MOST_TANGENTS {
+        // Three points of the upper half circle per step, each with an elimination of K + 1 complex unknowns.
+        let elimination = (reach + 1.0).powi(3) / 3.0 + 4.0 * square;
+        let kernels = 3.0 * n * PRODUCT * elimination;
+        let points = sample_count(stencil, step, steps) as f64;
+        let branches = stencil.stationary_frequencies().len() as f64;
+        // Singular values that are kept, as measured from one to twenty branches; half of them are exponentials, the others their conjugates.
+        let rank = 0.3 * points * branches.sqrt();
+        let exponentials = if rank > MOST_VALUES {
             f64::INFINITY
         } else {
-            let tangents = tangents as f64;
-            // Two conjugates, of which about a third is needed: half of those are stored.
-            25.0 * tangents.powi(3) + n * 0.17 * tangents * (4.0 * reach + 4.0)
+            // Crosses, singular values and eigenvalues; least squares.
+            let fit = 35.0 * rank.powi(3) + 16.0 * points * rank * rank;
+            fit + n * 0.5 * rank * (4.0 * reach + 4.0)
         };
         Self {
             direct: kernels + 0.5 * square * n * n,

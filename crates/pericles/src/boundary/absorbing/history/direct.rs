@@ -52,6 +52,10 @@ impl History for DirectHistory {
         }
     }
 
+    fn settle(&self, own: &[f64], ghosts: &mut [f64]) {
+        self.kernels.settle(own, ghosts);
+    }
+
     fn push(&mut self, own: &[f64], ghosts: &[f64]) {
         self.kernels.gather(own, ghosts, &mut self.now);
         self.past.push(&self.now);

@@ -46,6 +46,13 @@ impl History for ExponentialHistory {
         }
     }
 
+    fn settle(&self, own: &[f64], ghosts: &mut [f64]) {
+        let rows = self.kernels.present.chunks_exact(self.kernels.reach);
+        for (ghost, row) in ghosts.iter_mut().zip(rows) {
+            *ghost += row.iter().zip(own).map(|(f, u)| f * u).sum::<f64>();
+        }
+    }
+
     fn push(&mut self, own: &[f64], _ghosts: &[f64]) {
         for (state, term) in self.states.iter_mut().zip(&self.kernels.terms) {
             let taken: Complex<f64> = term.take.iter().zip(own).map(|(b, u)| b * u).sum();

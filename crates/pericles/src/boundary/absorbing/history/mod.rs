@@ -16,7 +16,7 @@ pub use exponential::ExponentialHistory;
 use crate::archive::Archive;
 use crate::error::Result;
 
-/// A convolution in time that gives the ghosts of the next step from all steps before.
+/// A convolution in time that gives the ghosts of the next step from all steps before, and what of them hangs on the present one.
 pub trait History: Send + Sync {
     /// Name as in decks.
     fn name(&self) -> &'static str;
@@ -29,6 +29,9 @@ pub trait History: Send + Sync {
 
     /// u_0, u_{−1} … u_{−(K−1)} at the step after those pushed, m.
     fn ghosts_into(&self, ghosts: &mut [f64]);
+
+    /// Adds to these ghosts what they owe to displacements `own` of the body's outer points in the same step; nothing where kernels start with the first lag.
+    fn settle(&self, own: &[f64], ghosts: &mut [f64]);
 
     /// Takes the displacements of a step: of the body's outer points 1 … K and of the ghosts. Allocates nothing.
     fn push(&mut self, own: &[f64], ghosts: &[f64]);

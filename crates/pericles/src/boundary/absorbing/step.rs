@@ -1,0 +1,104 @@
+//! How the lattice beyond an end is stepped in time.
+
+use nalgebra::Complex;
+
+use super::roots::factor_at;
+use super::{AbsorbingError, LatticeStencil};
+
+/// A linear rule whose symbol is known: what it makes of ∂²/∂t², with the delay w of one step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LatticeScheme {
+    /// σ(w) = (1/w − 2 + w)/dt²; kernels start with the first lag.
+    VelocityVerlet,
+    /// σ(w) = (4/dt²) ((1 − w)/(1 + w))², of the implicit midpoint rule and, for linear exteriors, of the trapezoidal rule. Kernels act on the displacements at the middle of steps, the
+    /// present one included.
+    Midpoint,
+}
+
+impl LatticeScheme {
+    /// The schemes of decks that have a symbol known here.
+    pub const NAMES: &[&str] = &["velocity-verlet", "implicit-midpoint", "trapezoidal"];
+
+    /// That of a scheme by its name in decks; none for those that ends cannot follow.
+    pub fn of(scheme: &str) -> Option<Self> {
+        let all = [Self::VelocityVerlet, Self::Midpoint];
+        all.into_iter().find(|one| one.names().contains(&scheme))
+    }
+
+    /// The schemes of decks that it is the symbol of.
+    pub fn names(self) -> &'static [&'static str] {
+        let (explicit, implicit) = Self::NAMES.split_at(1);
+        match self {
+            Self::VelocityVerlet => explicit,
+            Self::Midpoint => implicit,
+        }
+    }
+}
+
+/// A scheme and its step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatticeStep {
+    /// The scheme.
+    pub scheme: LatticeScheme,
+    /// Length, s.
+    pub dt: f64,
+}
+
+impl LatticeStep {
+    /// A step of velocity Verlet.
+    pub fn verlet(dt: f64) -> Self {
+        let scheme = LatticeScheme::VelocityVerlet;
+        Self { scheme, dt }
+    }
+
+    /// A step of the midpoint rule.
+    pub fn midpoint(dt: f64) -> Self {
+        let scheme = LatticeScheme::Midpoint;
+        Self { scheme, dt }
+    }
+
+    /// Checks that the lattice is stable with it.
+    ///
+    /// # Errors
+    /// A step that is not positive and finite; for velocity Verlet dt max ω ≥ 2.
+    pub fn check(self, stencil: &LatticeStencil) -> Result<(), AbsorbingError> {
+        match self.scheme {
+            LatticeScheme::VelocityVerlet => stencil.check_step(self.dt),
+            LatticeScheme::Midpoint if self.dt > 0.0 && self.dt.is_finite() => Ok(()),
+            LatticeScheme::Midpoint => Err(AbsorbingError::BadStep { dt: self.dt }),
+        }
+    }
+
+    /// σ(w), 1/s².
+    pub(super) fn symbol(self, w: Complex<f64>) -> Complex<f64> {
+        let one = Complex::new(1.0, 0.0);
+        // Differences first: no cancellation near w = 1.
+        match self.scheme {
+            LatticeScheme::VelocityVerlet => (one - w) * (one - w) / (w * (self.dt * self.dt)),
+            LatticeScheme::Midpoint => {
+                let ratio = (one - w) / (one + w) * (2.0 / self.dt);
+                ratio * ratio
+            }
+        }
+    }
+
+    /// The phase of a step at which the symbol is −ω².
+    pub(super) fn phase(self, omega: f64) -> f64 {
+        let half = 0.5 * omega * self.dt;
+        match self.scheme {
+            LatticeScheme::VelocityVerlet => 2.0 * half.min(1.0).asin(),
+            LatticeScheme::Midpoint => 2.0 * half.atan(),
+        }
+    }
+
+    /// What ghosts owe to displacements of the same step: h_1 … h_K at w = 0.
+    pub(super) fn present(self, stencil: &LatticeStencil) -> Vec<f64> {
+        match self.scheme {
+            LatticeScheme::VelocityVerlet => vec![0.0; stencil.reach()],
+            LatticeScheme::Midpoint => {
+                let sigma = self.symbol(Complex::new(0.0, 0.0));
+                factor_at(stencil, sigma).iter().map(|h| h.re).collect()
+            }
+        }
+    }
+}
