@@ -29,6 +29,7 @@ use crate::console;
 use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::results::Results;
 use crate::run::{self, Session};
 use crate::signals::Signals;
 use crate::units::threads;
@@ -61,21 +62,15 @@ pub(crate) fn is_sweep(folder: &Path) -> bool {
 /// # Errors
 /// Values that the deck refuses, before anything is run; output that cannot be written.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
-    let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let record = Record {
-        deck: DeckText::of(&deck, args.deck.display().to_string()),
-        axes: args.sweep.clone(),
-    };
-    let members = record.members();
-    // Before the folder is made: nobody wants half a sweep because of a slip in its last value.
-    for member in &members {
-        member.deck.read()?;
-    }
-    let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-sweep")?;
-    let text = serde_json::to_string_pretty(&record)?;
-    write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
-    record.drive(&members, &folder, &settings)
+    let (deck, changes) = (&args.deck, &args.overrides.set);
+    let sweep = Sweep::begun(
+        deck,
+        changes,
+        args.sweep.clone(),
+        args.out.as_deref(),
+        "-sweep",
+    )?;
+    sweep.drive(&Settings::new(&args.execution, &args.caching, &args.limits))
 }
 
 /// Goes on with a sweep: runs that have finished stay, others go on from their checkpoint or begin.
@@ -90,12 +85,78 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         path,
         reason: error.to_string(),
     })?;
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
-    record.drive(&record.members(), &folder, &settings)
+    let sweep = Sweep {
+        members: record.members(),
+        record,
+        folder,
+    };
+    sweep.drive(&Settings::new(&args.execution, &args.caching, &args.limits))
+}
+
+/// A sweep in its folder.
+pub(crate) struct Sweep {
+    record: Record,
+    members: Vec<Member>,
+    folder: OutputFolder,
+}
+
+impl Sweep {
+    /// Makes the folder of a new sweep, once nothing in its decks can be wrong.
+    ///
+    /// # Errors
+    /// Values that the deck refuses; a folder that exists or cannot be made.
+    pub(crate) fn begun(
+        deck: &Path,
+        overrides: &[String],
+        axes: Vec<Axis>,
+        out: Option<&Path>,
+        suffix: &str,
+    ) -> Result<Self, CliError> {
+        let read = Deck::read(deck, overrides)?;
+        let record = Record {
+            deck: DeckText::of(&read, deck.display().to_string()),
+            axes,
+        };
+        let members = record.members();
+        // Before the folder is made: nobody wants half a sweep because of a slip in its last value.
+        for member in &members {
+            member.deck.read()?;
+        }
+        let folder = run::output_folder(out, false, deck, suffix)?;
+        let text = serde_json::to_string_pretty(&record)?;
+        write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
+        Ok(Self {
+            record,
+            members,
+            folder,
+        })
+    }
+
+    /// Runs what has not finished.
+    ///
+    /// # Errors
+    /// Output that cannot be written.
+    pub(crate) fn drive(&self, settings: &Settings<'_>) -> Result<Exit, CliError> {
+        self.record.drive(&self.members, &self.folder, settings)
+    }
+
+    /// Its folder.
+    pub(crate) fn folder(&self) -> &OutputFolder {
+        &self.folder
+    }
+
+    /// The results of all runs that left some.
+    pub(crate) fn results(&self) -> impl Iterator<Item = Results> {
+        let folders = self
+            .members
+            .iter()
+            .map(|member| self.folder.file(&member.name));
+        folders.filter_map(|folder| Results::open(&folder).ok())
+    }
 }
 
 /// How the runs of a sweep are done.
-struct Settings<'a> {
+pub(crate) struct Settings<'a> {
     /// Threads of one run.
     threads: usize,
     caching: &'a Caching,
@@ -105,7 +166,7 @@ struct Settings<'a> {
 
 impl<'a> Settings<'a> {
     /// What the command line says; one thread a run unless it says otherwise.
-    fn new(execution: &Execution, caching: &'a Caching, limits: &Limits) -> Self {
+    pub(crate) fn new(execution: &Execution, caching: &'a Caching, limits: &Limits) -> Self {
         Self {
             threads: execution.threads.count_or(1),
             caching,

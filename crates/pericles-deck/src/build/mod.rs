@@ -31,6 +31,7 @@ use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use self::graded::Grids;
+use self::parts::Composition;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -54,6 +55,8 @@ pub struct Model {
     pub surface: Option<Arc<Surface>>,
     /// The constants of the bonds; not numbers for a surface.
     pub constants: BondConstants,
+    /// The constants of the other materials, in the order of `[[material.part]]`.
+    pub parts: Vec<BondConstants>,
     /// How the bonds are kept.
     pub form: BondForm,
     /// Bonds that pre-cracks cut.
@@ -88,6 +91,7 @@ struct Assembled {
     surface: Option<Arc<Surface>>,
     sets: Sets,
     constants: BondConstants,
+    parts: Vec<BondConstants>,
     bonds: AssembledBonds,
     cracks: Vec<TrackedCrack>,
     density: PointScalar,
@@ -136,6 +140,7 @@ impl Deck {
             surface,
             sets,
             constants,
+            parts,
             bonds,
             cracks,
             density,
@@ -168,6 +173,7 @@ impl Deck {
             surface,
             sets,
             constants,
+            parts,
             form: bonds.form,
             precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
             cracks,
@@ -182,6 +188,23 @@ impl Deck {
             exact,
             warnings,
         })
+    }
+
+    /// The points of the body alone, with the surface if it is one: what is needed to draw results again.
+    ///
+    /// # Errors
+    /// As [`Deck::build_with`].
+    pub fn body_points(
+        &self,
+        resources: Resources<'_>,
+    ) -> Result<(PointCloud, Option<Surface>), DeckError> {
+        match &self.surface {
+            Some(deck) => {
+                let (surface, cloud) = self.surface_points(deck, &resources)?;
+                Ok((cloud, Some(surface)))
+            }
+            None => Ok((self.points(&resources)?.cloud, None)),
+        }
     }
 
     fn assemble_grid(
@@ -202,7 +225,11 @@ impl Deck {
             .map_err(|error| self.at_material(error))?;
         let no_fail = self.union_of(&sets, &self.material.no_fail)?;
         let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
-        let (classes, density) = self.parts(&cloud, &sets, &constants, warnings)?;
+        let Composition {
+            classes,
+            density,
+            parts,
+        } = self.parts(&cloud, &sets, &constants, warnings)?;
         let body = BondBody {
             cloud: &cloud,
             material,
@@ -236,6 +263,7 @@ impl Deck {
             cracks,
             density,
             constants,
+            parts,
             cloud,
         })
     }
@@ -272,6 +300,7 @@ impl Deck {
                 fracture_energy: f64::NAN,
                 stiffness_error: f64::NAN,
             },
+            parts: Vec::new(),
             cloud,
         })
     }
@@ -346,6 +375,7 @@ impl Deck {
                 .cutter(pre_crack.ends, 0.0)
                 .map_err(|error| self.at_path(&crack(k), error.into()))?;
         }
+        let cloud = composite.body.cloud;
         let surfaces: Vec<_> = self
             .cracks
             .iter()
@@ -375,12 +405,13 @@ impl Deck {
                 .map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();
-        for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
+        for (k, ((surface, _), cut)) in surfaces.iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {
-                warnings.push(self.finding(&crack(k), Caution::CrackCutsNothing));
+                let caution = Self::useless_crack(surface, cloud);
+                warnings.push(self.finding(&crack(k), caution));
             }
             tracked.push(TrackedCrack {
-                crack: surface,
+                crack: surface.clone(),
                 points: cut.points.clone(),
             });
         }

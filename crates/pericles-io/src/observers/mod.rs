@@ -49,6 +49,7 @@
 //! # }
 //! ```
 
+mod background;
 mod columns;
 mod cracks;
 mod fields;
@@ -65,7 +66,7 @@ pub use cracks::Cracks;
 pub use fields::FieldSeries;
 pub use fragments::FragmentCourse;
 pub use history::History;
-pub use pictures::{PictureOf, Pictures};
+pub use pictures::{DrawnState, PictureOf, Pictures};
 pub use probes::Probes;
 pub use reactions::Reactions;
 pub use surface::SurfaceCourse;
