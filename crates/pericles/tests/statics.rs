@@ -195,7 +195,7 @@ fn a_load_without_support_has_no_equilibrium() {
         ..fine()
     };
     match relaxed(system, options, 1) {
-        Err(SimulationError::Step(PericlesError::NoEquilibrium { iterations, .. })) => {
+        Err(SimulationError::Stuck { source: PericlesError::NoEquilibrium { iterations, .. }, .. }) => {
             assert_eq!(iterations, 500);
         }
         Err(other) => panic!("{other}"),

@@ -29,6 +29,7 @@ use crate::console;
 use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::prepare::Means;
 use crate::run::{self, Session};
 use crate::signals::Signals;
 use crate::units::threads;
@@ -74,7 +75,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-sweep")?;
     let text = serde_json::to_string_pretty(&record)?;
     write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
+    let settings = Settings::new(&args.execution, &args.caching, &args.limits, members.len());
     record.drive(&members, &folder, &settings)
 }
 
@@ -90,25 +91,35 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         path,
         reason: error.to_string(),
     })?;
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
-    record.drive(&record.members(), &folder, &settings)
+    let members = record.members();
+    let settings = Settings::new(&args.execution, &args.caching, &args.limits, members.len());
+    record.drive(&members, &folder, &settings)
 }
 
 /// How the runs of a sweep are done.
 struct Settings<'a> {
     /// Threads of one run.
     threads: usize,
-    caching: &'a Caching,
+    /// Runs at the same time.
+    at_once: usize,
+    means: Means<'a>,
     deadline: Option<Deadline>,
     quiet: bool,
 }
 
 impl<'a> Settings<'a> {
-    /// What the command line says; one thread a run unless it says otherwise.
-    fn new(execution: &Execution, caching: &'a Caching, limits: &Limits) -> Self {
+    /// What the command line says; one thread a run unless it says otherwise. Runs at the same time share the memory.
+    fn new(execution: &Execution, caching: &'a Caching, limits: &Limits, runs: usize) -> Self {
+        let threads = execution.threads.count_or(1);
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let at_once = (cores / threads).clamp(1, runs.max(1));
         Self {
-            threads: execution.threads.count_or(1),
-            caching,
+            threads,
+            at_once,
+            means: Means {
+                caching,
+                memory: limits.memory.bytes() / at_once as u64,
+            },
             deadline: Deadline::from_now(limits.wall_time),
             quiet: execution.quiet,
         }
@@ -170,8 +181,7 @@ impl Record {
         settings: &Settings<'_>,
     ) -> Result<Exit, CliError> {
         let signals = Signals::watch().map_err(CliError::Signals)?;
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        let at_once = (cores / settings.threads).clamp(1, members.len().max(1));
+        let at_once = settings.at_once;
         if !settings.quiet {
             console::note(format_args!(
                 "{} runs, {at_once} at a time on {} each; results in {}",
@@ -239,7 +249,7 @@ impl Member {
         let deadline = settings.deadline.clone();
         pool.install(|| {
             let session = if path.join("checkpoints").is_dir() {
-                match Session::resumed(path, settings.caching, true)? {
+                match Session::resumed(path, &settings.means, true)? {
                     Some(session) => session,
                     None => return Ok(Exit::Done),
                 }
@@ -247,7 +257,7 @@ impl Member {
                 // A run that died before its first checkpoint begins again.
                 let folder = OutputFolder::create(path, path.exists())?;
                 let deck = self.deck.read()?;
-                let model = run::modelled(&deck, settings.caching)?;
+                let model = run::modelled(&deck, &settings.means)?;
                 Session::begun(&deck, self.deck.clone(), model, folder, true)?
             };
             session.drive(deadline, signals)

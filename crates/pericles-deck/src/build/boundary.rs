@@ -4,13 +4,12 @@ use pericles::boundary::absorbing::{
     AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, OuterLayer, Side,
 };
 use pericles::boundary::{DampingLayer, DampingProfile};
-use pericles::cache::Cache;
 use pericles::material::BondConstants;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
 use pericles::{PericlesError, System};
 
-use super::Sets;
+use super::{Resources, Sets};
 use super::step::Steps;
 use crate::boundary::BoundaryCondition;
 use crate::caution::Caution;
@@ -107,7 +106,7 @@ impl Deck {
         system: &mut System,
         ends: Vec<End>,
         steps: &Steps,
-        cache: &dyn Cache,
+        resources: &Resources<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<Vec<(Side, EndReport)>, DeckError> {
         let mut reports = Vec::new();
@@ -117,7 +116,13 @@ impl Deck {
             let stencil = end.layer.stencil.clone();
             stencil.check_step(steps.dt).map_err(refuse)?;
             let count = steps.count as usize;
-            let make = || end.plan.history(&stencil, steps.dt, count, cache);
+            if !end.plan.forgets() {
+                self.check_history(&path, stencil.reach(), count as f64, resources)?;
+            }
+            let make = || {
+                let cache = resources.cache;
+                end.plan.history(&stencil, steps.dt, count, cache)
+            };
             let (history, report) = make().map_err(refuse)?;
             if let Some(growth) = report.growth {
                 warnings
