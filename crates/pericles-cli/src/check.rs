@@ -21,7 +21,13 @@ use crate::waves::WaveSpeeds;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let model = prepare::model(&deck, &Means { caching: &args.caching, memory: args.memory.bytes() })?;
+    let model = prepare::model(
+        &deck,
+        &Means {
+            caching: &args.caching,
+            memory: args.memory.bytes(),
+        },
+    )?;
     let facts = Facts::of(&deck, &model);
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));

@@ -50,7 +50,9 @@ impl Exit {
             Self::Comparison => "a comparison failed (reproduce, diff)",
             Self::Output => "the output cannot be written, is full or in use",
             Self::StoppedEarly => "stopped early at a limit, with a checkpoint",
-            Self::Memory => "more memory would be needed than there is, or than --max-memory allows",
+            Self::Memory => {
+                "more memory would be needed than there is, or than --max-memory allows"
+            }
             Self::Interrupted => "Ctrl-C, with a checkpoint (a second one ends at once)",
             Self::Terminated => "SIGTERM, with a checkpoint",
         }

@@ -29,7 +29,9 @@ pub(crate) fn peak_memory() -> Option<u64> {
 /// Memory that the process may still take, bytes, where the system tells: what is free or can be freed, or less in a container with a limit.
 pub(crate) fn free_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
     let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(left_in_groups().map_or(1024 * kilobytes, |left| left.min(1024 * kilobytes)))
 }
@@ -40,7 +42,9 @@ fn left_in_groups() -> Option<u64> {
     let own = groups.lines().find_map(|line| line.strip_prefix("0::/"))?;
     let root = Path::new("/sys/fs/cgroup");
     let folders = root.join(own);
-    let folders = folders.ancestors().take_while(|path| path.starts_with(root));
+    let folders = folders
+        .ancestors()
+        .take_while(|path| path.starts_with(root));
     folders.filter_map(left_in).min()
 }
 
@@ -54,8 +58,12 @@ fn left_in(group: &Path) -> Option<u64> {
     let taken = number("memory.current")?;
     // Copies of files are given back when memory is short.
     let stat = std::fs::read_to_string(group.join("memory.stat")).unwrap_or_default();
-    let copies = stat.lines().find_map(|line| line.strip_prefix("inactive_file "));
-    let copies = copies.and_then(|bytes| bytes.trim().parse().ok()).unwrap_or(0);
+    let copies = stat
+        .lines()
+        .find_map(|line| line.strip_prefix("inactive_file "));
+    let copies = copies
+        .and_then(|bytes| bytes.trim().parse().ok())
+        .unwrap_or(0);
     Some(most.saturating_sub(taken.saturating_sub(copies)))
 }
 
@@ -71,7 +79,9 @@ pub(crate) fn size(text: &str) -> Result<u64, String> {
         ("GB", 1e9),
         ("TB", 1e12),
     ];
-    let unit = UNITS.iter().find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?, *bytes)));
+    let unit = UNITS
+        .iter()
+        .find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?, *bytes)));
     let (number, bytes) = unit.unwrap_or((text, 1.0));
     let size = number.trim().parse().map(|number: f64| number * bytes);
     size.ok()

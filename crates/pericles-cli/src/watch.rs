@@ -70,7 +70,11 @@ fn reactions(simulation: &Simulation) -> Option<String> {
     let (n, volumes) = (system.points(), system.cloud().volumes());
     let sum = |field: Field, c: usize| -> f64 {
         let component = &snapshot.field(field)[c * n..(c + 1) * n];
-        component.iter().zip(volumes).map(|(f, volume)| f * volume).sum()
+        component
+            .iter()
+            .zip(volumes)
+            .map(|(f, volume)| f * volume)
+            .sum()
     };
     let (mut left, mut size) = (0.0f64, 0.0f64);
     for c in 0..system.dimension() {
@@ -93,7 +97,9 @@ fn endangered(simulation: &Simulation, audit: &Audit) -> Option<String> {
         return None;
     }
     let mut marks = vec![false; system.points()];
-    operator.as_zoned()?.mark_endangered(&state.u, NEAR, &mut marks);
+    operator
+        .as_zoned()?
+        .mark_endangered(&state.u, NEAR, &mut marks);
     let share = marks.iter().filter(|mark| **mark).count() as f64 / marks.len() as f64;
     (share > ENDANGERED).then(|| {
         format!(

@@ -267,7 +267,13 @@ fn exact_steps_of_a_torus_do_not_depend_on_their_length() {
         deck.display()
     );
     succeed(place.path(), &line);
-    let kinetic = |out: &Path| *table(out, "history.csv").column("kinetic_energy").unwrap().last().unwrap();
+    let kinetic = |out: &Path| {
+        *table(out, "history.csv")
+            .column("kinetic_energy")
+            .unwrap()
+            .last()
+            .unwrap()
+    };
     let (short, long) = (kinetic(&out), kinetic(&place.path().join("long")));
     assert!((short / long - 1.0).abs() < 1e-9, "{short} {long}");
 }
@@ -297,9 +303,13 @@ fn transforms_and_the_stencil_move_a_plate_alike() {
     let stencil = place.path().join("stencil");
     assert_eq!(report(&stencil)["model"]["operator"], "grid");
     for column in ["ahead_u_x", "ahead_v_y", "aside_u_x", "aside_v_x"] {
-        let [a, b] = [&out, &stencil].map(|out| table(out, "probes.csv").column(column).unwrap().to_vec());
+        let [a, b] =
+            [&out, &stencil].map(|out| table(out, "probes.csv").column(column).unwrap().to_vec());
         let size = a.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-        let apart = a.iter().zip(&b).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+        let apart = a
+            .iter()
+            .zip(&b)
+            .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
         assert!(apart < 1e-9 * size, "{column}: {apart:e} of {size:e}");
     }
 }

@@ -23,14 +23,14 @@ time = { end = 4, SCHEME }
 "#;
 
 /// A notched plate that is pulled until it tears.
-const TORN: &str = r#"body = { shape = "plate", size = [40, 30], spacing = 1, plane = "stress" }
+const TORN: &str = r#"body = { shape = "plate", size = [30, 20], spacing = 1, plane = "stress" }
 material = { model = "LAW", density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.004, bonds = "OPERATOR" }
-crack = [{ segment = [[0, 15], [15, 15]] }]
+crack = [{ segment = [[0, 10], [12, 10]] }]
 sets.top = { layer = { side = "+y", cells = 1 } }
 sets.bottom = { layer = { side = "-y", cells = 1 } }
 prescribe = [{ set = "top", velocity = ["free", 0.004] }, { set = "bottom", velocity = ["free", -0.004] }]
-initial = [{ velocity = [0, { expression = "8e-3*(y/30-0.5)" }] }]
-time = { end = 16, SCHEME }
+initial = [{ velocity = [0, { expression = "8e-3*(y/20-0.5)" }] }]
+time = { end = 10, SCHEME }
 "#;
 
 /// An operator: its word in decks, and the body it is tried on.
@@ -74,14 +74,28 @@ impl Operator {
     }
 }
 
-/// A scheme: what a deck says of it, and how far it may be from the reference relative to the largest displacement.
+/// A scheme: what a deck says of it, how far it may be from the reference relative to the largest displacement, and its momentum from the impulse.
 struct Scheme {
     time: &'static str,
     error: f64,
+    momentum: f64,
 }
 
 const fn scheme(time: &'static str, error: f64) -> Scheme {
-    Scheme { time, error }
+    Scheme {
+        time,
+        error,
+        momentum: 1e-9,
+    }
+}
+
+/// Both sides of an interface take the force between them at stages of their own: momentum is kept to the order of the scheme.
+const fn two_steps(time: &'static str, error: f64) -> Scheme {
+    Scheme {
+        time,
+        error,
+        momentum: error,
+    }
 }
 
 /// Steps of 0.05 are a twentieth of the stable one; second order leaves some 1e-4 of it.
@@ -89,10 +103,19 @@ const ONE_STEP: [Scheme; 11] = [
     scheme("scheme = \"velocity-verlet\", dt = 0.05", 1e-3),
     scheme("scheme = \"rk3\", dt = 0.1", 1e-4),
     scheme("scheme = \"rk4\", dt = 0.1", 1e-5),
-    scheme("scheme = \"dormand-prince\", tolerance = 1e-8, dt = 0.4", 1e-5),
+    scheme(
+        "scheme = \"dormand-prince\", tolerance = 1e-8, dt = 0.4",
+        1e-5,
+    ),
     scheme("scheme = \"newmark\", tolerance = 1e-12, dt = 0.05", 1e-3),
-    scheme("scheme = \"newmark\", tolerance = 1e-12, solver = \"anderson\", dt = 0.05", 1e-3),
-    scheme("scheme = \"newmark\", tolerance = 1e-12, solver = \"newton-krylov\", dt = 0.05", 1e-3),
+    scheme(
+        "scheme = \"newmark\", tolerance = 1e-12, solver = \"anderson\", dt = 0.05",
+        1e-3,
+    ),
+    scheme(
+        "scheme = \"newmark\", tolerance = 1e-12, solver = \"newton-krylov\", dt = 0.05",
+        1e-3,
+    ),
     scheme("scheme = \"discrete-gradient\", dt = 0.05", 1e-3),
     scheme("scheme = \"implicit-midpoint\", dt = 0.05", 1e-3),
     scheme("scheme = \"trapezoidal\", dt = 0.05", 1e-3),
@@ -100,12 +123,22 @@ const ONE_STEP: [Scheme; 11] = [
 ];
 
 const TWO_STEPS: [Scheme; 3] = [
-    scheme("scheme = \"rk3-mts\", ratio = 2, fine = [\"part\"], dt = 0.1", 1e-4),
-    scheme("scheme = \"rk4-mts\", ratio = 2, fine = [\"part\"], dt = 0.1", 1e-5),
-    scheme("scheme = \"respa\", ratio = 2, fine = [\"part\"], dt = 0.05", 1e-3),
+    two_steps(
+        "scheme = \"rk3-mts\", ratio = 2, fine = [\"part\"], dt = 0.1",
+        1e-4,
+    ),
+    two_steps(
+        "scheme = \"rk4-mts\", ratio = 2, fine = [\"part\"], dt = 0.1",
+        1e-5,
+    ),
+    scheme(
+        "scheme = \"respa\", ratio = 2, fine = [\"part\"], dt = 0.05",
+        1e-3,
+    ),
 ];
 
-const PART: &str = "sets.part = { half_space = { point = [7, 0, 0], normal = [1, 0, 0] } }\n";
+/// The part that takes the smaller of two steps.
+const PART: &str = "sets.part = { where = \"x < 7\" }\n";
 
 fn built(text: &str) -> Result<Simulation, DeckError> {
     Ok(Deck::parse(text, "a.toml", &[])?.build()?.simulation())
@@ -197,7 +230,9 @@ fn run_every_way(text: &str) -> Ended {
 }
 
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+    values
+        .into_iter()
+        .fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
@@ -224,7 +259,7 @@ fn compare(operator: Operator, schemes: &[Scheme]) {
         let before = start.system().momentum(&start.state().v);
         for c in 0..3 {
             let off = run.momentum[c] - before[c] - run.impulse[c];
-            let small = 1e-9 * run.momentum[1].abs();
+            let small = scheme.momentum * run.momentum[1].abs();
             assert!(off.abs() < small, "{}: {off:e}", scheme.time);
         }
     }
@@ -251,7 +286,11 @@ fn every_scheme_steps_a_surface() {
 #[test]
 fn every_scheme_of_one_step_steps_a_convolution() {
     compare(Convolution, &ONE_STEP);
-    refused(Convolution, &TWO_STEPS, "cannot be evaluated on a part of it");
+    refused(
+        Convolution,
+        &TWO_STEPS,
+        "cannot be evaluated on a part of it",
+    );
 }
 
 #[test]
@@ -293,12 +332,22 @@ fn every_operator_comes_to_rest() {
 fn plane_waves_and_surfaces_come_to_rest() {
     // Held at some points; the forces that are left are small beside the load.
     let bodies = [
-        (Spectral, "sets.held = { ball = { centre = [20, 15], radius = 3 } }\n", "[0, 0]"),
-        (Surface, "sets.held = { half_space = { point = [0, 0, -8], normal = [0, 0, 1] } }\n", "[0, 0, 0]"),
+        (
+            Spectral,
+            "sets.held = { ball = { centre = [20, 15], radius = 3 } }\n",
+            "[0, 0]",
+        ),
+        (
+            Surface,
+            "sets.held = { half_space = { point = [0, 0, -8], normal = [0, 0, 1] } }\n",
+            "[0, 0, 0]",
+        ),
     ];
     for (operator, set, zero) in bodies {
         let text = operator.deck("scheme = \"relaxation\", tolerance = 1e-8");
-        let run = run_every_way(&(text + set + &format!("prescribe = [{{ set = \"held\", displacement = {zero} }}]\n")));
+        let run = run_every_way(
+            &(text + set + &format!("prescribe = [{{ set = \"held\", displacement = {zero} }}]\n")),
+        );
         assert!(run.force < 1e-6 * 1e-3, "{:e}", run.force);
     }
 }
@@ -320,19 +369,17 @@ const BREAKING: [&str; 11] = [
 
 #[test]
 fn bonds_break_under_every_scheme_that_follows_breaking() {
-    for law in ["linear", "bond-stretch"] {
-        for time in BREAKING {
-            let torn = |operator: Operator| {
-                let text = TORN.replace("LAW", law);
-                let text = text.replace("OPERATOR", operator.word());
-                run_every_way(&text.replace("SCHEME", time))
-            };
-            let (list, grid) = (torn(List), torn(Grid));
-            assert!(list.broken > 20, "{time}: {}", list.broken);
-            assert_eq!(list.broken, grid.broken, "{time}");
-            for run in [&list, &grid] {
-                assert!(run.off.abs() < 0.05, "{law}, {time}: {:e}", run.off);
-            }
+    for time in BREAKING {
+        let torn = |operator: Operator| {
+            let text = TORN.replace("LAW", "bond-stretch");
+            let text = text.replace("OPERATOR", operator.word());
+            run_every_way(&text.replace("SCHEME", time))
+        };
+        let (list, grid) = (torn(List), torn(Grid));
+        assert!(list.broken > 20, "{time}: {}", list.broken);
+        assert_eq!(list.broken, grid.broken, "{time}");
+        for run in [&list, &grid] {
+            assert!(run.off.abs() < 0.05, "{time}: {:e}", run.off);
         }
     }
 }
@@ -345,19 +392,25 @@ fn what_cannot_break_is_refused_with_its_reason() {
     };
     let verlet = "scheme = \"velocity-verlet\", dt = 0.2";
     refusal(&torn(Convolution, verlet), "pre-cracks cut single bonds");
-    let notch = "crack = [{ segment = [[0, 15], [15, 15]] }]\n";
+    let notch = "crack = [{ segment = [[0, 10], [12, 10]] }]\n";
     let whole = |operator| torn(operator, verlet).replace(notch, "");
     refusal(&whole(Convolution), "bonds that break are none");
     let periodic = |text: String| text.replace("\"stress\"", "\"stress\", periodic = true");
-    refusal(&periodic(whole(Spectral)), "bonds that break couple all plane waves");
-    refusal(&torn(List, "scheme = \"discrete-gradient\", dt = 0.2"), "no breaking");
+    refusal(
+        &periodic(whole(Spectral)),
+        "bonds that break couple all plane waves",
+    );
+    refusal(
+        &torn(List, "scheme = \"discrete-gradient\", dt = 0.2"),
+        "no breaking",
+    );
 }
 
 /// Influence functions, as decks name them.
 const INFLUENCES: [&str; 9] = [
-    "\"constant\"",
-    "\"conical\"",
-    "\"inverse\"",
+    "{ function = \"constant\" }",
+    "{ function = \"conical\" }",
+    "{ function = \"inverse\" }",
     "{ function = \"power\", exponent = 0.5 }",
     "{ function = \"gaussian\", length = 1.5 }",
     "{ function = \"gaussian\", length = 1.5, acts_on = \"displacement\" }",
@@ -383,7 +436,11 @@ fn every_kernel_is_the_same_on_every_operator() {
         let size = largest(list.iter().copied());
         for operator in [Grid, Convolution] {
             let error = distance(&force(operator), &list) / size;
-            assert!(error < 1e-12, "{influence} on {}: {error:e}", operator.word());
+            assert!(
+                error < 1e-12,
+                "{influence} on {}: {error:e}",
+                operator.word()
+            );
         }
     }
 }
@@ -392,14 +449,14 @@ fn every_kernel_is_the_same_on_every_operator() {
 fn kernels_with_negative_values_do_not_break() {
     let text = TORN.replace("LAW", "linear").replace("OPERATOR", "list");
     let text = text.replace("SCHEME", "scheme = \"velocity-verlet\", dt = 0.2");
-    let signed = "horizon_ratio = 3, influence = { function = \"classes\", table = [[[1, 0], 1], [[1, 1], 1], [[2, 0], -0.1], [[2, 1], 1], [[2, 2], 1], [[3, 0], 1]] }";
+    let signed = "horizon_ratio = 3, influence = { function = \"classes\", table = [[[1, 0], 1], [[1, 1], 1], [[2, 0], -0.1], [[2, 1], 1], [[2, 2], 1], [[3, 0], 1]] }, volume_correction = \"none\"";
     refusal(&text.replace("horizon_ratio = 3", signed), "negative");
 }
 
 /// A bar that goes on for ever at both ends.
 const ENDLESS: &str = r#"body = { shape = "bar", length = 40, spacing = 1 }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3, bonds = "OPERATOR" }
-initial = [{ displacement = [{ expression = "0.01*exp(-((x-17)/4)^2)" }] }]
+initial = [{ displacement = [{ expression = "0.01*exp(-((x-17)/2)^2)" }] }]
 boundary = [{ kind = "absorbing", side = "-x" }, { kind = "absorbing", side = "+x" }]
 time = { end = 60, dt = 0.5, SCHEME }
 "#;
@@ -409,7 +466,11 @@ fn exact_ends_are_those_of_a_long_bar_on_every_operator() {
     let verlet = |text: &str| text.replace("SCHEME", "scheme = \"velocity-verlet\"");
     // Nothing comes back from 60 m away in time.
     let long = ENDLESS.replace("length = 40", "length = 160, origin = -60");
-    let long: String = long.lines().filter(|line| !line.starts_with("boundary")).flat_map(|line| [line, "\n"]).collect();
+    let long: String = long
+        .lines()
+        .filter(|line| !line.starts_with("boundary"))
+        .flat_map(|line| [line, "\n"])
+        .collect();
     let mut long = simulation(&verlet(&long.replace("OPERATOR", "list")));
     advance(&mut long, None);
     let exact = &long.state().u[60..100];
@@ -422,7 +483,11 @@ fn exact_ends_are_those_of_a_long_bar_on_every_operator() {
 
 #[test]
 fn exact_ends_of_other_schemes_are_refused() {
-    for time in ["scheme = \"rk4\"", "scheme = \"respa\", ratio = 2, fine = [\"all\"]", "scheme = \"trigonometric\""] {
+    for time in [
+        "scheme = \"rk4\"",
+        "scheme = \"respa\", ratio = 2, fine = [\"all\"]",
+        "scheme = \"trigonometric\"",
+    ] {
         let text = ENDLESS.replace("OPERATOR", "list").replace("SCHEME", time);
         refusal(&text, "velocity-verlet");
     }

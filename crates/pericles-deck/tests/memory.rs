@@ -56,16 +56,46 @@ dt = 0.01
 fn a_body_is_refused_by_the_number_of_its_cells() {
     assert!(built(BLOCK, ["0.1", "0.1"], 10_000_000).is_ok());
     let fine = ["spacing = 0.1", "spacing = 0.001"];
-    refusal(BLOCK, fine, 8_000_000_000, "a.toml:4:11: ", "1.000e9 points");
-    refusal(BLOCK, fine, 8_000_000_000, "a.toml:4:11: ", "TB of memory; 8.0 GB may be taken; a larger spacing");
+    refusal(
+        BLOCK,
+        fine,
+        8_000_000_000,
+        "a.toml:4:11: ",
+        "1.000e9 points",
+    );
+    refusal(
+        BLOCK,
+        fine,
+        8_000_000_000,
+        "a.toml:4:11: ",
+        "TB of memory; 8.0 GB may be taken; a larger spacing",
+    );
     // A ball of the same cells has about half as many, a thin tube fewer still.
     let whole = 2_000_000;
-    refusal(BLOCK, ["spacing = 0.1", "spacing = 0.05"], whole, "a.toml:4", "8.000e3 points");
-    let hole = ["spacing = 0.1", "spacing = 0.05\nhole = [{ box = { min = [0, 0, 0.1] } }]"];
+    refusal(
+        BLOCK,
+        ["spacing = 0.1", "spacing = 0.05"],
+        whole,
+        "a.toml:4",
+        "8.000e3 points",
+    );
+    let hole = [
+        "spacing = 0.1",
+        "spacing = 0.05\nhole = [{ box = { min = [0, 0, 0.1] } }]",
+    ];
     assert!(built(BLOCK, hole, whole).is_ok());
     // Parts with smaller cells count as such.
-    let finer = ["spacing = 0.1", "spacing = 0.1\nrefine = [{ all = true, ratio = 16 }]"];
-    refusal(&BLOCK.replace("bonds = \"list\"\n", ""), finer, 100_000_000, "a.toml:4", "4.096e6 points");
+    let finer = [
+        "spacing = 0.1",
+        "spacing = 0.1\nrefine = [{ all = true, ratio = 16 }]",
+    ];
+    refusal(
+        &BLOCK.replace("bonds = \"list\"\n", ""),
+        finer,
+        100_000_000,
+        "a.toml:4",
+        "4.096e6 points",
+    );
     // More than can be numbered is no matter of memory.
     let numberless = built(BLOCK, ["spacing = 0.1", "spacing = 1e-4"], u64::MAX).unwrap_err();
     assert!(!numberless.is_too_large(), "{numberless}");
@@ -108,8 +138,20 @@ end = 1
 dt = 0.01
 "#;
     assert!(built(text, ["level = 2", "level = 2"], 3_000_000).is_ok());
-    refusal(text, ["level = 2", "level = 10"], 1_000_000_000, "a.toml:2:9: ", "1.049e7 points");
-    refusal(text, ["level = 2", "level = 5"], 60_000_000, "a.toml:9:11: ", "shorter horizon");
+    refusal(
+        text,
+        ["level = 2", "level = 10"],
+        1_000_000_000,
+        "a.toml:2:9: ",
+        "1.049e7 points",
+    );
+    refusal(
+        text,
+        ["level = 2", "level = 5"],
+        60_000_000,
+        "a.toml:9:11: ",
+        "shorter horizon",
+    );
 }
 
 #[test]
@@ -132,7 +174,13 @@ end = 100
 dt = 0.1
 "#;
     assert!(built(text, ["end = 100", "end = 100"], 1_000_000).is_ok());
-    refusal(text, ["end = 100", "end = 1e9"], 8_000_000_000, "a.toml:10", "1.000e10 steps");
+    refusal(
+        text,
+        ["end = 100", "end = 1e9"],
+        8_000_000_000,
+        "a.toml:10",
+        "1.000e10 steps",
+    );
     let forgetful = text.replace("\"blocked\"", "\"exponentials\"");
     assert!(built(&forgetful, ["end = 100", "end = 1e9"], 8_000_000_000).is_ok());
 }

@@ -60,7 +60,7 @@ pub enum SimulationError {
         /// Time, s.
         t: f64,
         /// Why.
-        source: PericlesError,
+        source: Box<PericlesError>,
         /// The fastest point, in the user's numbering.
         point: usize,
         /// Its reference position, m.
@@ -260,7 +260,7 @@ impl Simulation {
         SimulationError::Stuck {
             step: self.state.step,
             t: self.state.t,
-            source,
+            source: source.into(),
             point: self.system.cloud().user_number(point),
             place: self.system.cloud().point(point),
             speed: watched.speed(point),

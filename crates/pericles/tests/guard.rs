@@ -27,7 +27,12 @@ fn bar<L: FastLaw>() -> System {
 }
 
 /// Runs at a part of the stable step, from velocities by place.
-fn run(system: System, part: f64, steps: u64, v: impl Fn(f64) -> f64) -> Result<(), SimulationError> {
+fn run(
+    system: System,
+    part: f64,
+    steps: u64,
+    v: impl Fn(f64) -> f64,
+) -> Result<(), SimulationError> {
     let mut start = State::at_rest(system.points());
     for (v_i, x) in start.v.iter_mut().zip(system.cloud().axis(0)) {
         *v_i = v(*x);
@@ -52,7 +57,11 @@ fn failure(outcome: Result<(), SimulationError>) -> (Cause, u64, f64) {
 #[test]
 fn a_velocity_that_is_no_number_is_found_where_it_is() {
     let outcome = run(bar::<LinearBond>(), 0.9, 100, |x| {
-        if (x - 0.525).abs() < 1e-9 { f64::NAN } else { 0.0 }
+        if (x - 0.525).abs() < 1e-9 {
+            f64::NAN
+        } else {
+            0.0
+        }
     });
     let (cause, step, _) = failure(outcome);
     assert_eq!((cause, step), (Cause::NotANumber, 20));
@@ -61,7 +70,10 @@ fn a_velocity_that_is_no_number_is_found_where_it_is() {
 #[test]
 fn a_step_that_is_too_long_makes_energy() {
     let (cause, step, _) = failure(run(bar::<LinearBond>(), 1.05, 4000, |x| x.sin()));
-    assert!(matches!(cause, Cause::Growth { ratio } if ratio > 2.0), "{cause}");
+    assert!(
+        matches!(cause, Cause::Growth { ratio } if ratio > 2.0),
+        "{cause}"
+    );
     assert!(step < 400, "{step}");
 }
 

@@ -9,8 +9,8 @@ use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
 use pericles::{PericlesError, System};
 
-use super::{Resources, Sets};
 use super::step::Steps;
+use super::{Resources, Sets};
 use crate::boundary::BoundaryCondition;
 use crate::caution::Caution;
 use crate::deck::Deck;
@@ -36,6 +36,7 @@ impl Deck {
         state: &State,
         sets: &Sets,
         integrator: &dyn Integrator,
+        resources: &Resources<'_>,
     ) -> Result<Vec<End>, DeckError> {
         let no_fail = self.union_of(sets, &self.material.no_fail)?;
         let mut ends = Vec::new();
@@ -64,6 +65,8 @@ impl Deck {
             let (layer, beyond) = match exterior_data {
                 None => (OuterLayer::of(system, side, state, &no_fail), None),
                 Some(depth) => {
+                    let sites = depth / system.cloud().spacing();
+                    self.check_exterior(&path.key("exterior_data"), sites, resources)?;
                     let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
                     (layer, Some(self.fields_beyond(side, depth, system.cloud())))
                 }

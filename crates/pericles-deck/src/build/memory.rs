@@ -55,7 +55,12 @@ impl Deck {
                 Err(_) => return Ok(()),
             },
         };
-        self.refuse_if_more("body.spacing", points_per_cell * cells, cells * each, memory)
+        self.refuse_if_more(
+            &"body.spacing".into(),
+            points_per_cell * cells,
+            cells * each,
+            memory,
+        )
     }
 
     /// Refuses listed points whose bonds do not fit.
@@ -67,7 +72,12 @@ impl Deck {
         let (points, dimension) = (cloud.len() as f64, cloud.dimension());
         let neighbours = self.neighbours(dimension).min(points);
         let needed = points * self.bytes_of_point(dimension, neighbours);
-        self.refuse_if_more(self.horizon_key(), points, needed, resources.memory as f64)
+        self.refuse_if_more(
+            &self.horizon_key().into(),
+            points,
+            needed,
+            resources.memory as f64,
+        )
     }
 
     /// Refuses a surface whose vertices alone do not fit.
@@ -77,7 +87,12 @@ impl Deck {
         resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
         let needed = vertices * (self.bytes_of_state(3) + VERTEX);
-        self.refuse_if_more("body.shape", vertices, needed, resources.memory as f64)
+        self.refuse_if_more(
+            &"body.shape".into(),
+            vertices,
+            needed,
+            resources.memory as f64,
+        )
     }
 
     /// Refuses a surface whose bonds do not fit; `area` is that of all its points, m².
@@ -91,7 +106,12 @@ impl Deck {
         let points = points as f64;
         let neighbours = (std::f64::consts::PI * horizon * horizon / area * points).min(points);
         let needed = points * (self.bytes_of_state(3) + VERTEX + GEODESIC * neighbours);
-        self.refuse_if_more("material.horizon", points, needed, resources.memory as f64)
+        self.refuse_if_more(
+            &"material.horizon".into(),
+            points,
+            needed,
+            resources.memory as f64,
+        )
     }
 
     /// Refuses an absorbing end whose history does not fit; `reach` sites for so many steps.
@@ -114,9 +134,20 @@ impl Deck {
         Err(self.at_path(path, fault))
     }
 
+    /// Refuses a piece of the exterior whose initial fields do not fit.
+    pub(super) fn check_exterior(
+        &self,
+        path: &Path,
+        sites: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let memory = resources.memory as f64;
+        self.refuse_if_more(path, sites, 2.0 * NUMBER * sites, memory)
+    }
+
     fn refuse_if_more(
         &self,
-        key: &str,
+        path: &Path,
         points: f64,
         needed: f64,
         memory: f64,
@@ -129,7 +160,7 @@ impl Deck {
             needed,
             memory: memory as u64,
         };
-        Err(self.at_path(&key.into(), fault))
+        Err(self.at_path(path, fault))
     }
 
     /// Points within the horizon of a point inside.
@@ -151,7 +182,11 @@ impl Deck {
 
     fn bytes_of_point(&self, dimension: usize, neighbours: f64) -> f64 {
         let transform = TRANSFORM * 2f64.powi(dimension as i32) * (dimension as f64).powi(2);
-        let listed = if self.keeps_every_bond() { LISTED + KEPT } else { LISTED };
+        let listed = if self.keeps_every_bond() {
+            LISTED + KEPT
+        } else {
+            LISTED
+        };
         let bonds = match self.material.form {
             BondForm::List => listed * neighbours,
             BondForm::Convolution | BondForm::Spectral => transform,

@@ -158,7 +158,7 @@ impl Deck {
         self.judge_conditions(&system, &mut warnings);
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
-        let ends = self.ends(&system, &state, &sets, &*integrator)?;
+        let ends = self.ends(&system, &state, &sets, &*integrator, &resources)?;
         let exterior = boundary::exterior_frequency(&ends);
         let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);

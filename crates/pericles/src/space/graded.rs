@@ -84,7 +84,9 @@ impl GradedGrid {
                 for x in 0..shape[0] {
                     let centre = cells.centre([x, y, z]);
                     if cells.holds(centre) {
-                        let ratio = self.part(&cells, centre).map_or(1, |part| self.finer[part].ratio);
+                        let ratio = self
+                            .part(&cells, centre)
+                            .map_or(1, |part| self.finer[part].ratio);
                         count += f64::from(ratio).powi(dimension);
                     }
                 }
