@@ -4,12 +4,13 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use pericles::family::geodesic::GeodesicMethod;
 use pericles_io::DiskCache;
 
 use crate::exit::Exit;
 use crate::machine;
+use crate::plot::Frames;
 use crate::sweep::Axis;
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
@@ -72,6 +73,14 @@ checkpoint holds, so the file may have changed or gone. Another number of thread
         after_help = "The page needs no other file and no network, so that it can be mailed."
     )]
     Report(ReportArgs),
+    /// Draw pictures and histories of a run again: other fields, ranges, views, times
+    #[command(after_help = "\
+Without --field and --history the pictures of the last state and charts of all tables.
+  pericles plot branching --field Velocity_y --time '20 us,40 us' --range=-5:5
+  pericles plot branching --field Damage --animation --width 800
+  pericles plot branching --history kinetic_energy,elastic_energy --format svg
+  pericles plot branching --terminal")]
+    Plot(PlotArgs),
     /// Compare two results field by field
     #[command(after_help = "\
 Compares fields state by state and tables column by column, relative to the largest value of each. The exit status
@@ -101,10 +110,28 @@ Times are medians over rounds, on the wall clock: quote ratios, not seconds, of 
 The roofline counts 28 operations per eight bonds at the measured rate of multiply-adds, idle lanes included;
 on processors that add and multiply in separate units the fraction can exceed one.")]
     Bench(BenchArgs),
+    /// Run a deck on finer and finer grids, and see a number converge
+    #[command(after_help = "\
+Of each run one number counts: the last value of a column of its tables, or its greatest or least value (max:COLUMN,
+min:COLUMN), or a number of run.json such as audit.elastic_energy.
+  pericles converge bar.toml --m 3 --dx '20 mm,10 mm,5 mm' --scalar tip_u_x --reference 1e-3
+  pericles converge bar.toml --m 2,3,4 --dx '20 mm,10 mm,5 mm' --scalar tip_u_x
+  pericles converge bar.toml --m 2,4,8 --horizon '40 mm' --scalar tip_u_x
+With --dx the horizon goes to zero with the spacing, at each m (δ-convergence); with --horizon the spacing is the
+horizon over m (m-convergence). The observed order is that of the distance from the reference, or of three results
+without one. Results go to ./<deck's name>-converge, then -2, -3 …, or to --out: convergence.csv and .png, and a
+folder for each run; `pericles resume` goes on with the runs.")]
+    Converge(ConvergeArgs),
     /// Compute published results again and compare
     #[command(after_help = "\
 Studies and their decks are inside the program. The exit status is 0 only if every judged row holds, else 5.")]
     Reproduce(ReproduceArgs),
+    /// Write what a deck may hold, as a JSON Schema
+    #[command(after_help = "\
+Editors complete and check decks by it. Even Better TOML (VS Code) and Taplo take it by a first line of the deck:
+  pericles schema > pericles.schema.json
+  #:schema ./pericles.schema.json")]
+    Schema(SchemaArgs),
     /// Write what completes the command line for a shell
     #[command(after_help = "\
 Put it where the shell looks, such as
@@ -122,6 +149,13 @@ pub(crate) struct NewArgs {
     pub(crate) example: Option<String>,
     /// The file to write; must not exist; `-` is the standard output [default: the example's name]
     pub(crate) file: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArgs {
+    /// Write it for people instead, as Markdown
+    #[arg(long)]
+    pub(crate) markdown: bool,
 }
 
 #[derive(Debug, Args)]
@@ -268,6 +302,77 @@ pub(crate) struct ReportArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct PlotArgs {
+    /// The folder of a run
+    pub(crate) dir: PathBuf,
+    /// Fields, such as Damage or Velocity_y, with commas between them
+    #[arg(long = "field", value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) fields: Vec<String>,
+    /// Columns of the tables, such as kinetic_energy, with commas between them
+    #[arg(long = "history", value_name = "COLUMNS", value_delimiter = ',')]
+    pub(crate) columns: Vec<String>,
+    /// The states: all, first, last, or those nearest to times such as "20 us" or 1e-5,2e-5 [default: last; all of an animation]
+    #[arg(long, value_name = "TIMES")]
+    pub(crate) time: Option<Frames>,
+    /// Values at the ends of the colour bar, SI units, such as 0:1 or --range=-2e-3:2e-3
+    #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
+    pub(crate) range: Option<Range>,
+    /// The direction from which a body in space is seen, such as 1,-2,1
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub(crate) view: Option<Direction>,
+    /// Factor of the displacement of the points
+    #[arg(long, value_name = "FACTOR", value_parser = tolerance)]
+    pub(crate) scale: Option<f64>,
+    /// Pixels across, from 200 to 16000
+    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(200..=16_000))]
+    pub(crate) width: u32,
+    /// The kind of files
+    #[arg(long, value_enum, default_value_t = Format::Png)]
+    pub(crate) format: Format,
+    /// Put the pictures of each field into one animated PNG
+    #[arg(long, conflicts_with = "terminal")]
+    pub(crate) animation: bool,
+    /// Draw the histories here, in letters, and write nothing
+    #[arg(long, conflicts_with = "fields")]
+    pub(crate) terminal: bool,
+    /// Folder for the pictures; those of the same name are replaced [default: plots in the folder of the run]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Kinds of picture files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Pixels
+    Png,
+    /// Shapes and text
+    Svg,
+}
+
+impl Format {
+    /// What its files end in.
+    pub(crate) fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+        }
+    }
+}
+
+/// Two numbers, the first smaller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Range(pub(crate) [f64; 2]);
+
+fn range(text: &str) -> Result<Range, String> {
+    let ends = text.split_once(':').and_then(|(low, high)| {
+        let number = |text: &str| text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+        Some([number(low)?, number(high)?])
+    });
+    let range = ends.filter(|[low, high]| low < high).map(Range);
+    range.ok_or_else(|| "two numbers LOW:HIGH, the first smaller".to_owned())
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct DiffArgs {
     /// The folder of a run
     pub(crate) a: PathBuf,
@@ -295,6 +400,59 @@ pub(crate) struct BenchArgs {
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ConvergeArgs {
+    /// The deck, a TOML file
+    pub(crate) deck: PathBuf,
+    /// Ratios of horizon to spacing, with commas between them
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', required = true, value_parser = ratio)]
+    pub(crate) m: Vec<f64>,
+    /// Spacings, such as "2 mm,1 mm,0.5 mm"
+    #[arg(long, value_name = "LENGTHS", value_delimiter = ',', required_unless_present = "horizon", conflicts_with = "horizon", value_parser = length)]
+    pub(crate) dx: Vec<Length>,
+    /// One horizon for all m
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) horizon: Option<Length>,
+    /// The number that should converge
+    #[arg(long, value_name = "NAME")]
+    pub(crate) scalar: String,
+    /// What it should converge to
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    pub(crate) reference: Option<f64>,
+    /// Folder for the results; must not exist
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) caching: Caching,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
+    #[command(flatten)]
+    pub(crate) execution: Execution,
+}
+
+/// A length above zero, as it was written and in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Length {
+    pub(crate) text: String,
+    pub(crate) metres: f64,
+}
+
+fn length(text: &str) -> Result<Length, String> {
+    let metres = pericles_deck::metres(text).filter(|metres| *metres > 0.0);
+    let metres =
+        metres.ok_or_else(|| "a length above zero such as \"0.5 mm\" or 5e-4".to_owned())?;
+    let text = text.trim().to_owned();
+    Ok(Length { text, metres })
+}
+
+fn ratio(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok();
+    let number = number.filter(|number: &f64| *number >= 1.0 && number.is_finite());
+    number.ok_or_else(|| "a number of at least 1".to_owned())
 }
 
 #[derive(Debug, Args)]

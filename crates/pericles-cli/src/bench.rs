@@ -23,7 +23,7 @@ struct Results {
 
 #[derive(Serialize)]
 struct CaseResult {
-    case: &'static str,
+    case: String,
     operator: &'static str,
     isa: &'static str,
     points: usize,
@@ -39,8 +39,8 @@ struct CaseResult {
 impl From<&Timing> for CaseResult {
     fn from(timing: &Timing) -> Self {
         Self {
-            case: timing.case,
-            operator: timing.form.name(),
+            case: timing.case.clone(),
+            operator: timing.form,
             isa: timing.instruction_set.name(),
             points: timing.points,
             directed_bonds: timing.directed_bonds,
@@ -62,8 +62,12 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     let cases = match &args.case {
         None => Case::all(),
         Some(name) => vec![Case::named(name).ok_or_else(|| {
-            let names: Vec<&str> = Case::all().iter().map(|case| case.name).collect();
-            let all = format!("cases: {}", names.join(", "));
+            let cases = Case::all();
+            let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+            let all = format!(
+                "bar-N, plate-N or block-N with N cells an axis, then any of -list, -scalar, -avx2, -moved: {} …",
+                names.join(", ")
+            );
             CliError::unknown("case", name, names, &all)
         })?],
     };
@@ -72,7 +76,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     let table = args.json.as_deref() != Some(Path::new("-"));
     if table {
         console::print(format_args!(
-            "{machine}; {threads} threads\n{:<16} {:>5} {:>8} {:>10} {:>12} {:>8} {:>11} {:>6} {:>9} {:>8}",
+            "{machine}; {threads} threads\n{:<20} {:>6} {:>8} {:>10} {:>12} {:>8} {:>11} {:>6} {:>9} {:>8}",
             "case",
             "form",
             "isa",
@@ -90,9 +94,9 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
         let timing = bench::run(case, ROUNDS)?;
         if table {
             console::print(format_args!(
-                "{:<16} {:>5} {:>8} {:>10} {:>12} {:>8.3} {:>11.0} {:>6.1} {:>8.0}% {:>8.0}",
+                "{:<20} {:>6} {:>8} {:>10} {:>12} {:>8.3} {:>11.0} {:>6.1} {:>8.0}% {:>8.0}",
                 timing.case,
-                timing.form.name(),
+                timing.form,
                 timing.instruction_set.name(),
                 timing.points,
                 timing.directed_bonds,

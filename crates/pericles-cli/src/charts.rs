@@ -2,85 +2,90 @@
 
 use std::path::Path;
 
-use pericles_io::{Axis, Column, Curve, IoError, LineChart, read_csv};
+use pericles_io::{Axis, Curve, IoError, LineChart, read_csv};
 
 /// More curves cannot be told apart.
 const MOST_CURVES: usize = 8;
 /// More points than a chart has pixels across show nothing more.
 const MOST_POINTS: usize = 4000;
 
-/// A chart and what it shows.
+/// Curves of one unit over time.
 pub(crate) struct Chart {
     /// What its curves have in common: `energy`, or the name of the only one.
     pub(crate) name: String,
-    /// The chart itself.
-    pub(crate) chart: LineChart,
+    /// The unit of the curves.
+    pub(crate) unit: String,
+    /// s
+    pub(crate) time: Vec<f64>,
+    /// Names and numbers.
+    pub(crate) curves: Vec<(String, Vec<f64>)>,
 }
 
-/// Columns of one unit.
-struct Group<'a> {
-    unit: &'a str,
-    curves: Vec<(&'a Column, Vec<f64>)>,
+impl Chart {
+    /// As a picture.
+    pub(crate) fn drawn(&self) -> LineChart {
+        let axes = (
+            Axis::new("time", "s"),
+            Axis::new(self.name.clone(), self.unit.clone()),
+        );
+        let several = self.curves.len() > 1;
+        let curves = self.curves.iter();
+        curves.fold(LineChart::new(axes.0, axes.1), |chart, (name, values)| {
+            let label = if several { name.clone() } else { String::new() };
+            chart.curve(Curve::line(label, &self.time, values))
+        })
+    }
 }
 
-/// The charts of a table with a column `time`; none of a table without one, or with fewer than two rows.
+/// The charts of the wanted columns of a table with a column `time`; none of a table without one, or with fewer than two rows.
 ///
 /// Columns that never change and counters of steps are left out: a line along the axis says nothing.
 ///
 /// # Errors
 /// A table that cannot be read.
-pub(crate) fn of_table(path: &Path) -> Result<Vec<Chart>, IoError> {
+pub(crate) fn of_table(
+    path: &Path,
+    mut wanted: impl FnMut(&str) -> bool,
+) -> Result<Vec<Chart>, IoError> {
     let table = read_csv(path)?;
     let Some(time) = table.column("time").filter(|time| time.len() > 1) else {
         return Ok(Vec::new());
     };
     let stride = time.len().div_ceil(MOST_POINTS);
-    let time: Vec<f64> = thinned(time, stride);
-    let mut groups: Vec<Group<'_>> = Vec::new();
+    let mut charts: Vec<Chart> = Vec::new();
     for (column, values) in table.columns.iter().zip(&table.values) {
         let changes = values.iter().any(|x| *x != values[0] && !x.is_nan());
-        if ["step", "time"].contains(&column.name()) || !changes {
+        if ["step", "time"].contains(&column.name()) || !wanted(column.name()) || !changes {
             continue;
         }
-        let curve = (column, thinned(values, stride));
+        let curve = (column.name().to_owned(), thinned(values, stride));
         // Pure numbers have no common scale: a count beside a ratio hides the ratio.
-        let alike = |group: &&mut Group<'_>| {
+        let alike = |chart: &&mut Chart| {
             let unit = column.unit();
-            !unit.is_empty() && group.unit == unit && group.curves.len() < MOST_CURVES
+            !unit.is_empty() && chart.unit == unit && chart.curves.len() < MOST_CURVES
         };
-        match groups.iter_mut().find(alike) {
-            Some(group) => group.curves.push(curve),
-            None => groups.push(Group {
-                unit: column.unit(),
+        match charts.iter_mut().find(alike) {
+            Some(chart) => chart.curves.push(curve),
+            None => charts.push(Chart {
+                name: String::new(),
+                unit: column.unit().to_owned(),
+                time: thinned(time, stride),
                 curves: vec![curve],
             }),
         }
     }
-    let charts = groups.into_iter().map(|Group { unit, curves }| {
-        let names: Vec<&str> = curves.iter().map(|(column, _)| column.name()).collect();
-        let name = common_words(&names, unit);
-        let axes = (Axis::new("time", "s"), Axis::new(name.clone(), unit));
-        let mut chart = LineChart::new(axes.0, axes.1);
-        let several = curves.len() > 1;
-        for (column, values) in &curves {
-            let label = if several {
-                plain(column.name())
-            } else {
-                String::new()
-            };
-            chart = chart.curve(Curve::line(label, &time, values));
+    for chart in &mut charts {
+        let names: Vec<&str> = chart.curves.iter().map(|(name, _)| name.as_str()).collect();
+        chart.name = common_words(&names, &chart.unit);
+        for (name, _) in &mut chart.curves {
+            *name = name.replace('_', " ");
         }
-        Chart { name, chart }
-    });
-    Ok(charts.collect())
+    }
+    Ok(charts)
 }
 
 fn thinned(values: &[f64], stride: usize) -> Vec<f64> {
     values.iter().copied().step_by(stride).collect()
-}
-
-fn plain(name: &str) -> String {
-    name.replace('_', " ")
 }
 
 /// The words that names end with or begin with in common; if there are none, what the unit measures.
@@ -130,7 +135,7 @@ mod tests {
         let path = place.path().join("a.csv");
         let text = "step,time [s],a [J],b [J],c [N],still [N],ratio,count\n0,0,1,2,3,7,0,0\n1,1,2,3,4,7,0.5,9\n";
         std::fs::write(&path, text).unwrap();
-        let names: Vec<String> = of_table(&path)
+        let names: Vec<String> = of_table(&path, |_| true)
             .unwrap()
             .into_iter()
             .map(|chart| chart.name)

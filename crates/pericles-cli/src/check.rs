@@ -1,7 +1,7 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
 use pericles::family::geodesic::Ball;
-use pericles::material::SurfaceBond;
+use pericles::material::{BondConstants, SurfaceBond};
 use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
 
@@ -35,7 +35,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let mut lines = body(&deck, &facts);
     match &deck.surface {
         Some(surface) => lines.extend(surface_material(surface)),
-        None => lines.extend(material(&deck, &facts)),
+        None => lines.extend(material(&deck, &facts, &model.parts)),
     }
     lines.extend(time(&facts));
     for end in &facts.ends {
@@ -132,7 +132,7 @@ fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
     lines
 }
 
-fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
+fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     let mut lines = vec![
         ("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
         (
@@ -147,19 +147,20 @@ fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
             format!("{} of the grid's interior", percent(facts.stiffness_error)),
         ),
     ];
-    match (facts.critical_stretch, facts.fracture_energy) {
-        (Some(stretch), Some(energy)) => lines.push((
-            "breaking",
+    let strength = facts.critical_stretch.zip(facts.fracture_energy);
+    lines.push(("breaking", breaking(strength)));
+    for (part, constants) in deck.material.parts.iter().zip(parts) {
+        let strength = (constants.critical_stretch, constants.fracture_energy);
+        lines.push((
+            "besides",
             format!(
-                "beyond the stretch {}, fracture energy {}",
-                significant(stretch, 4),
-                quantity(energy, "J/m²")
+                "{}: Young's modulus {}, {} kg/m³; breaking {}",
+                part.name,
+                quantity(constants.young, "Pa"),
+                significant(part.density, 4),
+                breaking(Some(strength).filter(|(stretch, _)| stretch.is_finite()))
             ),
-        )),
-        _ => lines.push(("breaking", "never".into())),
-    }
-    for part in &deck.material.parts {
-        lines.push(("besides", format!("{}, {} kg/m³", part.name, part.density)));
+        ));
     }
     let density = deck.material.bonds.density;
     let speeds = WaveSpeeds::of(facts.youngs_modulus, density, deck.body.state);
@@ -172,6 +173,18 @@ fn material(deck: &Deck, facts: &Facts) -> Vec<Line> {
     }
     lines.push(("waves", waves));
     lines
+}
+
+/// From critical stretch and fracture energy (J/m²).
+fn breaking(strength: Option<(f64, f64)>) -> String {
+    match strength {
+        Some((stretch, energy)) => format!(
+            "beyond the stretch {}, fracture energy {}",
+            significant(stretch, 4),
+            quantity(energy, "J/m²")
+        ),
+        None => "never".into(),
+    }
 }
 
 fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {

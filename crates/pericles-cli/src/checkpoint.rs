@@ -137,6 +137,9 @@ impl Checkpoints {
     }
 
     fn container(&self, simulation: &Simulation) -> Result<Container, CliError> {
+        simulation
+            .settle()
+            .map_err(|error| CliError::of_run(error, String::new))?;
         let operator = simulation.system().operator();
         let metadata = Metadata {
             version: env!("CARGO_PKG_VERSION").into(),

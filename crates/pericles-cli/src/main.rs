@@ -1,6 +1,6 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] on one deck at several values, `info`, `diff` and `report` ([`page`]) on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] and [`converge`] on one deck at several values, `info`, `plot`, `diff` and `report` ([`page`]) on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
@@ -10,6 +10,7 @@ mod charts;
 mod check;
 mod checkpoint;
 mod console;
+mod converge;
 mod deadline;
 mod diff;
 mod dispersion;
@@ -21,6 +22,7 @@ mod machine;
 mod manual;
 mod new;
 mod page;
+mod plot;
 mod prepare;
 mod progress;
 mod refinement;
@@ -28,6 +30,7 @@ mod report;
 mod reproduce;
 mod results;
 mod run;
+mod schema;
 mod signals;
 mod summary;
 mod sweep;
@@ -56,12 +59,15 @@ fn main() -> ExitCode {
         Command::Resume(args) => run::resume(&args),
         Command::Info(args) => info::info(&args),
         Command::Report(args) => page::report(&args),
+        Command::Plot(args) => plot::plot(&args),
         Command::Diff(args) => diff::diff(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Dispersion(args) => dispersion::dispersion(&args),
         Command::Geodesics(args) => geodesics::geodesics(&args),
+        Command::Converge(args) => converge::converge(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::New(args) => new::new(&args),
+        Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man => manual::man(),
     };

@@ -153,12 +153,12 @@ impl Page {
     fn histories(&mut self, results: &Results) -> Result<(), CliError> {
         for table in results.tables() {
             let file = file_name(&table);
-            let charts = charts::of_table(&table)?;
+            let charts = charts::of_table(&table, |_| true)?;
             if !charts.is_empty() {
                 self.heading(&file);
             }
             for chart in charts {
-                let png = chart.chart.width(1000).to_png(&file)?;
+                let png = chart.drawn().width(1000).to_png(&file)?;
                 self.figure(&png, &format!("{} ({file})", chart.name));
             }
         }

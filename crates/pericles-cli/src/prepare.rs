@@ -8,7 +8,7 @@ use pericles::boundary::absorbing::{EndReport, KernelMethod, Side};
 use pericles::cache::{Cache, NoCache};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, ExactReference, Model, Precision, Resources};
+use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources};
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, History, InnerColumns, PictureOf,
     Pictures, Probes, Reactions, SurfaceCourse,
@@ -169,11 +169,8 @@ pub(crate) fn model(deck: &Deck, means: &Means<'_>) -> Result<Model, CliError> {
     let cache = means.caching.cache();
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
-        read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
-        read_points: &|path, dimension| {
-            read_points(path, dimension).map_err(|error| error.to_string())
-        },
         memory: means.memory,
+        ..readers()
     });
     for note in cache.iter().flat_map(DiskCache::notes) {
         console::note(format_args!("{note}"));
@@ -241,6 +238,35 @@ pub(crate) fn simulation(
     Ok(simulation)
 }
 
+/// A picture that a deck asks for.
+pub(crate) fn picture_of(
+    deck: &Deck,
+    picture: &Picture,
+    surface: Option<&Arc<Surface>>,
+) -> PictureOf {
+    PictureOf {
+        component: picture.component,
+        scale: picture.scale,
+        range: picture.range,
+        title: deck.title.clone().unwrap_or_default(),
+        view: picture.view,
+        surface: surface.cloned(),
+        ..PictureOf::new(picture.field)
+    }
+}
+
+/// What files beside a deck are read with.
+pub(crate) fn readers() -> Resources<'static> {
+    Resources {
+        cache: &NoCache,
+        read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
+        read_points: &|path, dimension| {
+            read_points(path, dimension).map_err(|error| error.to_string())
+        },
+        ..Resources::default()
+    }
+}
+
 fn add_pictures(
     deck: &Deck,
     folder: &OutputFolder,
@@ -254,16 +280,7 @@ fn add_pictures(
     let dimension = simulation.system().dimension();
     let mut uses: HashMap<String, u32> = HashMap::new();
     for picture in &deck.output.pictures {
-        let what = PictureOf {
-            field: picture.field,
-            component: picture.component,
-            scale: picture.scale,
-            range: picture.range,
-            title: deck.title.clone().unwrap_or_default(),
-            view: picture.view,
-            surface: surface.cloned(),
-            steady: false,
-        };
+        let what = picture_of(deck, picture, surface);
         // Two pictures of one field get two names.
         let uses = uses.entry(what.name(dimension)).or_default();
         *uses += 1;

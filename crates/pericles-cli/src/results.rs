@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use pericles_io::{FieldData, IoError, PvdSeries, read_fields};
 use serde_json::Value;
 
+use crate::checkpoint::DeckText;
 use crate::error::CliError;
 
 /// The folder of a run that was started once.
@@ -89,6 +90,23 @@ impl Results {
     pub(crate) fn texts(&self, pointer: &str) -> impl Iterator<Item = &str> {
         let list = self.value(pointer).and_then(Value::as_array);
         list.into_iter().flatten().filter_map(Value::as_str)
+    }
+
+    /// The deck, as it was given.
+    ///
+    /// # Errors
+    /// A `run.json` without one.
+    pub(crate) fn deck(&self) -> Result<DeckText, CliError> {
+        let deck = self.value("/deck").cloned().unwrap_or_default();
+        serde_json::from_value(deck).map_err(|error| self.damaged("run.json", error.to_string()))
+    }
+
+    /// A file of the folder that cannot be used.
+    pub(crate) fn damaged(&self, file: &str, reason: String) -> CliError {
+        CliError::Damaged {
+            path: self.folder.join(file),
+            reason,
+        }
     }
 
     /// The states whose fields were written, in time; none if the deck asked for no fields.

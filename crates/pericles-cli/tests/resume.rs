@@ -153,3 +153,38 @@ fn a_run_that_does_not_fit_its_files_is_refused() {
     assert_eq!(status, 3, "{message}");
     assert!(message.contains("probes.csv"), "{message}");
 }
+
+#[test]
+fn a_relaxation_goes_on_to_the_same_bytes() {
+    let place = with_plate();
+    let statics = "run plate.toml --quiet --set time={scheme='relaxation',load_steps=8,end=4e-6} --set checkpoint.every=3 \
+                   --set output.fields.every=2 --set output.history.every=1 --set output.cracks.every=1 --set output.picture.1.every=4";
+    for name in ["whole", "begun"] {
+        succeed(place.path(), &format!("{statics} --out {name}"));
+    }
+    let begun = place.path().join("begun");
+    assert!(report(&begun)["audit"]["broken_bonds"].as_u64().unwrap() > 0);
+    // As if it had died after an earlier checkpoint, in the middle of its load steps.
+    let mut checkpoints: Vec<_> = fs::read_dir(begun.join("checkpoints"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    checkpoints.sort();
+    let last = checkpoints.pop().unwrap();
+    assert!(
+        checkpoints
+            .last()
+            .unwrap()
+            .ends_with("step-000000000003.chk")
+    );
+    fs::remove_file(last).unwrap();
+    let text = fs::read_to_string(begun.join("run.json")).unwrap();
+    fs::write(
+        begun.join("run.json"),
+        text.replace("\"finished\"", "\"running\""),
+    )
+    .unwrap();
+    succeed(place.path(), "resume begun --quiet");
+    assert_eq!(report(&begun)["progress"]["first_step"], 3);
+    assert_same_results(&place.path().join("whole"), &begun);
+}

@@ -201,7 +201,7 @@ fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
         );
         None
     });
-    let region = region::read(table, frame);
+    let region = region::read_among_others(table, frame);
     Some(Finer {
         region: region?,
         ratio: ratio?,

@@ -12,6 +12,17 @@ pub enum Caution {
     /// A pre-crack without effect.
     #[error("this crack cuts no bond")]
     CrackCutsNothing,
+    /// A pre-crack away from the body.
+    #[error(
+        "this crack lies outside of the body, which reaches {}",
+        reach(low, high)
+    )]
+    CrackOutside {
+        /// Lowest coordinates of the body along each of its axes, m.
+        low: Vec<f64>,
+        /// Highest, m.
+        high: Vec<f64>,
+    },
     /// A horizon that does not go well with the mesh of a surface.
     #[error("{0}")]
     Surface(SurfaceCaution),
@@ -22,15 +33,31 @@ pub enum Caution {
         stretch: f64,
     },
     /// A load that supports take.
-    #[error("all {points} points of this load are held along it: it acts on the supports alone")]
+    #[error("{} held along it: there it acts on the supports alone", share(*held, *points))]
     LoadOnHeld {
+        /// Points of the load that are held.
+        held: usize,
         /// Points of the load.
         points: usize,
     },
+    /// A body that hangs together in pieces only.
+    #[error(
+        "from the start the body is in {pieces} pieces that no bond joins; the smallest has {}, such as that at {} m",
+        if *points == 1 { "one point".to_owned() } else { format!("{points} points") },
+        spot(place)
+    )]
+    Pieces {
+        /// How many.
+        pieces: usize,
+        /// Points of the smallest.
+        points: usize,
+        /// One of them, m.
+        place: Vec<f64>,
+    },
     /// A static body of which a part may float away.
     #[error(
-        "{points} of {of} points, such as that at ({}, {}, {}) m, are joined to no support by bonds",
-        place[0], place[1], place[2]
+        "{points} of {of} points, such as that at {} m, are joined to no support by bonds",
+        spot(place)
     )]
     NoSupport {
         /// Points without support.
@@ -38,7 +65,7 @@ pub enum Caution {
         /// All points.
         of: usize,
         /// One of them, m.
-        place: [f64; 3],
+        place: Vec<f64>,
     },
     /// A probe away from the body.
     #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
@@ -129,7 +156,13 @@ impl Subject for Caution {
             Self::LargeStretch { .. } => {
                 "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
             }
+            Self::CrackOutside { .. } => {
+                "places are in m unless they carry a unit; `origin` moves a body"
+            }
             Self::LoadOnHeld { .. } => "take other points, or leave the load out",
+            Self::Pieces { .. } => {
+                "look at cracks, holes and the horizon, unless loose pieces are meant"
+            }
             Self::NoSupport { .. } => {
                 "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
             }
@@ -157,6 +190,8 @@ impl Subject for Caution {
     fn label(&self) -> &'static str {
         match self {
             Self::CrackCutsNothing => "no effect",
+            Self::CrackOutside { .. } => "outside the body",
+            Self::Pieces { .. } => "in pieces",
             Self::LargeStretch { .. } => "very strong",
             Self::LoadOnHeld { .. } => "held",
             Self::NoSupport { .. } => "loose parts",
@@ -169,5 +204,31 @@ impl Subject for Caution {
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }
+    }
+}
+
+/// (1e-3, 2e-3)
+fn spot(place: &[f64]) -> String {
+    let numbers: Vec<String> = place.iter().map(|x| short(*x)).collect();
+    format!("({})", numbers.join(", "))
+}
+
+/// from (0, 0) to (0.1, 0.04) m
+fn reach(low: &[f64], high: &[f64]) -> String {
+    format!("from {} to {} m", spot(low), spot(high))
+}
+
+/// Four digits are enough to find a place.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    format!("{rounded}")
+}
+
+/// all 40 points of this load are, 3 of the 40 points of this load are
+fn share(part: usize, whole: usize) -> String {
+    if part == whole {
+        format!("all {whole} points of this load are")
+    } else {
+        format!("{part} of the {whole} points of this load are")
     }
 }

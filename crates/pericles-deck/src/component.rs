@@ -77,6 +77,7 @@ pub(crate) fn component(
         return item.quantity(quantity).map(Component::Number);
     }
     let table = item.table()?;
+    table.define("expression");
     let expression = table
         .required("expression")
         .and_then(|item| expression(&item, &variables.names()));

@@ -187,8 +187,7 @@ fn amplitude(
     let mut amplitude = Some([None, None, None]);
     let mut free = 0;
     for (c, entry) in items.iter().enumerate() {
-        if entry.word() == Some("free") {
-            entry.record("free");
+        if entry.is_keyword("free") {
             free += 1;
             continue;
         }

@@ -29,6 +29,7 @@ pub(crate) fn function(table: &Table<'_>) -> Option<TimeFunction> {
         ("expression", Kind::Expression),
     ];
     let table = table.table_or_empty("function")?;
+    table.define("function");
     let kind = table.choice_or_first("kind", "function of time", &KINDS)?;
     let function = match kind {
         Kind::Constant => Some(TimeFunction::Constant),

@@ -8,13 +8,13 @@ use crate::body::{self, Body, SurfaceRead};
 use crate::boundary::{self, BoundaryCondition};
 use crate::conditions::{self, Initial, Load, Prescribe, Probe};
 use crate::crack::{self, PreCrack};
-use crate::document;
+use crate::document::{self, Node};
 use crate::error::DeckError;
 use crate::exact::{self, Exact};
 use crate::material::{self, Material};
 use crate::output::{self, Checkpoint, Output};
 use crate::overrides;
-use crate::reader::{Ledger, Record, Table};
+use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
 use crate::set::{self, NamedSet, SetNames};
 use crate::source::Sources;
@@ -76,17 +76,31 @@ impl Deck {
     /// # Errors
     /// Everything that is wrong in it.
     pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
-        let mut sources = Sources::new(file_name, text);
-        let mut root = document::parse(&sources)?;
-        for text in overrides {
-            overrides::apply(&mut root, text, &mut sources)?;
-        }
-        let ledger = Ledger::new(sources);
-        let deck = ledger.root(&root).and_then(Self::from_tables);
-        let (problems, record) = ledger.close();
+        let (root, sources) = document(text, file_name, overrides)?;
+        let (deck, _) = Self::read_with(Ledger::new(sources), &root)?;
+        Ok(deck)
+    }
+
+    /// Adds what the reader asks of a deck to a survey.
+    pub(crate) fn survey(
+        text: &str,
+        overrides: &[String],
+        survey: Survey,
+    ) -> Result<Survey, DeckError> {
+        let (root, sources) = document(text, "specimen", overrides)?;
+        let (_, survey) = Self::read_with(Ledger::surveyed(sources, survey), &root)?;
+        Ok(survey)
+    }
+
+    fn read_with(ledger: Ledger, root: &Node) -> Result<(Self, Survey), DeckError> {
+        let deck = ledger.root(root).and_then(Self::from_tables);
+        let closed = ledger.close();
         match deck {
-            Some(deck) if problems.is_empty() => Ok(Self { record, ..deck }),
-            _ => Err(DeckError::refused(problems)),
+            Some(deck) if closed.problems.is_empty() => {
+                let record = closed.record;
+                Ok((Self { record, ..deck }, closed.survey))
+            }
+            _ => Err(DeckError::refused(closed.problems)),
         }
     }
 
@@ -173,6 +187,20 @@ impl Deck {
             record: Record::default(),
         })
     }
+}
+
+/// The document of a deck with its overrides.
+fn document(
+    text: &str,
+    file_name: &str,
+    overrides: &[String],
+) -> Result<(Node, Sources), DeckError> {
+    let mut sources = Sources::new(file_name, text);
+    let mut root = document::parse(&sources)?;
+    for text in overrides {
+        overrides::apply(&mut root, text, &mut sources)?;
+    }
+    Ok((root, sources))
 }
 
 /// What is said of a surface outside `[body]`.

@@ -29,7 +29,7 @@ pub enum Fault {
         allowed: Vec<String>,
     },
     /// A key that is missing.
-    #[error("{table} lacks `{key}`")]
+    #[error("{table} lacks `{key}`, which must be given")]
     MissingKey {
         /// The key.
         key: String,
@@ -67,7 +67,7 @@ pub enum Fault {
         allowed: String,
     },
     /// A value of another kind.
-    #[error("{found} (`{value}`) where {expected} is needed")]
+    #[error("{found} (`{value}`) where this is needed: {expected}")]
     WrongKind {
         /// The value as written.
         value: String,
@@ -207,6 +207,18 @@ pub enum Fault {
         /// What is allowed.
         allowed: String,
     },
+    /// Two prescriptions of one motion.
+    #[error(
+        "{points} points have their motion along {axis} prescribed by [[prescribe]] number {earlier} already"
+    )]
+    PrescribedTwice {
+        /// How many.
+        points: usize,
+        /// Along which axis.
+        axis: char,
+        /// The number of the earlier one in the deck, from 1.
+        earlier: usize,
+    },
     /// A set without points.
     #[error("the set `{set}` selects no point")]
     EmptySet {
@@ -275,10 +287,8 @@ impl Subject for Fault {
             Self::UnknownKey {
                 nearest, allowed, ..
             } => format!("{}allowed: {}", meant(nearest), names(allowed)),
-            Self::MissingKey { key, synonyms, .. } if synonyms.is_empty() => format!("`{key}` must be given"),
-            Self::MissingKey { key, synonyms, .. } => {
-                format!("`{key}` must be given (also called {})", names(synonyms))
-            }
+            Self::MissingKey { synonyms, .. } if synonyms.is_empty() => return None,
+            Self::MissingKey { synonyms, .. } => format!("also called {}", names(synonyms)),
             Self::MissingChoice { .. } => "exactly one of them must be given".into(),
             Self::Exclusive { allowed, .. } => format!("allowed: only one of {}", names(allowed)),
             Self::Misplaced { allowed, .. }
@@ -300,6 +310,9 @@ impl Subject for Fault {
             Self::EmptySet { .. } => {
                 "a set needs at least one cell centre; make the region larger (a layer is at least half a spacing deep)".into()
             }
+            Self::PrescribedTwice { .. } => {
+                "give other points, say \"free\" along this axis, or leave one of the two out".into()
+            }
             Self::EmptyPart { .. } => "its set or blocks have none, or later parts have taken them".into(),
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
@@ -311,7 +324,9 @@ impl Subject for Fault {
             Self::BadCondition { .. } => {
                 "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m".into()
             }
-            Self::BadPoints { .. } => "one line for each point, in m and m³".into(),
+            Self::BadPoints { .. } => {
+                "a file of points has a line `x y z block volume` for each, in m and m³; a relative path starts at the deck's folder".into()
+            }
             Self::OtherSpacing { section: Some(section), .. } => format!(
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
@@ -336,7 +351,9 @@ impl Subject for Fault {
             } => "misspelt?",
             Self::UnknownKey { .. } | Self::UnknownWord { .. } => "not known",
             Self::MissingKey { .. } | Self::MissingChoice { .. } => "incomplete",
-            Self::Exclusive { .. } | Self::TwoCourses { .. } => "one too many",
+            Self::Exclusive { .. } | Self::TwoCourses { .. } | Self::PrescribedTwice { .. } => {
+                "one too many"
+            }
             Self::Misplaced { .. } => "not here",
             Self::WrongKind { .. } => "wrong kind of value",
             Self::NotANumber { .. } => "no number",

@@ -33,17 +33,6 @@
 //! assert!(message.starts_with("--set time.ende:1:6: unknown key `ende` in [time]; did you mean `end`?"));
 //! ```
 //!
-//! # Numbers
-//! A number is plain and in SI units (`72e9`), or a string with a unit (`"72 GPa"`, `"0.25 mm"`, `"135 J/m2"`, `"7.85 g/cm3"`, `"50 %"`). Units are products (`*`, `·`)
-//! and quotients (`/`, from left to right) of m, g, s, min, h, N, Pa, bar, J, W, Hz and %, with the prefixes f p n u µ m c d k M G T
-//! and whole powers (`m2`, `m^2`, `m²`). `"0.25 mm"` is the same number as `0.25e-3`, to the last bit. Vectors have one entry per dimension of the body; in one dimension the brackets may be
-//! left out.
-//!
-//! # Expressions
-//! Entries of initial values, prescriptions and loads may be `{ expression = "…" }`, a function of the coordinates `x`, `y`, `z` (m) and, where it is not an initial value, of the time `t` (s), in SI
-//! units. `+ - * / ^`, parentheses, `pi`, `e` and the functions abs, acos, asin, atan, cbrt, ceil, cos, cosh, exp, floor, ln, log10, round, sign, sin, sinh, sqrt, step (0 below zero, else 1), tan, tanh are
-//! known; `-x^2` is −(x²) and `2^3^2` is 2^(3²). A prescribed displacement must have two derivatives in time, a prescribed velocity one (it is integrated numerically, to 1e-13).
-//!
 //! # Format
 //! Names in brackets are synonyms; values shown after `default` are taken if the key is left out.
 //! ```toml
@@ -219,11 +208,6 @@
 //! `layer = { side, depth }` (side −x, +x, …, +z of the body's bounding box; `cells` counts spacings instead), `polygon = { corners = [[x, y], …] }`,
 //! `union = [ … ]`, `intersection = [ … ]`, `complement = { … }`.
 //!
-//! # Listed points
-//! `shape = "points"` takes the points of a text file: a line `x y z block volume` for each, separated by blanks or commas; with `#` or `!` begin comments. A first
-//! line may name the columns (`header: x y block_id volume`). In two dimensions z may be left out and volumes are area times `thickness`, in one
-//! dimension y as well and they are length times `area`. Bodies on grids are block 1. Tractions on sets of listed points need `area`.
-//!
 //! # Surfaces
 //! A body may be a closed surface of triangles. Its points are the vertices, with areas in place of volumes: densities are per area, forces are tractions.
 //! ```toml
@@ -260,10 +244,7 @@
 //! ```
 //! Cracks, body forces and sets in spacings belong to grids. `[[output.picture]]` takes `view = [x, y, z]`, the direction a body in space is seen from.
 //!
-//! # Overrides
-//! `key=value` changes the document before it is read. The key is a dotted path with indices from zero (`crack.0.ends`, `load.0.traction`); the value is TOML
-//! if it parses as such, else a string, so that `time.dt=25 ns` needs no quotes. A key replaces the same key under another name and those
-//! of which only one may be given: `material.m=4` replaces `horizon`. Errors point into the override.
+#![doc = include_str!("language.md")]
 
 mod body;
 mod boundary;
@@ -292,6 +273,7 @@ mod quantity;
 mod reader;
 mod region;
 mod relaxation;
+mod schema;
 mod scheme;
 mod set;
 mod source;
@@ -317,8 +299,10 @@ pub use material::{Inclusion, Material};
 pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
 pub use part::{MaterialInterface, Part, PartPlace};
 pub use points::PointsFile;
+pub use quantity::{metres, seconds};
+pub use schema::{json_schema, reference};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
 pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
-pub use time::{Time, TimeStep, seconds};
+pub use time::{Time, TimeStep};

@@ -301,7 +301,7 @@ impl Extent<'_> {
 /// The horizon, given as a length or as a multiple of the spacing.
 fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
     let (kind, item) = table.exactly_one(HORIZONS)?;
-    if kind == "horizon" && item.word() == Some("infinite") {
+    if kind == "horizon" && item.is_keyword("infinite") {
         return Some(Extent::Infinite(item));
     }
     let length = match kind {

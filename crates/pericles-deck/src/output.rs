@@ -180,13 +180,9 @@ fn names(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Field>> {
 }
 
 fn is_never(table: &Table<'_>, key: &'static str) -> bool {
-    let never = table
+    table
         .optional(key)
-        .filter(|item| item.word() == Some(NEVER));
-    if let Some(item) = &never {
-        item.record(NEVER);
-    }
-    never.is_some()
+        .is_some_and(|item| item.is_keyword(NEVER))
 }
 
 fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
@@ -317,12 +313,7 @@ fn field(item: &Item<'_>, dimension: Option<usize>) -> Option<(Field, Option<usi
             (name, (field, component))
         })
         .collect();
-    let text = item.text()?;
-    let found = named.iter().find(|(name, _)| *name == text);
-    if found.is_none() {
-        item.unknown_word("field", &text, named.iter().map(|(name, _)| name.as_str()));
-    }
-    found.map(|(_, field)| *field)
+    item.choice("field", &named)
 }
 
 fn range(item: &Item<'_>, quantity: Quantity) -> Option<[f64; 2]> {

@@ -1,6 +1,6 @@
 //! What a number in a deck stands for.
 
-use crate::units::Dimension;
+use crate::units::{self, Dimension};
 
 /// A physical quantity with its SI unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,33 +53,90 @@ impl Quantity {
         }
     }
 
+    /// In words, without an article.
+    pub(crate) fn noun(self) -> &'static str {
+        match self {
+            Self::Number => "number",
+            _ => self
+                .name()
+                .trim_start_matches("an ")
+                .trim_start_matches("a "),
+        }
+    }
+
+    /// One as decks write it.
+    pub(crate) fn example(self) -> &'static str {
+        match self {
+            Self::Number => "25 %",
+            Self::Length => "0.25 mm",
+            Self::Area => "1 mm2",
+            Self::Time => "25 ns",
+            Self::Density => "2440 kg/m3",
+            Self::SurfaceDensity => "2 kg/m2",
+            Self::Modulus => "72 GPa",
+            Self::Traction => "12 MPa",
+            Self::SurfaceEnergy => "135 J/m2",
+            Self::EnergyDensity => "5 J/m3",
+            Self::Velocity => "20 m/s",
+            Self::ForceDensity => "48 GN/m3",
+        }
+    }
+
+    /// The unit that plain numbers have; empty if there is none.
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::Number => "",
+            Self::Length => "m",
+            Self::Area => "m2",
+            Self::Time => "s",
+            Self::Density => "kg/m3",
+            Self::SurfaceDensity => "kg/m2",
+            Self::Modulus | Self::Traction => "Pa",
+            Self::SurfaceEnergy => "J/m2",
+            Self::EnergyDensity => "J/m3",
+            Self::Velocity => "m/s",
+            Self::ForceDensity => "N/m3",
+        }
+    }
+
     /// What is allowed, with an example: `a length such as "0.25 mm" or a plain number in m`.
     pub(crate) fn expected(self) -> String {
-        let (example, unit) = match self {
-            Self::Number => return "a plain number such as 0.25 or \"25 %\"".into(),
-            Self::Length => ("0.25 mm", "m"),
-            Self::Area => ("1 mm2", "m2"),
-            Self::Time => ("25 ns", "s"),
-            Self::Density => ("2440 kg/m3", "kg/m3"),
-            Self::SurfaceDensity => ("2 kg/m2", "kg/m2"),
-            Self::Modulus => ("72 GPa", "Pa"),
-            Self::Traction => ("12 MPa", "Pa"),
-            Self::SurfaceEnergy => ("135 J/m2", "J/m2"),
-            Self::EnergyDensity => ("5 J/m3", "J/m3"),
-            Self::Velocity => ("20 m/s", "m/s"),
-            Self::ForceDensity => ("48 GN/m3", "N/m3"),
-        };
-        format!(
-            "{} such as \"{example}\" or a plain number in {unit}",
-            self.name()
-        )
+        let example = self.example();
+        match self {
+            Self::Number => format!("a plain number such as 0.25 or \"{example}\""),
+            _ => format!(
+                "{} such as \"{example}\" or a plain number in {}",
+                self.name(),
+                self.unit()
+            ),
+        }
     }
+}
+
+/// Reads a time as decks write it: `"2h"`, `"90 min"`, or a plain number of seconds. None if it is something else.
+///
+/// ```
+/// assert_eq!(pericles_deck::seconds("2h"), Some(7200.0));
+/// assert_eq!(pericles_deck::seconds("2 m"), None);
+/// ```
+pub fn seconds(text: &str) -> Option<f64> {
+    measured(text, Quantity::Time)
+}
+
+/// Reads a length as decks write it: `"0.5 mm"`, or a plain number of metres. None if it is something else.
+pub fn metres(text: &str) -> Option<f64> {
+    measured(text, Quantity::Length)
+}
+
+fn measured(text: &str, quantity: Quantity) -> Option<f64> {
+    let measure = units::parse(text).ok()?;
+    let dimension = measure.dimension.unwrap_or(quantity.dimension());
+    (dimension == quantity.dimension()).then_some(measure.value)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units;
 
     #[test]
     fn the_examples_have_the_dimension_they_explain() {
@@ -96,10 +153,8 @@ mod tests {
             Velocity,
             ForceDensity,
         ] {
-            let expected = quantity.expected();
-            let example = expected.split('"').nth(1).unwrap();
-            let unit = expected.rsplit(' ').next().unwrap();
-            for text in [example.to_owned(), format!("1 {unit}")] {
+            let unit = quantity.unit();
+            for text in [quantity.example().to_owned(), format!("1 {unit}")] {
                 assert_eq!(
                     units::parse(&text).unwrap().dimension,
                     Some(quantity.dimension()),

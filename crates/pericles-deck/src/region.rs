@@ -21,6 +21,12 @@ pub(crate) struct Frame {
 
 /// A table with exactly one key, the kind of region.
 pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<Region> {
+    table.define("region");
+    read_among_others(table, frame)
+}
+
+/// The kind of region in a table that has had its other keys read.
+pub(crate) fn read_among_others(table: Table<'_>, frame: Frame) -> Option<Region> {
     let found = table.exactly_one(REGIONS);
     table.finish();
     let (kind, item) = found?;
@@ -28,7 +34,8 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<Region> {
 }
 
 /// A region of a kind.
-pub(crate) fn of_kind(kind: &str, item: &Item<'_>, frame: Frame) -> Option<Region> {
+pub(crate) fn of_kind(kind: &'static str, item: &Item<'_>, frame: Frame) -> Option<Region> {
+    item.define(kind);
     match kind {
         "all" => everything(item),
         "box" => axis_parallel_box(item.table()?, frame),
@@ -97,21 +104,17 @@ fn bounds(item: &Item<'_>, frame: Frame, open: f64) -> Option<Point> {
     )?;
     let mut corner = Some([open; 3]);
     for (c, entry) in items.iter().enumerate() {
-        let value = match entry.word() {
-            Some("open") => {
-                entry.record("open");
-                Some(open)
-            }
-            Some("inf" | "+inf") => {
-                entry.record("inf");
-                Some(f64::INFINITY)
-            }
-            Some("-inf") => {
-                entry.record("-inf");
-                Some(f64::NEG_INFINITY)
-            }
-            _ => entry.quantity(Quantity::Length),
-        };
+        let words = [
+            ("open", open),
+            ("inf", f64::INFINITY),
+            ("+inf", f64::INFINITY),
+            ("-inf", f64::NEG_INFINITY),
+        ];
+        let value = words
+            .into_iter()
+            .find(|(word, _)| entry.is_keyword(word))
+            .map(|(_, bound)| bound)
+            .or_else(|| entry.quantity(Quantity::Length));
         match (value, &mut corner) {
             (Some(value), Some(corner)) => corner[c] = value,
             _ => corner = None,

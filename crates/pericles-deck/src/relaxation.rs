@@ -44,11 +44,10 @@ pub(crate) fn read(table: &Table<'_>) -> Option<RelaxationOptions> {
 }
 
 fn damping(item: &Item<'_>) -> Option<Damping> {
+    if item.is_keyword("adaptive") {
+        return Some(Damping::Adaptive);
+    }
     match item.word() {
-        Some("adaptive") => {
-            item.record("adaptive");
-            Some(Damping::Adaptive)
-        }
         Some(word) if !word.contains(|c: char| c.is_ascii_digit()) => {
             item.unknown_word("damping", word, std::iter::once("adaptive"));
             None

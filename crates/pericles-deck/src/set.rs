@@ -86,7 +86,7 @@ impl SetNames {
 pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedSet>>, SetNames) {
     let mut names = SetNames(vec![ALL.into()]);
     let mut sets = Some(Vec::new());
-    for (name, place, item) in table.iter().flat_map(Table::named) {
+    for (name, place, item) in table.iter().flat_map(|table| table.named("set")) {
         if let Some(fault) = bad_name(name) {
             table
                 .iter()

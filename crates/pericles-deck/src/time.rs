@@ -5,7 +5,6 @@ use crate::reader::Table;
 use crate::relaxation;
 use crate::scheme::{self, Scheme};
 use crate::set::SetNames;
-use crate::units;
 
 /// The course of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,18 +31,6 @@ pub enum TimeStep {
     Fixed(f64),
     /// So many to the end.
     Equal(u64),
-}
-
-/// Reads a time as decks write it: `"2h"`, `"90 min"`, or a plain number of seconds. None if it is something else.
-///
-/// ```
-/// assert_eq!(pericles_deck::seconds("2h"), Some(7200.0));
-/// assert_eq!(pericles_deck::seconds("2 m"), None);
-/// ```
-pub fn seconds(text: &str) -> Option<f64> {
-    let measure = units::parse(text).ok()?;
-    let dimension = measure.dimension.unwrap_or(Quantity::Time.dimension());
-    (dimension == Quantity::Time.dimension()).then_some(measure.value)
 }
 
 pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
@@ -79,11 +66,8 @@ fn step(table: &Table<'_>) -> Option<TimeStep> {
             table.record("dt", AUTO);
             Some(None)
         }
+        Some(item) if item.is_keyword(AUTO) => Some(None),
         Some(item) => match item.word() {
-            Some(AUTO) => {
-                item.record(AUTO);
-                Some(None)
-            }
             Some(word) if !word.contains(|c: char| c.is_ascii_digit()) => {
                 item.unknown_word("time step", word, std::iter::once(AUTO));
                 None

@@ -299,7 +299,7 @@ fn what_the_library_refuses_is_located() {
             "displacement = [0, 0]",
             31,
             "[[prescribe]]",
-            "prescribed twice",
+            "prescribed by [[prescribe]] number 1 already",
         ),
         (
             "traction = [\"1 MPa\", 0]",
@@ -347,7 +347,7 @@ fn what_is_odd_is_warned_of() {
     let away = "[[0, \"20 mm\"], [\"10 mm\", \"20 mm\"]]";
     let (line, text) = cautions("[[0, \"4 mm\"], [\"10 mm\", \"4 mm\"]]", away);
     assert_eq!(line, 20);
-    assert!(text.starts_with("deck.toml:20:1: this crack cuts no bond"));
+    assert!(text.starts_with("deck.toml:20:1: this crack lies outside of the body"));
     let (line, text) = cautions("[\"12.4 mm\",", "[\"22.4 mm\",");
     assert_eq!(line, 49);
     assert!(text.contains("`middle`"), "{text}");

@@ -84,7 +84,7 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "also called `dx`"]),
-    wrong("[body]\n", "[bdy]\n", (1, 1), "", &["the deck lacks `body`"]),
+    wrong("[body]\n", "[corpus]\n", (1, 1), "", &["the deck lacks `body`"]),
     wrong("density =", "rho = 1\ndensity =", (11, 1), "density", &["`rho` and `density` are given together in [material]", "only one"]),
     wrong("horizon =", "horizon_ratio = 3\nhorizon =", (13, 11), "\"0.75 mm\"", &["`horizon` and `horizon_ratio` are given together"]),
     wrong("horizon = \"0.75 mm\"\n", "", (9, 1), "[material]", &["[material] lacks one of `horizon` and `horizon_ratio`"]),
@@ -159,11 +159,11 @@ const WRONG: &[Wrong] = &[
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["only cells of one size"]),
     wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no cells of one size"]),
     // Kinds.
-    wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where a list with one entry per dimension", "0.25 mm"]),
-    wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where a length such as \"0.25 mm\""]),
-    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (37, 18), "\"yes\"", &["a string (`yes`) where true or false, without quotes is needed"]),
+    wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where this is needed: a list with one entry per dimension", "0.25 mm"]),
+    wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where this is needed: a length such as \"0.25 mm\""]),
+    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (37, 18), "\"yes\"", &["a string (`yes`) where this is needed: true or false, without quotes"]),
     wrong("segment = [[", "ends = true\nsegment = [[", (19, 8), "true", &["one of \"closed\", \"open\""]),
-    wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a string (`often`) where a table is needed"]),
+    wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a string (`often`) where this is needed: a table"]),
     wrong("title = \"plate\"", "title = 2024-01-01", (1, 9), "2024-01-01", &["a date", "a string in quotes"]),
     // Quantities.
     wrong("\"72 GPa\"", "\"72 GJ\"", (11, 18), "\"72 GJ\"", &["`72 GJ` is not a modulus", "a modulus such as \"72 GPa\" or a plain number in Pa"]),
@@ -398,9 +398,9 @@ fn all_problems_are_found_at_once_and_in_order() {
         .iter()
         .map(|problem| problem.location().line())
         .collect();
-    assert_eq!(lines, [3, 6, 11, 23, 35, 36], "{error}");
-    assert!(error.to_string().starts_with("6 problems"));
-    assert_eq!(error.related().unwrap().count(), 6);
+    assert_eq!(lines, [6, 11, 23, 35, 36], "{error}");
+    assert!(error.to_string().starts_with("5 problems"));
+    assert_eq!(error.related().unwrap().count(), 5);
     assert!(error.labels().is_none());
 }
 

@@ -152,7 +152,7 @@ fn main() -> pericles::Result<()> {
             None => {
                 eprintln!(
                     "no such case; there are {:?}",
-                    Case::all().iter().map(|c| c.name).collect::<Vec<_>>()
+                    Case::all().into_iter().map(|c| c.name).collect::<Vec<_>>()
                 );
                 Ok(())
             }

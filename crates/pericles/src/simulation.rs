@@ -197,6 +197,18 @@ impl Simulation {
         Ok(Outcome::Finished)
     }
 
+    /// Waits until the observers have kept what they have seen; a state saved before may know of outputs that are not there.
+    ///
+    /// # Errors
+    /// A failing observer.
+    pub fn settle(&self) -> Result<(), SimulationError> {
+        for scheduled in &self.observers {
+            let settled = scheduled.observer.settle();
+            settled.map_err(SimulationError::Observe)?;
+        }
+        Ok(())
+    }
+
     /// Boundaries with memory are made for a scheme and a number of steps.
     fn check_boundaries(&self) -> Result<(), PericlesError> {
         let (scheme, steps) = (self.integrator.name(), self.steps);

@@ -30,6 +30,7 @@ use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::prepare::Means;
+use crate::results::Results;
 use crate::run::{self, Session};
 use crate::signals::Signals;
 use crate::units::threads;
@@ -62,21 +63,15 @@ pub(crate) fn is_sweep(folder: &Path) -> bool {
 /// # Errors
 /// Values that the deck refuses, before anything is run; output that cannot be written.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
-    let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let record = Record {
-        deck: DeckText::of(&deck, args.deck.display().to_string()),
-        axes: args.sweep.clone(),
-    };
-    let members = record.members();
-    // Before the folder is made: nobody wants half a sweep because of a slip in its last value.
-    for member in &members {
-        member.deck.read()?;
-    }
-    let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-sweep")?;
-    let text = serde_json::to_string_pretty(&record)?;
-    write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits, members.len());
-    record.drive(&members, &folder, &settings)
+    let (deck, changes) = (&args.deck, &args.overrides.set);
+    let sweep = Sweep::begun(
+        deck,
+        changes,
+        args.sweep.clone(),
+        args.out.as_deref(),
+        "-sweep",
+    )?;
+    sweep.drive(&Settings::new(&args.execution, &args.caching, &args.limits))
 }
 
 /// Goes on with a sweep: runs that have finished stay, others go on from their checkpoint or begin.
@@ -91,35 +86,94 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         path,
         reason: error.to_string(),
     })?;
-    let members = record.members();
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits, members.len());
-    record.drive(&members, &folder, &settings)
+    let sweep = Sweep {
+        members: record.members(),
+        record,
+        folder,
+    };
+    sweep.drive(&Settings::new(&args.execution, &args.caching, &args.limits))
+}
+
+/// A sweep in its folder.
+pub(crate) struct Sweep {
+    record: Record,
+    members: Vec<Member>,
+    folder: OutputFolder,
+}
+
+impl Sweep {
+    /// Makes the folder of a new sweep, once nothing in its decks can be wrong.
+    ///
+    /// # Errors
+    /// Values that the deck refuses; a folder that exists or cannot be made.
+    pub(crate) fn begun(
+        deck: &Path,
+        overrides: &[String],
+        axes: Vec<Axis>,
+        out: Option<&Path>,
+        suffix: &str,
+    ) -> Result<Self, CliError> {
+        let read = Deck::read(deck, overrides)?;
+        let record = Record {
+            deck: DeckText::of(&read, deck.display().to_string()),
+            axes,
+        };
+        let members = record.members();
+        // Before the folder is made: nobody wants half a sweep because of a slip in its last value.
+        for member in &members {
+            member.deck.read()?;
+        }
+        let folder = run::output_folder(out, false, deck, suffix)?;
+        let text = serde_json::to_string_pretty(&record)?;
+        write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
+        Ok(Self {
+            record,
+            members,
+            folder,
+        })
+    }
+
+    /// Runs what has not finished.
+    ///
+    /// # Errors
+    /// Output that cannot be written.
+    pub(crate) fn drive(&self, settings: &Settings<'_>) -> Result<Exit, CliError> {
+        self.record.drive(&self.members, &self.folder, settings)
+    }
+
+    /// Its folder.
+    pub(crate) fn folder(&self) -> &OutputFolder {
+        &self.folder
+    }
+
+    /// The results of all runs that left some.
+    pub(crate) fn results(&self) -> impl Iterator<Item = Results> {
+        let folders = self
+            .members
+            .iter()
+            .map(|member| self.folder.file(&member.name));
+        folders.filter_map(|folder| Results::open(&folder).ok())
+    }
 }
 
 /// How the runs of a sweep are done.
-struct Settings<'a> {
+pub(crate) struct Settings<'a> {
     /// Threads of one run.
     threads: usize,
-    /// Runs at the same time.
-    at_once: usize,
-    means: Means<'a>,
+    caching: &'a Caching,
+    /// Bytes for all runs together.
+    memory: u64,
     deadline: Option<Deadline>,
     quiet: bool,
 }
 
 impl<'a> Settings<'a> {
-    /// What the command line says; one thread a run unless it says otherwise. Runs at the same time share the memory.
-    fn new(execution: &Execution, caching: &'a Caching, limits: &Limits, runs: usize) -> Self {
-        let threads = execution.threads.count_or(1);
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        let at_once = (cores / threads).clamp(1, runs.max(1));
+    /// What the command line says; one thread a run unless it says otherwise.
+    pub(crate) fn new(execution: &Execution, caching: &'a Caching, limits: &Limits) -> Self {
         Self {
-            threads,
-            at_once,
-            means: Means {
-                caching,
-                memory: limits.memory.bytes() / at_once as u64,
-            },
+            threads: execution.threads.count_or(1),
+            caching,
+            memory: limits.memory.bytes(),
             deadline: Deadline::from_now(limits.wall_time),
             quiet: execution.quiet,
         }
@@ -181,7 +235,12 @@ impl Record {
         settings: &Settings<'_>,
     ) -> Result<Exit, CliError> {
         let signals = Signals::watch().map_err(CliError::Signals)?;
-        let at_once = settings.at_once;
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let at_once = (cores / settings.threads).clamp(1, members.len().max(1));
+        let means = Means {
+            caching: settings.caching,
+            memory: settings.memory / at_once as u64,
+        };
         if !settings.quiet {
             console::note(format_args!(
                 "{} runs, {at_once} at a time on {} each; results in {}",
@@ -197,7 +256,7 @@ impl Record {
                 if let Some(asked) = signals.asked() {
                     return asked;
                 }
-                let exit = member.run(folder, settings, &signals);
+                let exit = member.run(folder, settings, &means, &signals);
                 // The first trouble decides the status.
                 if worst == Exit::Done {
                     worst = exit;
@@ -218,9 +277,15 @@ impl Record {
 
 impl Member {
     /// Runs it as far as it goes, says so, and reports what went wrong.
-    fn run(&self, sweep: &OutputFolder, settings: &Settings<'_>, signals: &Signals) -> Exit {
+    fn run(
+        &self,
+        sweep: &OutputFolder,
+        settings: &Settings<'_>,
+        means: &Means<'_>,
+        signals: &Signals,
+    ) -> Exit {
         let exit = self
-            .attempt(&sweep.file(&self.name), settings, signals)
+            .attempt(&sweep.file(&self.name), settings, means, signals)
             .unwrap_or_else(|error| {
                 console::note(format_args!("{}:", self.name));
                 error.report();
@@ -241,6 +306,7 @@ impl Member {
         &self,
         path: &Path,
         settings: &Settings<'_>,
+        means: &Means<'_>,
         signals: &Signals,
     ) -> Result<Exit, CliError> {
         let pool = rayon::ThreadPoolBuilder::new()
@@ -249,7 +315,7 @@ impl Member {
         let deadline = settings.deadline.clone();
         pool.install(|| {
             let session = if path.join("checkpoints").is_dir() {
-                match Session::resumed(path, &settings.means, true)? {
+                match Session::resumed(path, means, true)? {
                     Some(session) => session,
                     None => return Ok(Exit::Done),
                 }
@@ -257,7 +323,7 @@ impl Member {
                 // A run that died before its first checkpoint begins again.
                 let folder = OutputFolder::create(path, path.exists())?;
                 let deck = self.deck.read()?;
-                let model = run::modelled(&deck, &settings.means)?;
+                let model = run::modelled(&deck, means)?;
                 Session::begun(&deck, self.deck.clone(), model, folder, true)?
             };
             session.drive(deadline, signals)

@@ -149,6 +149,7 @@ impl Deck {
             names.push(name.clone());
             let path = Path::from("prescribe").index(k);
             let points = self.members(sets, &motion.set, &path)?.clone();
+            self.refuse_second_motion(k, &points, sets)?;
             let along = self.axis_motions(&path, motion, system.cloud(), &points)?;
             let mut prescribed = PrescribedMotion::along(
                 name,
@@ -163,6 +164,30 @@ impl Deck {
             system
                 .add_motion(prescribed)
                 .map_err(|error| self.at_path(&path, error.into()))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a motion of points that an earlier one moves along the same axis.
+    fn refuse_second_motion(&self, k: usize, points: &[u32], sets: &Sets) -> Result<(), DeckError> {
+        let later = &self.prescribe[k];
+        for (earlier, other) in self.prescribe[..k].iter().enumerate() {
+            let path = Path::from("prescribe").index(earlier);
+            let others = self.members(sets, &other.set, &path)?;
+            // Sets are in order.
+            let shared = points.iter().filter(|i| others.binary_search(i).is_ok());
+            let (shared, both) = (
+                shared.count(),
+                (0..3).find(|&c| later.amplitude[c].is_some() && other.amplitude[c].is_some()),
+            );
+            if let (Some(c), true) = (both, shared > 0) {
+                let fault = Fault::PrescribedTwice {
+                    points: shared,
+                    axis: ['x', 'y', 'z'][c],
+                    earlier: earlier + 1,
+                };
+                return Err(self.at_path(&Path::from("prescribe").index(k), fault));
+            }
         }
         Ok(())
     }

@@ -33,6 +33,7 @@ use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, PointScalar, Simulation, System};
 
 use self::graded::Grids;
+use self::parts::Composition;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -56,6 +57,8 @@ pub struct Model {
     pub surface: Option<Arc<Surface>>,
     /// The constants of the bonds; not numbers for a surface.
     pub constants: BondConstants,
+    /// The constants of the other materials, in the order of `[[material.part]]`.
+    pub parts: Vec<BondConstants>,
     /// How the bonds are kept.
     pub form: BondForm,
     /// Bonds that pre-cracks cut.
@@ -90,6 +93,7 @@ struct Assembled {
     surface: Option<Arc<Surface>>,
     sets: Sets,
     constants: BondConstants,
+    parts: Vec<BondConstants>,
     bonds: AssembledBonds,
     cracks: Vec<TrackedCrack>,
     density: PointScalar,
@@ -137,6 +141,7 @@ impl Deck {
             surface,
             sets,
             constants,
+            parts,
             bonds,
             cracks,
             density,
@@ -169,6 +174,7 @@ impl Deck {
             surface,
             sets,
             constants,
+            parts,
             form: bonds.form,
             precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
             cracks,
@@ -183,6 +189,23 @@ impl Deck {
             exact,
             warnings,
         })
+    }
+
+    /// The points of the body alone, with the surface if it is one: what is needed to draw results again.
+    ///
+    /// # Errors
+    /// As [`Deck::build_with`].
+    pub fn body_points(
+        &self,
+        resources: Resources<'_>,
+    ) -> Result<(PointCloud, Option<Surface>), DeckError> {
+        match &self.surface {
+            Some(deck) => {
+                let (surface, cloud) = self.surface_points(deck, &resources)?;
+                Ok((cloud, Some(surface)))
+            }
+            None => Ok((self.points(&resources)?.cloud, None)),
+        }
     }
 
     fn assemble_grid(
@@ -203,7 +226,11 @@ impl Deck {
             .map_err(|error| self.at_material(error))?;
         let no_fail = self.union_of(&sets, &self.material.no_fail)?;
         let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
-        let (classes, density) = self.parts(&cloud, &sets, &constants, warnings)?;
+        let Composition {
+            classes,
+            density,
+            parts,
+        } = self.parts(&cloud, &sets, &constants, warnings)?;
         let body = BondBody {
             cloud: &cloud,
             material,
@@ -237,6 +264,7 @@ impl Deck {
             cracks,
             density,
             constants,
+            parts,
             cloud,
         })
     }
@@ -273,6 +301,7 @@ impl Deck {
                 fracture_energy: f64::NAN,
                 stiffness_error: f64::NAN,
             },
+            parts: Vec::new(),
             cloud,
         })
     }
@@ -347,6 +376,7 @@ impl Deck {
                 .cutter(pre_crack.ends, 0.0)
                 .map_err(|error| self.at_path(&crack(k), error.into()))?;
         }
+        let cloud = composite.body.cloud;
         let surfaces: Vec<_> = self
             .cracks
             .iter()
@@ -376,12 +406,13 @@ impl Deck {
                 .map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();
-        for (k, ((surface, _), cut)) in surfaces.into_iter().zip(&assembled.cuts).enumerate() {
+        for (k, ((surface, _), cut)) in surfaces.iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {
-                warnings.push(self.finding(&crack(k), Caution::CrackCutsNothing));
+                let caution = Self::useless_crack(surface, cloud);
+                warnings.push(self.finding(&crack(k), caution));
             }
             tracked.push(TrackedCrack {
-                crack: surface,
+                crack: surface.clone(),
                 points: cut.points.clone(),
             });
         }

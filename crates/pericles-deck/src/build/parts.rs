@@ -13,19 +13,31 @@ use crate::finding::Warning;
 use crate::part::PartPlace;
 use crate::reader::Path;
 
+/// What a body is made of.
+pub(super) struct Composition {
+    pub(super) classes: Option<PairClasses>,
+    pub(super) density: PointScalar,
+    /// Constants of the other materials, in the order of the deck.
+    pub(super) parts: Vec<BondConstants>,
+}
+
 impl Deck {
-    /// The classes of bonds between materials, none if there is one material only, and the density.
+    /// The classes of bonds between materials, none if there is one material only, the density, and the constants of the parts.
     pub(super) fn parts(
         &self,
         cloud: &PointCloud,
         sets: &Sets,
         constants: &BondConstants,
         warnings: &mut Vec<Warning>,
-    ) -> Result<(Option<PairClasses>, PointScalar), DeckError> {
+    ) -> Result<Composition, DeckError> {
         let material = &self.material;
         self.judge_stretch(constants, &"material".into(), warnings);
         if material.parts.is_empty() {
-            return Ok((None, PointScalar::Uniform(material.bonds.density)));
+            return Ok(Composition {
+                classes: None,
+                density: PointScalar::Uniform(material.bonds.density),
+                parts: Vec::new(),
+            });
         }
         let mut all = vec![constants.clone()];
         let mut of_point = vec![0u8; cloud.len()];
@@ -76,7 +88,12 @@ impl Deck {
         for &(pair, stretch) in &material.interface.critical_stretches {
             classes.set_critical_stretch(pair, stretch);
         }
-        Ok((Some(classes), PointScalar::PerPoint(densities)))
+        all.remove(0);
+        Ok(Composition {
+            classes: Some(classes),
+            density: PointScalar::PerPoint(densities),
+            parts: all,
+        })
     }
 
     /// Bonds of real materials break long before they are a fifth longer.

@@ -1,8 +1,8 @@
-//! Whether a model makes physical sense: what is odd about its conditions.
+//! Whether a model makes physical sense: what is odd about its cracks and conditions.
 
 use pericles::System;
-use pericles::family::BondList;
-use pericles::space::PointCloud;
+use pericles::family::{BondList, Crack};
+use pericles::space::{Point, PointCloud};
 
 use crate::caution::Caution;
 use crate::conditions::LoadAmplitude;
@@ -15,8 +15,32 @@ impl Deck {
     /// Warns of loads on points that cannot follow them, and of static pieces that nothing holds.
     pub(super) fn judge_conditions(&self, system: &System, warnings: &mut Vec<Warning>) {
         self.judge_held_loads(system, warnings);
-        if matches!(self.time.scheme, Scheme::Relaxation(_)) && self.surface.is_none() {
+        if self.surface.is_some() || !self.body.finer.is_empty() {
+            return;
+        }
+        if matches!(self.time.scheme, Scheme::Relaxation(_)) {
             self.judge_support(system, warnings);
+        } else {
+            self.judge_pieces(system, warnings);
+        }
+    }
+
+    /// What is odd about a pre-crack that cuts no bond.
+    pub(super) fn useless_crack(crack: &Crack, cloud: &PointCloud) -> Caution {
+        let dimension = cloud.dimension();
+        let half = 0.5 * cloud.spacing();
+        let ends = |c: usize| {
+            let axis = cloud.axis(c).iter().copied();
+            let low = axis.clone().fold(f64::INFINITY, f64::min);
+            (low - half, axis.fold(f64::NEG_INFINITY, f64::max) + half)
+        };
+        let (low, high): (Vec<f64>, Vec<f64>) = (0..dimension).map(ends).unzip();
+        let (least, most) = extent(crack);
+        let apart = (0..dimension).any(|c| most[c] < low[c] || least[c] > high[c]);
+        if apart {
+            Caution::CrackOutside { low, high }
+        } else {
+            Caution::CrackCutsNothing
         }
     }
 
@@ -36,27 +60,23 @@ impl Deck {
                 }
             }
             let resisted = |&i: &u32| (0..3).all(|c| !acts(c) || held[i as usize] >> c & 1 == 1);
-            if load.points.iter().all(resisted) {
-                let points = load.points.len();
-                let caution = Caution::LoadOnHeld { points };
+            let (held, points) = (
+                load.points.iter().filter(|i| resisted(i)).count(),
+                load.points.len(),
+            );
+            // Sets share corners: a few points are no mistake.
+            if 2 * held > points {
+                let caution = Caution::LoadOnHeld { held, points };
                 warnings.push(self.finding(&Path::from("load").index(k), caution));
             }
         }
     }
 
     fn judge_support(&self, system: &System, warnings: &mut Vec<Warning>) {
-        let (cloud, material) = (system.cloud(), &self.material.bonds);
-        // What is wrong with the families has been refused when the operator was made.
-        let Ok(mut bonds) = BondList::new(cloud, material.horizon, material.volume_correction)
-        else {
+        let cloud = system.cloud();
+        let Some(piece) = self.pieces(cloud) else {
             return;
         };
-        for crack in &self.cracks {
-            if bonds.cut(cloud, &crack.surface, crack.ends).is_err() {
-                return;
-            }
-        }
-        let piece = pieces(cloud, &bonds);
         let mut supported = vec![false; cloud.len()];
         for motion in system.motions() {
             for &i in &motion.points {
@@ -68,14 +88,86 @@ impl Deck {
             let caution = Caution::NoSupport {
                 points: loose.len(),
                 of: cloud.len(),
-                place: cloud.point(first),
+                place: place(cloud, first),
             };
             warnings.push(self.finding(&"time.scheme".into(), caution));
         }
     }
+
+    /// Warns of bodies that are in pieces before they break. Only what was cut, has holes or is listed can be, and larger bodies are not looked at.
+    fn judge_pieces(&self, system: &System, warnings: &mut Vec<Warning>) {
+        /// Finding bonds takes as long as some steps of the run.
+        const MOST: usize = 50_000;
+        let cloud = system.cloud();
+        let holes = &self.body.grid.holes;
+        let whole = self.cracks.is_empty() && holes.is_empty() && self.body.listed.is_none();
+        if whole || cloud.len() > MOST || cloud.is_periodic() {
+            return;
+        }
+        let Some(piece) = self.pieces(cloud) else {
+            return;
+        };
+        let mut sizes = vec![0usize; cloud.len()];
+        piece.iter().for_each(|&first| sizes[first] += 1);
+        let pieces = sizes.iter().filter(|size| **size > 0).count();
+        let smallest = (0..cloud.len())
+            .filter(|&first| sizes[first] > 0)
+            .min_by_key(|&first| sizes[first]);
+        if let (Some(first), true) = (smallest, pieces > 1) {
+            let caution = Caution::Pieces {
+                pieces,
+                points: sizes[first],
+                place: place(cloud, first),
+            };
+            warnings.push(self.finding(&"body".into(), caution));
+        }
+    }
+
+    /// The piece of each point, named by its first point: what bonds join at the start.
+    fn pieces(&self, cloud: &PointCloud) -> Option<Vec<usize>> {
+        let material = &self.material.bonds;
+        // What is wrong with families and cracks has been refused when the operator was made.
+        let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).ok()?;
+        for crack in &self.cracks {
+            bonds.cut(cloud, &crack.surface, crack.ends).ok()?;
+        }
+        Some(pieces(cloud, &bonds))
+    }
 }
 
-/// The piece of each point, named by its first point: what bonds join.
+/// A point's place, as long as the body has dimensions, m.
+fn place(cloud: &PointCloud, i: usize) -> Vec<f64> {
+    cloud.point(i)[..cloud.dimension()].to_vec()
+}
+
+/// Opposite corners of the box of a crack.
+fn extent(crack: &Crack) -> (Point, Point) {
+    let plane = |[x, y]: [f64; 2]| [x, y, 0.0];
+    let corners: Vec<Point> = match crack {
+        Crack::Section { x } => vec![[*x, 0.0, 0.0]],
+        Crack::Segment { from, to } => vec![plane(*from), plane(*to)],
+        Crack::Polygon { corners } => corners.clone(),
+        Crack::Disc {
+            centre,
+            normal,
+            radius,
+        } => {
+            let square: f64 = normal.iter().map(|n| n * n).sum();
+            let reach = |c: usize| radius * (1.0 - normal[c] * normal[c] / square).max(0.0).sqrt();
+            let moved = |sign: f64| std::array::from_fn(|c| centre[c] + sign * reach(c));
+            vec![moved(-1.0), moved(1.0)]
+        }
+    };
+    let fold = |start: f64, pick: fn(f64, f64) -> f64| {
+        std::array::from_fn(|c| corners.iter().map(|corner| corner[c]).fold(start, pick))
+    };
+    (
+        fold(f64::INFINITY, f64::min),
+        fold(f64::NEG_INFINITY, f64::max),
+    )
+}
+
+/// The piece of each point, named by its first point.
 fn pieces(cloud: &PointCloud, bonds: &BondList) -> Vec<usize> {
     let mut piece = vec![usize::MAX; cloud.len()];
     let mut waiting = Vec::new();

@@ -2,13 +2,16 @@
 
 use serde_json::Value as Json;
 
-use super::{Ledger, Path, Table};
+use super::{Form, Ledger, Path, Table};
 use crate::document::{Node, Value};
 use crate::fault::Fault;
 use crate::nearest::nearest;
 use crate::quantity::Quantity;
 use crate::source::Place;
 use crate::units::{self, UnitError};
+
+/// A range in words.
+pub(crate) const POSITIVE: &str = "a positive number";
 
 /// A value with its way from the root.
 #[derive(Clone)]
@@ -55,6 +58,15 @@ impl<'a> Item<'a> {
         self.ledger.record(&self.path, value.into());
     }
 
+    fn note(&self, form: impl FnOnce() -> Form) {
+        self.ledger.note(|survey| survey.form(&self.path, form()));
+    }
+
+    /// Says that its form is that of other values of this name as well.
+    pub(crate) fn define(&self, name: &'static str) {
+        self.ledger.note(|survey| survey.define(&self.path, name));
+    }
+
     /// The string, if it is one; for values that may be a word or something else.
     pub(crate) fn word(&self) -> Option<&'a str> {
         match &self.node.value {
@@ -72,8 +84,19 @@ impl<'a> Item<'a> {
         matches!(self.node.value, Value::Table(_))
     }
 
+    /// Whether it is this word, which is a value of its own.
+    pub(crate) fn is_keyword(&self, word: &'static str) -> bool {
+        self.note(|| Form::Words(vec![word.into()]));
+        let is = self.word() == Some(word);
+        if is {
+            self.record(word);
+        }
+        is
+    }
+
     /// A string.
     pub(crate) fn text(&self) -> Option<String> {
+        self.note(|| Form::Text);
         let Some(text) = self.word() else {
             self.wrong_kind("a string in quotes");
             return None;
@@ -83,6 +106,7 @@ impl<'a> Item<'a> {
     }
 
     pub(crate) fn boolean(&self) -> Option<bool> {
+        self.note(|| Form::Boolean);
         let Value::Boolean(boolean) = self.node.value else {
             self.wrong_kind("true or false, without quotes");
             return None;
@@ -93,6 +117,7 @@ impl<'a> Item<'a> {
 
     /// A whole number of at least one.
     pub(crate) fn count(&self) -> Option<u64> {
+        self.note(|| Form::Count);
         let expected = "a whole number of at least 1";
         let whole = match self.node.value {
             Value::Integer(integer) => u64::try_from(integer).ok(),
@@ -120,6 +145,10 @@ impl<'a> Item<'a> {
 
     /// A finite number in SI units.
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        self.note(|| Form::Number {
+            quantity,
+            allowed: None,
+        });
         let value = self.measure(quantity)?;
         self.record(value);
         Some(value)
@@ -177,7 +206,7 @@ impl<'a> Item<'a> {
 
     /// A positive number.
     pub(crate) fn positive(&self, quantity: Quantity) -> Option<f64> {
-        self.within(quantity, "a positive number", |value| value > 0.0)
+        self.within(quantity, POSITIVE, |value| value > 0.0)
     }
 
     /// A number that satisfies a condition, given in words too.
@@ -187,7 +216,12 @@ impl<'a> Item<'a> {
         allowed: &str,
         accepts: impl FnOnce(f64) -> bool,
     ) -> Option<f64> {
-        let value = self.quantity(quantity)?;
+        self.note(|| Form::Number {
+            quantity,
+            allowed: Some(allowed.to_owned()),
+        });
+        let value = self.measure(quantity)?;
+        self.record(value);
         if accepts(value) {
             Some(value)
         } else {
@@ -200,16 +234,17 @@ impl<'a> Item<'a> {
     pub(crate) fn choice<T: Copy>(
         &self,
         what: &'static str,
-        words: &[(&'static str, T)],
+        words: &[(impl AsRef<str>, T)],
     ) -> Option<T> {
-        let allowed = || words.iter().map(|(word, _)| *word);
+        let allowed = || words.iter().map(|(word, _)| word.as_ref());
+        self.note(|| Form::Words(allowed().map(String::from).collect()));
         let Some(text) = self.word() else {
             let words: Vec<String> = allowed().map(|word| format!("\"{word}\"")).collect();
             self.wrong_kind(format!("one of {}", words.join(", ")));
             return None;
         };
-        if let Some((word, value)) = words.iter().find(|(word, _)| *word == text) {
-            self.record(*word);
+        if let Some((_, value)) = words.iter().find(|(word, _)| word.as_ref() == text) {
+            self.record(text);
             return Some(*value);
         }
         self.unknown_word(what, text, allowed());
@@ -233,6 +268,11 @@ impl<'a> Item<'a> {
 
     /// The entries of a list.
     pub(crate) fn list(&self, expected: &str) -> Option<Vec<Item<'a>>> {
+        self.note(|| Form::List { length: None });
+        self.entries(expected)
+    }
+
+    fn entries(&self, expected: &str) -> Option<Vec<Item<'a>>> {
         let Value::Array(nodes) = &self.node.value else {
             self.wrong_kind(expected);
             return None;
@@ -254,10 +294,12 @@ impl<'a> Item<'a> {
         dimension: Option<usize>,
         expected: &str,
     ) -> Option<Vec<Item<'a>>> {
-        if dimension == Some(1) && !self.is_list() {
+        let bare = dimension == Some(1) && !self.is_list();
+        self.ledger.note(|survey| survey.vector(&self.path, bare));
+        if bare {
             return Some(vec![self.clone()]);
         }
-        let items = self.list(&format!(
+        let items = self.entries(&format!(
             "a list with one entry per dimension, each {expected}"
         ))?;
         let right = match dimension {
@@ -285,7 +327,10 @@ impl<'a> Item<'a> {
 
     /// The entries of a list of known length.
     pub(crate) fn exactly(&self, length: usize, expected: &str) -> Option<Vec<Item<'a>>> {
-        let items = self.list(expected)?;
+        self.note(|| Form::List {
+            length: Some(length),
+        });
+        let items = self.entries(expected)?;
         if items.len() == length {
             return Some(items);
         }
@@ -313,6 +358,7 @@ impl<'a> Item<'a> {
     }
 
     pub(crate) fn table(&self) -> Option<Table<'a>> {
+        self.note(|| Form::Table);
         let Value::Table(entries) = &self.node.value else {
             self.wrong_kind("a table");
             return None;

@@ -6,6 +6,7 @@
 
 mod item;
 mod path;
+mod survey;
 mod table;
 
 use std::cell::RefCell;
@@ -13,8 +14,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value as Json};
 
-pub(crate) use item::Item;
+pub(crate) use item::{Item, POSITIVE};
 pub(crate) use path::{Path, Step};
+pub(crate) use survey::{Form, Survey, TableSurvey, below};
 pub(crate) use table::Table;
 
 use crate::document::Node;
@@ -28,6 +30,7 @@ pub(crate) struct Ledger {
     problems: RefCell<Vec<Problem>>,
     places: RefCell<BTreeMap<Path, Place>>,
     json: RefCell<Json>,
+    survey: Option<RefCell<Survey>>,
 }
 
 impl Ledger {
@@ -37,6 +40,22 @@ impl Ledger {
             problems: RefCell::default(),
             places: RefCell::default(),
             json: RefCell::new(Json::Object(Map::new())),
+            survey: None,
+        }
+    }
+
+    /// The same with a survey that listens.
+    pub(crate) fn surveyed(sources: Sources, mut survey: Survey) -> Self {
+        survey.begin();
+        Self {
+            survey: Some(RefCell::new(survey)),
+            ..Self::new(sources)
+        }
+    }
+
+    fn note(&self, note: impl FnOnce(&mut Survey)) {
+        if let Some(survey) = &self.survey {
+            note(&mut survey.borrow_mut());
         }
     }
 
@@ -48,6 +67,13 @@ impl Ledger {
     pub(crate) fn report(&self, place: Place, fault: Fault) {
         let at = self.sources.locate(place);
         self.problems.borrow_mut().push(Problem::new(fault, at));
+    }
+
+    /// Takes back that a key is missing: it is there, misspelt.
+    fn found_misspelt(&self, key: &str, table: &str) {
+        self.problems.borrow_mut().retain(|problem| {
+            !matches!(problem.subject(), Fault::MissingKey { key: k, table: t, .. } if k == key && t == table)
+        });
     }
 
     /// Reports with the text at the place.
@@ -102,15 +128,25 @@ impl Ledger {
         *slot = value;
     }
 
-    /// Closes the ledger: the problems found, and the record.
-    pub(crate) fn close(self) -> (Vec<Problem>, Record) {
-        let record = Record {
-            sources: self.sources,
-            places: self.places.into_inner(),
-            json: self.json.into_inner(),
-        };
-        (self.problems.into_inner(), record)
+    /// Closes the ledger.
+    pub(crate) fn close(self) -> Closed {
+        Closed {
+            problems: self.problems.into_inner(),
+            record: Record {
+                sources: self.sources,
+                places: self.places.into_inner(),
+                json: self.json.into_inner(),
+            },
+            survey: self.survey.map(RefCell::into_inner).unwrap_or_default(),
+        }
     }
+}
+
+/// What a ledger holds in the end.
+pub(crate) struct Closed {
+    pub(crate) problems: Vec<Problem>,
+    pub(crate) record: Record,
+    pub(crate) survey: Survey,
 }
 
 /// What a deck remembers of its text.

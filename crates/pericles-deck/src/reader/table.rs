@@ -4,12 +4,12 @@ use std::cell::RefCell;
 
 use serde_json::Value as Json;
 
-use super::{Item, Ledger, Path};
+use super::{Form, Item, Ledger, Path};
 use crate::document::Entry;
 use crate::fault::Fault;
 use crate::nearest::nearest;
 use crate::source::Place;
-use crate::vocabulary::synonyms;
+use crate::vocabulary::{canonical, synonyms};
 
 /// A table being read.
 pub(crate) struct Table<'a> {
@@ -37,7 +37,15 @@ impl<'a> Table<'a> {
 
     /// Records the value of a key that was left out.
     pub(crate) fn record(&self, key: &str, value: impl Into<Json>) {
-        self.ledger.record(&self.path.key(key), value.into());
+        let (path, value) = (self.path.key(key), value.into());
+        self.ledger
+            .note(|survey| survey.default(&path, value.clone()));
+        self.ledger.record(&path, value);
+    }
+
+    /// Says that tables of this name have the same keys as well.
+    pub(crate) fn define(&self, name: &'static str) {
+        self.ledger.note(|survey| survey.define(&self.path, name));
     }
 
     /// Passes on what the library accepts and reports what it refuses.
@@ -69,6 +77,7 @@ impl<'a> Table<'a> {
             allowed.push(key);
         }
         drop(allowed);
+        self.ledger.note(|survey| survey.key(&self.path, key));
         let mut found: Option<&Entry> = None;
         for name in std::iter::once(key).chain(synonyms(key).iter().copied()) {
             let Some(entry) = self.entries.iter().find(|entry| entry.key == name) else {
@@ -97,6 +106,7 @@ impl<'a> Table<'a> {
     /// The value of a key that must be given.
     pub(crate) fn required(&self, key: &'static str) -> Option<Item<'a>> {
         let item = self.optional(key);
+        self.ledger.note(|survey| survey.needed(&self.path, key));
         if item.is_none() {
             self.report(Fault::MissingKey {
                 key: key.into(),
@@ -112,6 +122,16 @@ impl<'a> Table<'a> {
         &self,
         keys: &'static [&'static str],
     ) -> Option<Option<(&'static str, Item<'a>)>> {
+        self.choice_of(keys, false)
+    }
+
+    fn choice_of(
+        &self,
+        keys: &'static [&'static str],
+        needed: bool,
+    ) -> Option<Option<(&'static str, Item<'a>)>> {
+        self.ledger
+            .note(|survey| survey.choice(&self.path, keys, needed));
         let mut found: Vec<(&'static str, Item<'a>)> = keys
             .iter()
             .filter_map(|key| Some((*key, self.optional(key)?)))
@@ -140,7 +160,7 @@ impl<'a> Table<'a> {
         &self,
         keys: &'static [&'static str],
     ) -> Option<(&'static str, Item<'a>)> {
-        let found = self.at_most_one(keys)?;
+        let found = self.choice_of(keys, true)?;
         if found.is_none() {
             self.lacks_one_of(keys);
         }
@@ -171,7 +191,11 @@ impl<'a> Table<'a> {
     pub(crate) fn table_or_empty(&self, key: &'static str) -> Option<Table<'a>> {
         match self.optional(key) {
             Some(item) => item.table(),
-            None => Some(Table::new(self.ledger, self.path.key(key), self.place, &[])),
+            None => {
+                let path = self.path.key(key);
+                self.ledger.note(|survey| survey.form(&path, Form::Table));
+                Some(Table::new(self.ledger, path, self.place, &[]))
+            }
         }
     }
 
@@ -234,17 +258,24 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// All keys with their values, for tables whose keys are names.
-    pub(crate) fn named(&self) -> impl Iterator<Item = (&'a str, Place, Item<'a>)> + '_ {
-        self.entries.iter().map(|entry| {
+    /// All keys with their values, for tables whose keys are names of things of a kind.
+    pub(crate) fn named(
+        &self,
+        kind: &'static str,
+    ) -> impl Iterator<Item = (&'a str, Place, Item<'a>)> + '_ {
+        self.entries.iter().map(move |entry| {
             self.settled.borrow_mut().push(&entry.key);
-            let item = Item::new(self.ledger, self.path.key(&entry.key), &entry.node);
+            let path = self.path.key(&entry.key);
+            self.ledger
+                .note(|survey| survey.define_named(&self.path, &path, kind));
+            let item = Item::new(self.ledger, path, &entry.node);
             (entry.key.as_str(), entry.key_place, item)
         })
     }
 
     /// Reports keys that nobody asked for.
     pub(crate) fn finish(self) {
+        self.ledger.note(|survey| survey.visited(&self.path));
         let settled = self.settled.borrow();
         let allowed = self.allowed.borrow();
         for entry in self.entries {
@@ -254,12 +285,17 @@ impl<'a> Table<'a> {
             let words = allowed
                 .iter()
                 .flat_map(|key| std::iter::once(*key).chain(synonyms(key).iter().copied()));
+            let nearest = nearest(&entry.key, words);
+            if let Some(nearest) = nearest {
+                self.ledger
+                    .found_misspelt(canonical(nearest), &self.path.to_string());
+            }
             self.ledger.report(
                 entry.key_place,
                 Fault::UnknownKey {
                     key: entry.key.clone(),
                     table: self.path.to_string(),
-                    nearest: nearest(&entry.key, words).map(String::from),
+                    nearest: nearest.map(String::from),
                     allowed: owned(&allowed),
                 },
             );

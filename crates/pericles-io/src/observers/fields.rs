@@ -1,14 +1,15 @@
 //! Fields on the points over time.
 
 use std::borrow::Cow;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
 use pericles::space::surface::Surface;
 use pericles::{Archive, Result, Saved, Values};
 
+use super::background::Background;
 use super::table::misfit;
 use crate::error::IoError;
 use crate::vtk::{PvdSeries, VtkField, VtuFile};
@@ -18,12 +19,17 @@ const KEY: &str = "observer/fields";
 /// Fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's numbering of the points.
 ///
 /// The files hold the reference positions; displaced ones are a "Warp By Vector" away. Their bytes depend on the state alone.
+///
+/// Files are compressed and written by a thread of their own while the run goes on, one at a time.
 pub struct FieldSeries {
     folder: PathBuf,
     single_precision: bool,
-    series: Option<PvdSeries>,
+    series: Option<Arc<Mutex<PvdSeries>>>,
+    /// Outputs so far, the one under way among them.
+    outputs: usize,
     surface: Option<Arc<Surface>>,
     wanted: Vec<Field>,
+    background: Background,
 }
 
 impl FieldSeries {
@@ -33,8 +39,10 @@ impl FieldSeries {
             folder: folder.into(),
             single_precision,
             series: None,
+            outputs: 0,
             surface: None,
             wanted: Field::USUAL.to_vec(),
+            background: Background::default(),
         }
     }
 
@@ -51,54 +59,98 @@ impl FieldSeries {
     }
 
     fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
-        let series = match &mut self.series {
+        let series = match &self.series {
             Some(series) => series,
-            none => none.insert(PvdSeries::create(self.folder.join("fields.pvd"))?),
+            None => {
+                let series = PvdSeries::create(self.folder.join("fields.pvd"))?;
+                self.series.insert(Arc::new(Mutex::new(series)))
+            }
         };
+        let series = Arc::clone(series);
+        let output = self.output(snapshot);
+        let name = PvdSeries::field_file(self.outputs);
+        let path = self.folder.join(&name);
+        self.background.start(move || {
+            output.write(&path)?;
+            let mut series = series.lock().unwrap_or_else(PoisonError::into_inner);
+            series.push(output.time, &name)
+        })?;
+        self.outputs += 1;
+        Ok(())
+    }
+
+    fn output(&self, snapshot: &Snapshot<'_>) -> Output {
         let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
         let numbering = Numbering::of(cloud);
-        let positions = numbering.apply(cloud.positions());
-        let columns: Vec<(String, bool, Cow<'_, [f64]>)> = self
+        let mut columns: Vec<Column> = self
             .wanted
             .iter()
             .flat_map(|&field| columns(field, snapshot))
-            .map(|(name, vector, array)| (name, vector, numbering.apply(array)))
+            .map(|(name, vector, array)| Column {
+                name,
+                vector,
+                values: numbering.apply(array).into_owned(),
+            })
             .collect();
-        let mut file = VtuFile::new(cloud.dimension(), &positions).time(state.t);
-        for (name, vector, array) in &columns {
-            let column = if *vector {
-                VtkField::vector(name, array)
-            } else {
-                VtkField::scalar(name, array)
-            };
-            file = file.field(if self.single_precision {
-                column.in_single_precision()
-            } else {
-                column
-            });
-        }
-        let triangles: Vec<[u32; 3]>;
-        let kinetic: Vec<f64>;
+        let mut triangles = None;
         if let Some(surface) = &self.surface {
             let number = |vertex: u32| surface.user_number(vertex as usize) as u32;
-            triangles = surface
-                .triangles()
-                .iter()
-                .map(|triangle| triangle.map(number))
-                .collect();
-            kinetic = numbering
-                .apply(&snapshot.kinetic_energy_density())
-                .into_owned();
-            let column = VtkField::scalar("Kinetic_Energy_Density", &kinetic);
-            file = file.triangles(&triangles).field(if self.single_precision {
-                column.in_single_precision()
-            } else {
-                column
+            let numbered = surface.triangles().iter();
+            triangles = Some(numbered.map(|triangle| triangle.map(number)).collect());
+            let kinetic = snapshot.kinetic_energy_density();
+            columns.push(Column {
+                name: "Kinetic_Energy_Density".into(),
+                vector: false,
+                values: numbering.apply(&kinetic).into_owned(),
             });
         }
-        let name = PvdSeries::field_file(series.len());
-        file.write(self.folder.join(&name))?;
-        series.push(state.t, &name)
+        Output {
+            dimension: cloud.dimension(),
+            positions: numbering.apply(cloud.positions()).into_owned(),
+            time: state.t,
+            columns,
+            triangles,
+            single_precision: self.single_precision,
+        }
+    }
+}
+
+/// A named field in the user's order of points.
+struct Column {
+    name: String,
+    vector: bool,
+    values: Vec<f64>,
+}
+
+/// What a file holds, taken from a snapshot that will not wait.
+struct Output {
+    dimension: usize,
+    positions: Vec<f64>,
+    time: f64,
+    columns: Vec<Column>,
+    triangles: Option<Vec<[u32; 3]>>,
+    single_precision: bool,
+}
+
+impl Output {
+    fn write(&self, path: &Path) -> std::result::Result<(), IoError> {
+        let mut file = VtuFile::new(self.dimension, &self.positions).time(self.time);
+        if let Some(triangles) = &self.triangles {
+            file = file.triangles(triangles);
+        }
+        for column in &self.columns {
+            let field = if column.vector {
+                VtkField::vector(&column.name, &column.values)
+            } else {
+                VtkField::scalar(&column.name, &column.values)
+            };
+            file = file.field(if self.single_precision {
+                field.in_single_precision()
+            } else {
+                field
+            });
+        }
+        file.write(path)
     }
 }
 
@@ -106,21 +158,30 @@ impl Observer for FieldSeries {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
         Ok(self.write(snapshot)?)
     }
+
+    fn settle(&self) -> std::result::Result<(), ObserveError> {
+        Ok(self.background.settle()?)
+    }
+
+    fn finish(&mut self) -> std::result::Result<(), ObserveError> {
+        self.settle()
+    }
 }
 
 impl Saved for FieldSeries {
     fn save(&self, archive: &mut Archive) {
-        let entries = self.series.as_ref().map_or(0, PvdSeries::len);
-        archive.put(KEY, Values::U64(vec![entries as u64]));
+        archive.put(KEY, Values::U64(vec![self.outputs as u64]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut entries = 0;
         archive.u64_into(KEY, std::slice::from_mut(&mut entries))?;
+        self.outputs = entries as usize;
         self.series = (entries > 0)
-            .then(|| PvdSeries::reopen(self.folder.join("fields.pvd"), entries as usize))
+            .then(|| PvdSeries::reopen(self.folder.join("fields.pvd"), self.outputs))
             .transpose()
-            .map_err(misfit)?;
+            .map_err(misfit)?
+            .map(|series| Arc::new(Mutex::new(series)));
         Ok(())
     }
 }

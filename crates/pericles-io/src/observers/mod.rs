@@ -48,6 +48,7 @@
 //! # }
 //! ```
 
+mod background;
 mod columns;
 mod cracks;
 mod fields;
@@ -62,7 +63,7 @@ pub use columns::{EnergyBoundColumns, ErrorColumns, HistoryColumns, InnerColumns
 pub use cracks::Cracks;
 pub use fields::FieldSeries;
 pub use history::History;
-pub use pictures::{PictureOf, Pictures};
+pub use pictures::{DrawnState, PictureOf, Pictures};
 pub use probes::Probes;
 pub use reactions::Reactions;
 pub use surface::SurfaceCourse;

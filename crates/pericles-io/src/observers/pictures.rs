@@ -1,7 +1,7 @@
 //! A field as a picture, time after time.
 
 use std::borrow::Cow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
@@ -11,6 +11,9 @@ use pericles::{Archive, Result, Saved, Values};
 
 use crate::error::IoError;
 use crate::picture::{CellSize, ColourMap, FieldPicture, write_animation};
+
+/// Pixels across if nobody says otherwise.
+const WIDTH: u32 = 1200;
 
 /// What a picture shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +35,19 @@ pub struct PictureOf {
     /// Whether all pictures show the same part of space, the box of the body at rest and a tenth of its longest side around it. Otherwise each shows what
     /// the displaced body fills.
     pub steady: bool,
+    /// Pixels across.
+    pub width: u32,
+}
+
+/// A state of a body as it is drawn, its points in the order of their cloud.
+#[derive(Debug, Clone, Copy)]
+pub struct DrawnState<'a> {
+    /// The time, s.
+    pub t: f64,
+    /// x of all points, then y …, m.
+    pub displacement: &'a [f64],
+    /// A number per point.
+    pub values: &'a [f64],
 }
 
 impl PictureOf {
@@ -46,6 +62,7 @@ impl PictureOf {
             view: None,
             surface: None,
             steady: false,
+            width: WIDTH,
         }
     }
 
@@ -60,14 +77,52 @@ impl PictureOf {
         }
     }
 
+    /// What is drawn of a field, component after component: one number per point, the field itself, a component, or the norm of all.
+    pub fn numbers<'a>(&self, field: &'a [f64], points: usize) -> Cow<'a, [f64]> {
+        if let Some(component) = self.component {
+            return Cow::Borrowed(&field[component * points..(component + 1) * points]);
+        }
+        if field.len() == points {
+            return Cow::Borrowed(field);
+        }
+        let norm = |i: usize| {
+            let squares = field.chunks(points).map(|component| component[i].powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        Cow::Owned((0..points).map(norm).collect())
+    }
+
     /// Draws the picture of a state into a file.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn draw(&self, snapshot: &Snapshot<'_>, path: PathBuf) -> std::result::Result<(), IoError> {
+    pub fn draw(
+        &self,
+        snapshot: &Snapshot<'_>,
+        path: impl AsRef<Path>,
+    ) -> std::result::Result<(), IoError> {
         let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
+        let field = snapshot.field(self.field);
+        let values = self.numbers(field, cloud.len());
+        let drawn = DrawnState {
+            t: state.t,
+            displacement: &state.u,
+            values: &values,
+        };
+        self.draw_state(cloud, &drawn, path)
+    }
+
+    /// The same for numbers that come from elsewhere.
+    ///
+    /// # Errors
+    /// A file that cannot be written; numbers that are not as many as the points.
+    pub fn draw_state(
+        &self,
+        cloud: &PointCloud,
+        state: &DrawnState<'_>,
+        path: impl AsRef<Path>,
+    ) -> std::result::Result<(), IoError> {
         let n = cloud.len();
-        let values = scalar(snapshot.field(self.field), n, self.component);
         let sizes: Vec<f64>;
         let cell = if cloud.lattice().is_some() {
             CellSize::Uniform(cloud.spacing())
@@ -85,12 +140,14 @@ impl PictureOf {
             Some(_) => self.field.unit().replace("/m³", "/m²"),
             None => self.field.unit().to_owned(),
         };
-        let mut picture = FieldPicture::new(cloud.dimension(), cloud.positions(), &values, cell)
-            .label(self.name(cloud.dimension()), unit)
-            .displacement(&state.u, self.scale)
-            .title(&self.title)
-            .time(state.t)
-            .colours(colours);
+        let mut picture =
+            FieldPicture::new(cloud.dimension(), cloud.positions(), state.values, cell)
+                .label(self.name(cloud.dimension()), unit)
+                .displacement(state.displacement, self.scale)
+                .title(&self.title)
+                .time(state.t)
+                .colours(colours)
+                .width(self.width);
         let whole = (self.field == Field::Damage).then_some([0.0, 1.0]);
         if let Some(surface) = &self.surface {
             picture = picture.triangles(surface.triangles());
@@ -120,24 +177,6 @@ fn surroundings(cloud: &PointCloud) -> ([f64; 3], [f64; 3]) {
     let longest = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
     let around = 0.1 * longest.max(cloud.spacing());
     (low.map(|x| x - around), high.map(|x| x + around))
-}
-
-/// One number per point: the field itself, a component, or a vector's magnitude.
-fn scalar(field: &[f64], n: usize, component: Option<usize>) -> Cow<'_, [f64]> {
-    if let Some(component) = component {
-        return Cow::Borrowed(&field[component * n..(component + 1) * n]);
-    }
-    if field.len() == n {
-        return Cow::Borrowed(field);
-    }
-    let magnitude = |i: usize| {
-        field
-            .chunks(n)
-            .map(|component| component[i].powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    Cow::Owned((0..n).map(magnitude).collect())
 }
 
 /// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder, and at the end of the run `<stem>.apng` with all of them if asked for.
@@ -211,8 +250,13 @@ mod tests {
     #[test]
     fn vectors_become_scalars() {
         let field = [3.0, 0.0, -4.0, 2.0];
-        assert_eq!(*scalar(&field, 2, None), [5.0, 2.0]);
-        assert_eq!(*scalar(&field, 2, Some(1)), [-4.0, 2.0]);
-        assert_eq!(*scalar(&field[..2], 2, None), [3.0, 0.0]);
+        let magnitude = PictureOf::new(Field::Velocity);
+        let second = PictureOf {
+            component: Some(1),
+            ..magnitude.clone()
+        };
+        assert_eq!(*magnitude.numbers(&field, 2), [5.0, 2.0]);
+        assert_eq!(*second.numbers(&field, 2), [-4.0, 2.0]);
+        assert_eq!(*magnitude.numbers(&field[..2], 2), [3.0, 0.0]);
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers on a grid, by colour, beneath the curves of a chart.
 
-use super::bitmap::Bitmap;
 use super::colour::ColourMap;
+use super::drawing::Drawing;
 use super::frame::{ColourBar, Frame, finite_range, widened};
 use super::units::Shown;
 
@@ -69,7 +69,7 @@ impl Backdrop {
     /// Fills the cells; `factors` are those of shown numbers on both axes.
     pub(super) fn draw(
         &self,
-        bitmap: &mut Bitmap,
+        drawing: &mut Drawing,
         frame: &Frame,
         bar: &ColourBar,
         factors: [f64; 2],
@@ -90,7 +90,7 @@ impl Backdrop {
                 let (left, bottom) = place(ends[0], low);
                 let (right, top) = place(ends[1], low + height);
                 let colour = bar.colour(self.values[number * self.rows + row]);
-                bitmap.fill_rectangle((left, top), (right, bottom), colour, 1.0);
+                drawing.fill_rectangle((left, top), (right, bottom), colour, 1.0);
             }
         }
     }

@@ -81,22 +81,6 @@ impl Bitmap {
         }
     }
 
-    /// A straight line of at least one pixel, sharp when it is level or upright.
-    pub(super) fn rule(&mut self, from: (f64, f64), to: (f64, f64), width: f64, colour: Rgb) {
-        let half = (width.round().max(1.0) / 2.0).max(0.5);
-        let low = (from.0.min(to.0) - half, from.1.min(to.1) - half);
-        let high = (from.0.max(to.0) + half, from.1.max(to.1) + half);
-        self.fill_rectangle(low, high, colour, 1.0);
-    }
-
-    /// The outline of a rectangle.
-    pub(super) fn outline(&mut self, from: (f64, f64), to: (f64, f64), width: f64, colour: Rgb) {
-        let corners = [from, (to.0, from.1), to, (from.0, to.1)];
-        for (k, &corner) in corners.iter().enumerate() {
-            self.rule(corner, corners[(k + 1) % 4], width, colour);
-        }
-    }
-
     /// Strokes with round ends and joints. All are laid down in one go, so that where they overlap is not seen.
     pub(super) fn stroke(&mut self, lines: &[Vec<(f64, f64)>], width: f64, colour: Rgb) {
         let mut cover = vec![0_u8; self.width * self.height];

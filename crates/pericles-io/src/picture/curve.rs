@@ -1,8 +1,9 @@
 //! Axes and curves of a chart, and how a curve is drawn.
 
-use super::bitmap::{Bitmap, Rgb};
+use super::bitmap::Rgb;
 use super::clip::dashes;
 use super::colour::CURVES;
+use super::drawing::Drawing;
 use super::frame::{Scale, Sizes, finite_range, widened};
 use super::units::Shown;
 
@@ -158,24 +159,24 @@ impl Pen {
         }
     }
 
-    pub(super) fn stroke(&self, bitmap: &mut Bitmap, lines: Vec<Vec<(f64, f64)>>) {
+    pub(super) fn stroke(&self, drawing: &mut Drawing, lines: Vec<Vec<(f64, f64)>>) {
         let lines = match self.dash {
             Some(length) => lines.iter().flat_map(|line| dashes(line, length)).collect(),
             None => lines,
         };
-        bitmap.stroke(&lines, self.width, self.colour);
+        drawing.stroke(lines, self.width, self.colour);
     }
 
     /// A disc, square, diamond or triangle, in turn.
-    pub(super) fn mark(&self, bitmap: &mut Bitmap, (x, y): (f64, f64)) {
+    pub(super) fn mark(&self, drawing: &mut Drawing, (x, y): (f64, f64)) {
         let r = 2.0 * self.width;
         let corners: &[(f64, f64)] = match self.number % 4 {
-            0 => return bitmap.fill_disc((x, y), r, self.colour),
+            0 => return drawing.fill_disc((x, y), r, self.colour),
             1 => &[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)],
             2 => &[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)],
             _ => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
         };
         let corners: Vec<_> = corners.iter().map(|c| (x + r * c.0, y + r * c.1)).collect();
-        bitmap.fill_convex(&corners, self.colour);
+        drawing.fill_convex(corners, self.colour);
     }
 }

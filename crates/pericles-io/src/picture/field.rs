@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::bitmap::{Bitmap, Rgb, SIZES};
+use super::bitmap::{Rgb, SIZES};
 use super::colour::ColourMap;
 use super::curve::{Axis, Curve};
+use super::drawing::Drawing;
 use super::frame::{ColourBar, Header, finite_range, widened};
 use super::line_chart::LineChart;
 use super::units::{Shown, quantity};
@@ -189,13 +190,13 @@ impl<'a> FieldPicture<'a> {
         self
     }
 
-    /// Draws the picture and writes it as PNG, whole or not at all.
+    /// Draws the picture and writes it, whole or not at all: as SVG, the cells as an image in it, into a file that ends so, as PNG into any other.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
-        self.draw(path)?.write_png(path)
+        self.draw(path)?.write(path)
     }
 
-    fn draw(&self, path: &Path) -> Result<Bitmap, IoError> {
+    fn draw(&self, path: &Path) -> Result<Drawing, IoError> {
         self.check(path)?;
         if self.dimension == 1 {
             return self.along_the_bar().draw(path);

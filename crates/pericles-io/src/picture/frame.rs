@@ -1,7 +1,8 @@
 //! What surrounds the data: axes, header and colour bar.
 
-use super::bitmap::{Bitmap, INK, Rgb};
+use super::bitmap::{INK, Rgb};
 use super::colour::ColourMap;
+use super::drawing::Drawing;
 use super::text::{self, Align, Style};
 use super::ticks::Ticks;
 use super::units::Shown;
@@ -114,60 +115,72 @@ impl Frame {
         )
     }
 
-    pub(super) fn draw_grid(&self, bitmap: &mut Bitmap, x: &AxisText, y: &AxisText, sizes: &Sizes) {
+    pub(super) fn draw_grid(
+        &self,
+        drawing: &mut Drawing,
+        x: &AxisText,
+        y: &AxisText,
+        sizes: &Sizes,
+    ) {
         let area = self.area;
         for (value, _) in &x.ticks.major {
             let (place, _) = self.place(*value, self.y.low);
-            bitmap.rule((place, area.top), (place, area.bottom), sizes.line, GRID);
+            drawing.rule((place, area.top), (place, area.bottom), sizes.line, GRID);
         }
         for (value, _) in &y.ticks.major {
             let (_, place) = self.place(self.x.low, *value);
-            bitmap.rule((area.left, place), (area.right, place), sizes.line, GRID);
+            drawing.rule((area.left, place), (area.right, place), sizes.line, GRID);
         }
     }
 
-    pub(super) fn draw_axes(&self, bitmap: &mut Bitmap, x: &AxisText, y: &AxisText, sizes: &Sizes) {
+    pub(super) fn draw_axes(
+        &self,
+        drawing: &mut Drawing,
+        x: &AxisText,
+        y: &AxisText,
+        sizes: &Sizes,
+    ) {
         let area = self.area;
         let corner = (area.right, area.bottom);
-        bitmap.outline((area.left, area.top), corner, sizes.line, INK);
-        let tick = |bitmap: &mut Bitmap, from: (f64, f64), length: (f64, f64)| {
+        drawing.outline((area.left, area.top), corner, sizes.line, INK);
+        let tick = |drawing: &mut Drawing, from: (f64, f64), length: (f64, f64)| {
             let to = (from.0 + length.0, from.1 + length.1);
-            bitmap.rule(from, to, sizes.line, INK);
+            drawing.rule(from, to, sizes.line, INK);
         };
         let short = sizes.tick / 2.0;
         for value in &x.ticks.minor {
             let (place, _) = self.place(*value, self.y.low);
-            tick(bitmap, (place, area.bottom), (0.0, short));
+            tick(drawing, (place, area.bottom), (0.0, short));
         }
         for value in &y.ticks.minor {
             let (_, place) = self.place(self.x.low, *value);
-            tick(bitmap, (area.left, place), (-short, 0.0));
+            tick(drawing, (area.left, place), (-short, 0.0));
         }
         let middle = area.bottom + sizes.tick + 0.8 * sizes.tick_text;
         for (value, label) in &x.ticks.major {
             let (place, _) = self.place(*value, self.y.low);
-            tick(bitmap, (place, area.bottom), (0.0, sizes.tick));
+            tick(drawing, (place, area.bottom), (0.0, sizes.tick));
             let style = Style::new(sizes.tick_text, Align::Middle);
-            text::draw(bitmap, label, (place, middle), style);
+            drawing.text(label, (place, middle), style);
         }
         for (value, label) in &y.ticks.major {
             let (_, place) = self.place(self.x.low, *value);
-            tick(bitmap, (area.left, place), (-sizes.tick, 0.0));
+            tick(drawing, (area.left, place), (-sizes.tick, 0.0));
             let style = Style::new(sizes.tick_text, Align::End);
-            text::draw(bitmap, label, (area.left - 1.5 * sizes.tick, place), style);
+            drawing.text(label, (area.left - 1.5 * sizes.tick, place), style);
         }
         let style = Style::new(sizes.label_text, Align::Middle).fitted(&x.label, area.width());
         let place = (
             (area.left + area.right) / 2.0,
             area.bottom + sizes.below() - sizes.gap - 0.5 * sizes.label_text,
         );
-        text::draw(bitmap, &x.label, place, style);
+        drawing.text(&x.label, place, style);
         let style = Style::new(sizes.label_text, Align::Middle).fitted(&y.label, area.height());
         let place = (
             area.left - sizes.beside(&y.ticks) + sizes.gap + 0.5 * sizes.label_text,
             (area.top + area.bottom) / 2.0,
         );
-        text::draw(bitmap, &y.label, place, style.up());
+        drawing.text(&y.label, place, style.up());
     }
 }
 
@@ -201,20 +214,20 @@ impl Header {
     }
 
     /// Draws between `left` and `right`, from the top of the picture on.
-    pub(super) fn draw(&self, bitmap: &mut Bitmap, left: f64, right: f64, sizes: &Sizes) {
+    pub(super) fn draw(&self, drawing: &mut Drawing, left: f64, right: f64, sizes: &Sizes) {
         let middle = sizes.gap + 0.5 * self.first_line(sizes);
         let style = Style::new(sizes.title_text, Align::End);
-        text::draw(bitmap, &self.stamp, (right, middle), style);
+        drawing.text(&self.stamp, (right, middle), style);
         let mut room = right - left;
         if !self.stamp.is_empty() {
             room -= text::width(&self.stamp, sizes.title_text) + sizes.title_text;
         }
         let style = Style::new(sizes.title_text, Align::Start).fitted(&self.title, room);
-        text::draw(bitmap, &self.title, (left, middle), style);
+        drawing.text(&self.title, (left, middle), style);
 
         let middle = sizes.gap + self.first_line(sizes) + 0.5 * self.second_line(sizes);
         let style = Style::new(sizes.label_text, Align::End).fitted(&self.bar_label, right - left);
-        text::draw(bitmap, &self.bar_label, (right, middle), style);
+        drawing.text(&self.bar_label, (right, middle), style);
     }
 }
 
@@ -250,7 +263,7 @@ impl ColourBar {
     }
 
     /// Draws beside the right end of the plot, over its whole height.
-    pub(super) fn draw(&self, bitmap: &mut Bitmap, plot: Area, ticks: &Ticks, sizes: &Sizes) {
+    pub(super) fn draw(&self, drawing: &mut Drawing, plot: Area, ticks: &Ticks, sizes: &Sizes) {
         let left = (plot.right + 2.0 * sizes.gap).round();
         let right = (left + Self::thickness(sizes)).round();
         let (top, bottom) = (plot.top.round(), plot.bottom.round());
@@ -259,9 +272,9 @@ impl ColourBar {
             let fraction = 1.0 - (row as f64 + 0.5) / height;
             let j = top + row as f64;
             let colour = self.map.colour(fraction);
-            bitmap.fill_rectangle((left, j), (right, j + 1.0), colour, 1.0);
+            drawing.fill_rectangle((left, j), (right, j + 1.0), colour, 1.0);
         }
-        bitmap.outline((left, top), (right, bottom), sizes.line, INK);
+        drawing.outline((left, top), (right, bottom), sizes.line, INK);
         let scale = Scale {
             low: self.low / self.shown.factor,
             high: self.high / self.shown.factor,
@@ -269,9 +282,9 @@ impl ColourBar {
         };
         for (value, label) in &ticks.major {
             let place = bottom - scale.fraction(*value) * height;
-            bitmap.rule((right, place), (right + sizes.tick, place), sizes.line, INK);
+            drawing.rule((right, place), (right + sizes.tick, place), sizes.line, INK);
             let style = Style::new(sizes.tick_text, Align::Start);
-            text::draw(bitmap, label, (right + 1.5 * sizes.tick, place), style);
+            drawing.text(label, (right + 1.5 * sizes.tick, place), style);
         }
     }
 }

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::backdrop::Backdrop;
-use super::bitmap::{Bitmap, INK, SIZES, WHITE};
+use super::bitmap::{INK, SIZES, WHITE};
 use super::clip::{clipped, inside, length_inside};
 use super::curve::{Axis, Curve, Pen};
+use super::drawing::Drawing;
 use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
 use super::text::{self, Align, Style};
 use super::units::quantity;
@@ -80,10 +81,10 @@ impl LineChart {
         self
     }
 
-    /// Draws the chart and writes it as PNG, whole or not at all.
+    /// Draws the chart and writes it, whole or not at all: as SVG into a file that ends so, as PNG into any other.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
-        self.draw(path)?.write_png(path)
+        self.draw(path)?.write(path)
     }
 
     /// Draws the chart as PNG into memory; `name` stands for it in messages.
@@ -91,12 +92,13 @@ impl LineChart {
         let path = Path::new(name);
         let mut bytes = Vec::new();
         self.draw(path)?
+            .to_bitmap()
             .encode(&mut bytes)
             .map_err(|error| IoError::writing(path, error))?;
         Ok(bytes)
     }
 
-    pub(super) fn draw(&self, path: &Path) -> Result<Bitmap, IoError> {
+    pub(super) fn draw(&self, path: &Path) -> Result<Drawing, IoError> {
         self.check(path)?;
         let sizes = Sizes::of_width(self.width as usize);
         let usable = |&(x, y): &(f64, f64)| self.x.allows(x) && self.y.allows(y);
@@ -146,12 +148,12 @@ impl LineChart {
         };
         let frame = Frame { area, x, y };
 
-        let mut bitmap = Bitmap::white(self.width as usize, self.height as usize);
-        frame.draw_grid(&mut bitmap, &x_text, &y_text, &sizes);
+        let mut drawing = Drawing::new(self.width as usize, self.height as usize);
+        frame.draw_grid(&mut drawing, &x_text, &y_text, &sizes);
         if let Some((backdrop, bar, ticks)) = &bar {
             let factors = [x_shown.factor, y_shown.factor];
-            backdrop.draw(&mut bitmap, &frame, bar, factors);
-            bar.draw(&mut bitmap, area, ticks, &sizes);
+            backdrop.draw(&mut drawing, &frame, bar, factors);
+            bar.draw(&mut drawing, area, ticks, &sizes);
         }
         let mut drawn = Vec::new();
         for (number, curve) in self.curves.iter().enumerate() {
@@ -173,7 +175,7 @@ impl LineChart {
                     .iter()
                     .flat_map(|piece| clipped(piece, area))
                     .collect();
-                pen.stroke(&mut bitmap, lines);
+                pen.stroke(&mut drawing, lines);
             }
             if curve.markers {
                 for &place in pieces
@@ -181,16 +183,16 @@ impl LineChart {
                     .flatten()
                     .filter(|place| inside(**place, area))
                 {
-                    pen.mark(&mut bitmap, place);
+                    pen.mark(&mut drawing, place);
                 }
             }
             drawn.push(pieces);
         }
-        frame.draw_axes(&mut bitmap, &x_text, &y_text, &sizes);
-        self.draw_key(&mut bitmap, area, &drawn, &sizes);
+        frame.draw_axes(&mut drawing, &x_text, &y_text, &sizes);
+        self.draw_key(&mut drawing, area, &drawn, &sizes);
         let end = if bar.is_some() { end } else { right };
-        self.header.draw(&mut bitmap, left, end, &sizes);
-        Ok(bitmap)
+        self.header.draw(&mut drawing, left, end, &sizes);
+        Ok(drawing)
     }
 
     fn check(&self, path: &Path) -> Result<(), IoError> {
@@ -232,7 +234,7 @@ impl LineChart {
     /// The key, in the corner where it hides the least of the curves.
     fn draw_key(
         &self,
-        bitmap: &mut Bitmap,
+        drawing: &mut Drawing,
         area: Area,
         drawn: &[Vec<Vec<(f64, f64)>>],
         sizes: &Sizes,
@@ -275,20 +277,20 @@ impl LineChart {
             return;
         };
         let corner = (place.0 + width, place.1 + height);
-        bitmap.fill_rectangle(place, corner, WHITE, 0.85);
-        bitmap.outline(place, corner, 1.0, [200, 200, 200]);
+        drawing.fill_rectangle(place, corner, WHITE, 0.85);
+        drawing.outline(place, corner, 1.0, [200, 200, 200]);
         for (line, (number, curve)) in named.into_iter().enumerate() {
             let pen = Pen::of(number, curve, sizes);
             let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
             let (from, to) = (place.0 + gap, place.0 + gap + sample);
             if curve.line {
-                pen.stroke(bitmap, vec![vec![(from, y), (to, y)]]);
+                pen.stroke(drawing, vec![vec![(from, y), (to, y)]]);
             }
             if curve.markers {
-                pen.mark(bitmap, (0.5 * (from + to), y));
+                pen.mark(drawing, (0.5 * (from + to), y));
             }
             let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, room);
-            text::draw(bitmap, &curve.name, (to + gap, y), style.colour(INK));
+            drawing.text(&curve.name, (to + gap, y), style.colour(INK));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures as PNG files: a field on the points of a body, and charts of curves.
+//! Pictures as PNG or SVG files: a field on the points of a body, and charts of curves.
 //!
 //! * [`FieldPicture`]: every point as a filled cell at its displaced place, coloured by a scalar, with colour bar, time stamp and
 //!   lengths in a fitting unit. A body in the plane has axes; a body in space is seen in parallel projection along a chosen
@@ -34,12 +34,14 @@ mod bitmap;
 mod clip;
 mod colour;
 mod curve;
+mod drawing;
 mod field;
 mod frame;
 mod line_chart;
 mod plane;
 mod raster;
 mod solid;
+mod svg;
 mod text;
 mod ticks;
 mod units;

@@ -1,6 +1,6 @@
 //! A plane body with its axes.
 
-use super::bitmap::Bitmap;
+use super::drawing::Drawing;
 use super::field::Scene;
 use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
 use super::raster::Raster;
@@ -17,7 +17,7 @@ const TALLEST: f64 = 1.1;
 /// Fine pixels per pixel and direction, see [`Raster`].
 const FINE: usize = 2;
 
-pub(super) fn draw(scene: &Scene) -> Bitmap {
+pub(super) fn draw(scene: &Scene) -> Drawing {
     let sizes = Sizes::of_width(scene.width);
     let width = scene.width as f64;
     let (bw, bh) = (scene.high[0] - scene.low[0], scene.high[1] - scene.low[1]);
@@ -69,8 +69,8 @@ pub(super) fn draw(scene: &Scene) -> Bitmap {
         let half = (cell.half[0] * per_metre, cell.half[1] * per_metre);
         raster.cell((x - left, y - top), half, cell.colour);
     }
-    let mut bitmap = Bitmap::white(scene.width, (area.bottom + sizes.below()).ceil() as usize);
-    raster.lay_on(&mut bitmap, left as usize, top as usize);
+    let mut drawing = Drawing::new(scene.width, (area.bottom + sizes.below()).ceil() as usize);
+    drawing.cells(raster, left as usize, top as usize);
 
     let x = AxisText {
         ticks: frame
@@ -82,10 +82,10 @@ pub(super) fn draw(scene: &Scene) -> Bitmap {
         ticks: y_ticks,
         label: shown.label("y"),
     };
-    frame.draw_axes(&mut bitmap, &x, &y, &sizes);
-    scene.bar.draw(&mut bitmap, area, &bar_ticks, &sizes);
+    frame.draw_axes(&mut drawing, &x, &y, &sizes);
+    scene.bar.draw(&mut drawing, area, &bar_ticks, &sizes);
     scene
         .header
-        .draw(&mut bitmap, left, width - sizes.gap, &sizes);
-    bitmap
+        .draw(&mut drawing, left, width - sizes.gap, &sizes);
+    drawing
 }

@@ -143,6 +143,11 @@ impl Raster {
         }
     }
 
+    /// Width and height in whole pixels.
+    pub(super) fn size(&self) -> (usize, usize) {
+        (self.width / self.fine, self.height / self.fine)
+    }
+
     /// Lays the picture on a bitmap, its corner at (left, top). What no cell covers stays as it was.
     pub(super) fn lay_on(&self, bitmap: &mut Bitmap, left: usize, top: usize) {
         let fine = self.fine;

@@ -1,11 +1,12 @@
 //! A solid in parallel projection: cells as little blocks, nearer ones in front, with the directions of the axes and a length.
 
-use super::bitmap::{Bitmap, INK, Rgb};
+use super::bitmap::{INK, Rgb};
 use super::colour::shaded;
+use super::drawing::Drawing;
 use super::field::Scene;
 use super::frame::{Area, ColourBar, Sizes};
 use super::raster::{Face, Raster};
-use super::text::{self, Align, Style};
+use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
 use super::units::quantity;
 
@@ -80,7 +81,7 @@ impl View {
     }
 }
 
-pub(super) fn draw(scene: &Scene) -> Bitmap {
+pub(super) fn draw(scene: &Scene) -> Drawing {
     let sizes = Sizes::of_width(scene.width);
     let width = scene.width as f64;
     let view = View::new(scene.view);
@@ -191,19 +192,19 @@ pub(super) fn draw(scene: &Scene) -> Bitmap {
 
     let arm = 3.0 * sizes.tick_text;
     let below = 2.0 * arm + sizes.tick_text + 2.0 * sizes.gap;
-    let mut bitmap = Bitmap::white(scene.width, (area.bottom + below).ceil() as usize);
-    raster.lay_on(&mut bitmap, left as usize, top as usize);
-    draw_directions(&mut bitmap, &view, area, arm, &sizes);
-    draw_length(&mut bitmap, area, per_metre, &sizes);
-    scene.bar.draw(&mut bitmap, area, &bar_ticks, &sizes);
+    let mut drawing = Drawing::new(scene.width, (area.bottom + below).ceil() as usize);
+    drawing.cells(raster, left as usize, top as usize);
+    draw_directions(&mut drawing, &view, area, arm, &sizes);
+    draw_length(&mut drawing, area, per_metre, &sizes);
+    scene.bar.draw(&mut drawing, area, &bar_ticks, &sizes);
     scene
         .header
-        .draw(&mut bitmap, 2.0 * left, width - sizes.gap, &sizes);
-    bitmap
+        .draw(&mut drawing, 2.0 * left, width - sizes.gap, &sizes);
+    drawing
 }
 
 /// The directions of the axes, in the lower left corner.
-fn draw_directions(bitmap: &mut Bitmap, view: &View, area: Area, arm: f64, sizes: &Sizes) {
+fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, sizes: &Sizes) {
     let reach = arm + 0.8 * sizes.tick_text;
     let from = (
         area.left + sizes.gap + reach,
@@ -217,31 +218,31 @@ fn draw_directions(bitmap: &mut Bitmap, view: &View, area: Area, arm: f64, sizes
     for (c, [x, y, _]) in axes {
         let (name, colour) = AXES[c];
         let to = (from.0 + arm * x, from.1 - arm * y);
-        bitmap.stroke(&[vec![from, to]], 2.0 * sizes.line, colour);
+        drawing.stroke(vec![vec![from, to]], 2.0 * sizes.line, colour);
         let length = x.hypot(y);
         if length > 0.1 {
             let far = arm + 0.6 * sizes.tick_text / length;
             let place = (from.0 + far * x, from.1 - far * y);
             let style = Style::new(sizes.tick_text, Align::Middle).colour(colour);
-            text::draw(bitmap, name, place, style);
+            drawing.text(name, place, style);
         }
     }
 }
 
 /// A bar of a round length, below the middle; in parallel projection it holds for every line across the view.
-fn draw_length(bitmap: &mut Bitmap, area: Area, per_metre: f64, sizes: &Sizes) {
+fn draw_length(drawing: &mut Drawing, area: Area, per_metre: f64, sizes: &Sizes) {
     let length = round_below(0.25 * area.width() / per_metre);
     let half = 0.5 * length * per_metre;
     let x = 0.5 * (area.left + area.right);
     let y = area.bottom + 3.0 * sizes.gap;
-    bitmap.rule((x - half, y), (x + half, y), 2.0 * sizes.line, INK);
+    drawing.rule((x - half, y), (x + half, y), 2.0 * sizes.line, INK);
     for end in [x - half, x + half] {
         let tick = 0.7 * sizes.tick;
-        bitmap.rule((end, y - tick), (end, y + tick), 2.0 * sizes.line, INK);
+        drawing.rule((end, y - tick), (end, y + tick), 2.0 * sizes.line, INK);
     }
     let style = Style::new(sizes.tick_text, Align::Middle);
     let place = (x, y + sizes.tick + 0.8 * sizes.tick_text);
-    text::draw(bitmap, &round_quantity(length), place, style);
+    drawing.text(&round_quantity(length), place, style);
 }
 
 /// A round number with its unit and without noughts at its end: `20 mm`.

@@ -13,7 +13,7 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
 });
 
 /// Half the height of a capital in DejaVu Sans over its size (1493 of 2048 units).
-const HALF_CAPITAL: f64 = 0.3645;
+pub(super) const HALF_CAPITAL: f64 = 0.3645;
 
 /// Which end of the text lies at the given place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

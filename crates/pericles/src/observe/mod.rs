@@ -31,6 +31,14 @@ pub trait Observer: Saved {
     /// Whatever keeps the observer from doing its work; the run then stops.
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError>;
 
+    /// Waits until everything seen so far is kept: asked before the run's state is saved. For observers that work beside the run.
+    ///
+    /// # Errors
+    /// Whatever kept the observer from doing its work.
+    fn settle(&self) -> Result<(), ObserveError> {
+        Ok(())
+    }
+
     /// Hears that the run has come to its end; not of a run that is stopped, which may go on.
     ///
     /// # Errors

@@ -2,6 +2,9 @@
 //!
 //! These types may only be used in functions compiled for their set, which `for_each_instruction_set` sees to: it alone
 //! names them, and calls such a function only after [`super::InstructionSet::detect`] has found the set.
+//!
+//! No closures and no adapters here, nor in the loops that use these types: compilers inline them at their own judgement, and a copy that is called takes the instructions of
+//! the baseline and passes all registers through memory. `.ci/inlined.sh` looks for such calls.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -100,6 +103,36 @@ unsafe fn four(rows: &[Row], index: usize) -> __m256d {
     unsafe { _mm256_load_pd(rows.get_unchecked(index).0.as_ptr()) }
 }
 
+/// Two rows side by side.
+///
+/// # Safety
+/// The indices are below `rows.len()`, and the caller is compiled for AVX-512.
+#[inline(always)]
+unsafe fn pair(rows: &[Row], a: usize, b: usize) -> __m512d {
+    // SAFETY: as the caller has promised.
+    unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(four(rows, a)), four(rows, b)) }
+}
+
+/// The numbers of four rows, number by number.
+///
+/// # Safety
+/// The indices are below `rows.len()`, and the caller is compiled for AVX2.
+#[inline(always)]
+unsafe fn turned(rows: &[Row], a: usize, b: usize, c: usize, d: usize) -> [__m256d; 4] {
+    // SAFETY: as the caller has promised.
+    unsafe {
+        let (r0, r1, r2, r3) = (four(rows, a), four(rows, b), four(rows, c), four(rows, d));
+        let (xz0, y0) = (_mm256_unpacklo_pd(r0, r1), _mm256_unpackhi_pd(r0, r1));
+        let (xz2, y2) = (_mm256_unpacklo_pd(r2, r3), _mm256_unpackhi_pd(r2, r3));
+        [
+            _mm256_permute2f128_pd::<0x20>(xz0, xz2),
+            _mm256_permute2f128_pd::<0x20>(y0, y2),
+            _mm256_permute2f128_pd::<0x31>(xz0, xz2),
+            _mm256_permute2f128_pd::<0x31>(y0, y2),
+        ]
+    }
+}
+
 /// 1/√x from a seed y with eleven good bits or more: y (1 − e)^(−1/2) with e = 1 − x y², as a series of which the next term is below round-off.
 #[inline(always)]
 fn refined<T: Lanes>(x: T, seed: T) -> T {
@@ -123,11 +156,10 @@ impl Lanes for Avx512x8 {
     unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
         unsafe {
-            let row = |k: usize| four(rows, indices[k]);
-            let pair = |a: usize, b: usize| {
-                _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(row(a)), row(b))
-            };
-            let (r04, r15, r26, r37) = (pair(0, 4), pair(1, 5), pair(2, 6), pair(3, 7));
+            let r04 = pair(rows, indices[0], indices[4]);
+            let r15 = pair(rows, indices[1], indices[5]);
+            let r26 = pair(rows, indices[2], indices[6]);
+            let r37 = pair(rows, indices[3], indices[7]);
             let (xz0, y0) = (_mm512_unpacklo_pd(r04, r15), _mm512_unpackhi_pd(r04, r15));
             let (xz2, y2) = (_mm512_unpacklo_pd(r26, r37), _mm512_unpackhi_pd(r26, r37));
             let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
@@ -221,19 +253,8 @@ impl Lanes for Avx2x8 {
     unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
         unsafe {
-            let turned = |first: usize| {
-                let row = |k: usize| four(rows, indices[first + k]);
-                let (r0, r1, r2, r3) = (row(0), row(1), row(2), row(3));
-                let (xz0, y0) = (_mm256_unpacklo_pd(r0, r1), _mm256_unpackhi_pd(r0, r1));
-                let (xz2, y2) = (_mm256_unpacklo_pd(r2, r3), _mm256_unpackhi_pd(r2, r3));
-                [
-                    _mm256_permute2f128_pd::<0x20>(xz0, xz2),
-                    _mm256_permute2f128_pd::<0x20>(y0, y2),
-                    _mm256_permute2f128_pd::<0x31>(xz0, xz2),
-                    _mm256_permute2f128_pd::<0x31>(y0, y2),
-                ]
-            };
-            let (low, high) = (turned(0), turned(4));
+            let low = turned(rows, indices[0], indices[1], indices[2], indices[3]);
+            let high = turned(rows, indices[4], indices[5], indices[6], indices[7]);
             [
                 Self(low[0], high[0]),
                 Self(low[1], high[1]),

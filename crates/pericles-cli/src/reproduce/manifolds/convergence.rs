@@ -105,6 +105,8 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     let system = |level: u32, changes: &[String]| -> Result<System, CliError> {
         let mut changes = changes.to_vec();
         changes.push(change("body.level", level));
+        // Nothing moves here, but a deck whose step is too long for a fine mesh is refused.
+        changes.push(change("time.dt", "auto"));
         let resources = Resources {
             cache: &kept,
             ..Resources::default()

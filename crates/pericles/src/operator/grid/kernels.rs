@@ -71,7 +71,10 @@ fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
         largest: zero,
         smallest: zero,
     };
-    for (offset, &mask) in grid.offsets.iter().zip(intact) {
+    let intact = &intact[..grid.offsets.len()];
+    // No adapter here: one that is not inlined would pass all registers through memory.
+    for k in 0..grid.offsets.len() {
+        let (offset, mask) = (&grid.offsets[k], intact[k]);
         if mask == 0 {
             continue;
         }
@@ -94,7 +97,9 @@ fn exact_force<T: Lanes, L: FastLaw, const D: usize>(
 ) -> [T; D] {
     let here = grid.here::<T>(place);
     let mut sum = [T::splat(0.0); D];
-    for (offset, &mask) in grid.offsets.iter().zip(intact) {
+    let intact = &intact[..grid.offsets.len()];
+    for k in 0..grid.offsets.len() {
+        let (offset, mask) = (&grid.offsets[k], intact[k]);
         let eta = grid.eta(place, offset.shift, &here);
         let force = L::force(xi(offset), eta);
         for c in 0..D {
@@ -199,7 +204,9 @@ fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         let place = grid.place(chunk);
         let here = grid.here::<T>(place);
         let mut sum = T::splat(0.0);
-        for (offset, &mask) in grid.offsets.iter().zip(&intact[k * m..(k + 1) * m]) {
+        let intact = &intact[k * m..(k + 1) * m];
+        for k in 0..m {
+            let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
             let energy = L::energy(xi(offset), eta);
             sum = sum + (T::splat(0.5 * offset.stiffness) * energy).masked(mask);
@@ -228,7 +235,9 @@ fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         let here = grid.here::<T>(place);
         let direction_here = direction.here::<T>(place);
         let mut sum = [T::splat(0.0); D];
-        for (offset, &mask) in grid.offsets.iter().zip(&intact[k * m..(k + 1) * m]) {
+        let intact = &intact[k * m..(k + 1) * m];
+        for k in 0..m {
+            let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
             let d = direction.eta(place, offset.shift, &direction_here);
             let force = L::tangent(xi(offset), eta, d);

@@ -137,8 +137,9 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         let place = grid.place(chunk);
         let here = grid.here::<T>(place);
         let mut endangered = 0;
-        let masks = &intact[number * m..(number + 1) * m];
-        for (k, (offset, &mask)) in grid.offsets.iter().zip(masks).enumerate() {
+        let intact = &intact[number * m..(number + 1) * m];
+        for k in 0..m {
+            let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
             let over = L::strain(&offset.lanes(), eta).greater(threshold) & mask;
             if over & !endangered != 0 {
@@ -146,7 +147,10 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
             }
         }
         if endangered != 0 {
-            let ones = std::array::from_fn(|lane| f64::from(endangered >> lane & 1));
+            let mut ones = [0.0; LANES];
+            for lane in 0..LANES {
+                ones[lane] = f64::from(endangered >> lane & 1);
+            }
             scatter(ones, chunk, chunk.lanes, block.first_point, out[0]);
         }
     }

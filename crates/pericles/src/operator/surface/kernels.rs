@@ -44,7 +44,11 @@ impl<'a> Bonds<'a> {
     /// Differences of a field along the eight bonds of a group.
     #[inline(always)]
     fn differences<T: Lanes>(&self, here: [T; 3], group: usize, field: &Records) -> [T; 3] {
-        let indices = self.list.group(group).map(|j| j as usize);
+        let neighbours = self.list.group(group);
+        let mut indices = [0; LANES];
+        for k in 0..LANES {
+            indices[k] = neighbours[k] as usize;
+        }
         // SAFETY: neighbours are below the number of points, which `SurfaceBonds` guarantees; `field` has as many rows: see `checked`.
         let there = unsafe { T::gather(field, indices) };
         vector(|c| there[c] - here[c])

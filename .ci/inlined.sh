@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Looks into a compiled program for calls out of the loops that are compiled for vector instructions: a function that was not inlined there takes the
+# instructions of the baseline and passes all registers through memory, which makes loops up to three times slower and fails no test. Calls that end the program
+# (panics), copies of memory and calls through pointers are not counted. Independent of the machine's speed.
+#
+#     .ci/inlined.sh target/release/pericles
+set -euo pipefail
+program=$1
+if ! command -v objdump >/dev/null || [[ $(uname -m) != x86_64 ]]; then
+    echo "inlined: needs objdump on x86-64; not checked"
+    exit 0
+fi
+calls=$(objdump --disassemble --demangle --no-show-raw-insn "$program" | awk '
+    /^[0-9a-f]+ <.*>:$/ {
+        name = substr($0, index($0, "<") + 1)
+        sub(/>:$/, "", name)
+        loop = name ~ /^pericles::.*::(avx2|avx512)$/
+        loops += loop
+    }
+    loop && /call / && /</ {
+        target = substr($0, index($0, "<") + 1)
+        if (target !~ /panic|_fail|_DYNAMIC|GLOBAL_OFFSET|copy_from_slice|mem(cpy|set|move)/) print name " calls " target
+    }
+    END { if (loops < 20) print "only " loops + 0 " vector loops found in the program" }')
+if [[ -n $calls ]]; then
+    echo "not inlined:"
+    sort <<<"$calls" | uniq -c
+    exit 1
+fi
+echo "inlined: no call out of a vector loop"

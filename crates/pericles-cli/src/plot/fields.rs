@@ -1,0 +1,266 @@
+//! Fields of written states as pictures. The points come from the deck in `run.json`, so that cells, triangles and all else are those of the run's own
+//! pictures.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pericles::observe::Field;
+use pericles::space::PointCloud;
+use pericles_deck::Deck;
+use pericles_io::observers::{DrawnState, PictureOf};
+use pericles_io::{FieldData, write_animation};
+
+use super::Frames;
+use crate::args::{Format, PlotArgs};
+use crate::checkpoint::DeckText;
+use crate::error::CliError;
+use crate::prepare::{picture_of, readers};
+use crate::results::{FieldFile, Results};
+
+/// Draws pictures into a folder; returns them, and the animations.
+pub(super) fn draw(
+    results: &Results,
+    args: &PlotArgs,
+    place: &Path,
+) -> Result<Vec<PathBuf>, CliError> {
+    let states = results.fields()?;
+    let Some(last) = states.last() else {
+        if args.fields.is_empty() {
+            return Ok(Vec::new());
+        }
+        return Err(results.damaged("fields.pvd", "the run wrote no fields".into()));
+    };
+    let deck: DeckText = results.deck()?;
+    let deck = deck.read()?;
+    let (cloud, surface) = deck.body_points(readers())?;
+    let body = Body {
+        rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
+        cloud,
+    };
+    let surface = surface.map(Arc::new);
+    let mut pictures: Vec<PictureOf> = wanted(&deck, args, &last.read()?, body.cloud.dimension())?
+        .into_iter()
+        .map(|what| PictureOf {
+            surface: surface.clone(),
+            steady: args.animation,
+            width: args.width,
+            view: args.view.map(|view| view.0).or(what.view),
+            scale: args.scale.unwrap_or(what.scale),
+            ..what
+        })
+        .collect();
+    let all = Frames::All;
+    let frames = match &args.time {
+        Some(frames) => frames,
+        None if args.animation => &all,
+        None => &Frames::Last,
+    };
+    let numbers = frames.among(&states);
+    for what in &mut pictures {
+        if let Some(range) = &args.range {
+            what.range = Some(range.0);
+        } else if what.range.is_none() && numbers.len() > 1 && what.field != Field::Damage {
+            // Of one range, or the colours would change their meaning from picture to picture.
+            what.range = body.common_range(what, &states, &numbers)?;
+        }
+    }
+    let mut written = Vec::new();
+    let mut stills: Vec<Vec<PathBuf>> = vec![Vec::new(); pictures.len()];
+    for &number in &numbers {
+        let data = states[number].read()?;
+        for (what, stills) in pictures.iter().zip(&mut stills) {
+            let name = format!("{}-{number:06}", what.name(body.cloud.dimension()));
+            let path = place.join(format!("{name}.{}", args.format.ending()));
+            body.draw(what, &states[number], &data, &path)?;
+            stills.push(path);
+        }
+    }
+    for (what, stills) in pictures.iter().zip(&stills) {
+        if args.animation && args.format == Format::Png {
+            let path = place.join(format!("{}.apng", what.name(body.cloud.dimension())));
+            write_animation(stills, &path)?;
+            written.push(path);
+        }
+    }
+    Ok(stills.into_iter().flatten().chain(written).collect())
+}
+
+/// What is to be drawn: the fields that are asked for, else those of the deck's pictures, else damage where there is any, else the displacement.
+fn wanted(
+    deck: &Deck,
+    args: &PlotArgs,
+    data: &FieldData,
+    dimension: usize,
+) -> Result<Vec<PictureOf>, CliError> {
+    let title = deck.title.clone().unwrap_or_default();
+    if args.fields.is_empty() {
+        let own = deck.output.pictures.iter();
+        let own: Vec<PictureOf> = own.map(|picture| picture_of(deck, picture, None)).collect();
+        let written = |what: &PictureOf| {
+            columns(what.field, dimension)
+                .iter()
+                .all(|name| data.field(name).is_some())
+        };
+        if own.iter().any(written) {
+            return Ok(own.into_iter().filter(written).collect());
+        }
+        let damaged = data
+            .field(Field::Damage.name())
+            .is_some_and(|damage| damage.values.iter().any(|value| *value > 0.0));
+        let field = if damaged {
+            Field::Damage
+        } else {
+            Field::Displacement
+        };
+        let what = PictureOf {
+            title,
+            ..PictureOf::new(field)
+        };
+        return Ok(if written(&what) {
+            vec![what]
+        } else {
+            Vec::new()
+        });
+    }
+    let named = |name: &String| {
+        let all = drawable(dimension);
+        let has = |field: Field| {
+            columns(field, dimension)
+                .iter()
+                .all(|name| data.field(name).is_some())
+        };
+        let written: Vec<&PictureOf> = all.iter().filter(|what| has(what.field)).collect();
+        let found = written.iter().find(|what| what.name(dimension) == *name);
+        let what = found.ok_or_else(|| {
+            let names: Vec<String> = written.iter().map(|what| what.name(dimension)).collect();
+            let listing = format!("the run wrote {}", names.join(", "));
+            CliError::unknown("field", name, &names, &listing)
+        })?;
+        // A deck's own picture of the field says how it is best seen.
+        let own = deck
+            .output
+            .pictures
+            .iter()
+            .find(|picture| (picture.field, picture.component) == (what.field, what.component));
+        Ok(match own {
+            Some(own) => picture_of(deck, own, None),
+            None => PictureOf {
+                title: title.clone(),
+                ..(*what).clone()
+            },
+        })
+    };
+    args.fields.iter().map(named).collect()
+}
+
+/// All fields, whole and by component.
+fn drawable(dimension: usize) -> Vec<PictureOf> {
+    let with = |field: Field, component| PictureOf {
+        component,
+        ..PictureOf::new(field)
+    };
+    let parts = |field: Field| {
+        let components = 0..field.components(dimension).len();
+        std::iter::once(with(field, None)).chain(components.map(move |c| with(field, Some(c))))
+    };
+    Field::ALL.into_iter().flat_map(parts).collect()
+}
+
+/// The columns of files that a field is in.
+fn columns(field: Field, dimension: usize) -> Vec<String> {
+    if !field.is_tensor() {
+        return vec![field.name().to_owned()];
+    }
+    let components = field.components(dimension).iter();
+    components
+        .map(|component| format!("{}_{component}", field.name()))
+        .collect()
+}
+
+/// The points, and the row of each in files.
+struct Body {
+    cloud: PointCloud,
+    rows: Vec<usize>,
+}
+
+impl Body {
+    fn draw(
+        &self,
+        what: &PictureOf,
+        state: &FieldFile,
+        data: &FieldData,
+        path: &Path,
+    ) -> Result<(), CliError> {
+        let n = self.cloud.len();
+        let displacement = match data.field(Field::Displacement.name()) {
+            Some(_) => self.field(Field::Displacement, state, data)?,
+            // Points that nobody wrote the displacement of are drawn at rest.
+            None => vec![0.0; n * self.cloud.dimension()],
+        };
+        let field = self.field(what.field, state, data)?;
+        let drawn = DrawnState {
+            t: state.time,
+            displacement: &displacement,
+            values: &what.numbers(&field, n),
+        };
+        Ok(what.draw_state(&self.cloud, &drawn, path)?)
+    }
+
+    /// A field in the order of the points, component after component.
+    fn field(
+        &self,
+        field: Field,
+        state: &FieldFile,
+        data: &FieldData,
+    ) -> Result<Vec<f64>, CliError> {
+        let damaged = |reason: String| CliError::Damaged {
+            path: state.path.clone(),
+            reason,
+        };
+        let (n, dimension) = (self.cloud.len(), self.cloud.dimension());
+        if data.points.len() != 3 * n {
+            return Err(damaged(format!(
+                "it has {} points, the deck's body {n}",
+                data.points.len() / 3
+            )));
+        }
+        let mut values = Vec::new();
+        for name in columns(field, dimension) {
+            let column = data
+                .field(&name)
+                .ok_or_else(|| damaged(format!("it has no {name}")))?;
+            let components = if column.components == 1 { 1 } else { dimension };
+            for c in 0..components {
+                let entries = self.rows.iter().map(|row| row * column.components + c);
+                values.extend(entries.map(|entry| column.values[entry]));
+            }
+        }
+        Ok(values)
+    }
+
+    /// The least and the greatest number of several pictures; none if they are all one.
+    fn common_range(
+        &self,
+        what: &PictureOf,
+        states: &[FieldFile],
+        numbers: &[usize],
+    ) -> Result<Option<[f64; 2]>, CliError> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &number in numbers {
+            let field = self.field(what.field, &states[number], &states[number].read()?)?;
+            for &value in what
+                .numbers(&field, self.cloud.len())
+                .iter()
+                .filter(|x| x.is_finite())
+            {
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+        if what.component.is_some() {
+            // Zero is in the middle of the colours of what has a sign.
+            let size = low.abs().max(high.abs());
+            (low, high) = (-size, size);
+        }
+        Ok((low < high).then_some([low, high]))
+    }
+}

@@ -1,0 +1,266 @@
+//! What the reader asks for: the keys of every table and the forms of their values, noted while right decks are read.
+//!
+//! Only the reader knows which keys there are. A survey listens to it, so that the schema need not say it a second time. Places are named as
+//! in `body.hole[].ball.radius`; below a definition, which several places share, they begin with its name: `region.ball.radius`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde_json::Value as Json;
+
+use super::path::{Path, Step};
+use crate::quantity::Quantity;
+
+/// A form that a value may have.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Form {
+    Text,
+    Boolean,
+    /// A whole number of at least one.
+    Count,
+    Number {
+        quantity: Quantity,
+        /// Its range in words.
+        allowed: Option<String>,
+    },
+    /// One of these words.
+    Words(Vec<String>),
+    /// A list; its entries are surveyed under `[]`.
+    List {
+        /// The only one, if there is one.
+        length: Option<usize>,
+    },
+    /// One entry for each dimension of the body, surveyed under `[]`; in one dimension it may stand alone.
+    Vector,
+    Table,
+    /// A table whose keys are names, each with a value of this definition.
+    Names(&'static str),
+    /// What this definition says.
+    Defined(&'static str),
+}
+
+impl Form {
+    /// Widens itself to what another form allows as well, if it is of the same kind.
+    fn takes_in(&mut self, other: &Self) -> bool {
+        match (&mut *self, other) {
+            (Self::Words(words), Self::Words(others)) => {
+                for word in others {
+                    if !words.contains(word) {
+                        words.push(word.clone());
+                    }
+                }
+                true
+            }
+            (
+                Self::List { length },
+                Self::List {
+                    length: other_length,
+                },
+            ) => {
+                *length = length.filter(|length| *other_length == Some(*length));
+                true
+            }
+            _ => self == other,
+        }
+    }
+}
+
+/// A value.
+#[derive(Debug, Default)]
+pub(crate) struct ValueSurvey {
+    pub(crate) forms: Vec<Form>,
+    /// What it is if it is left out: several if that depends on other keys.
+    pub(crate) defaults: Vec<Json>,
+}
+
+/// A table.
+#[derive(Debug, Default)]
+pub(crate) struct TableSurvey {
+    /// How often it was read to its end.
+    visits: usize,
+    /// Its keys in the order in which they were asked for first, with the number of visits that needed them.
+    keys: Vec<(&'static str, usize)>,
+    /// Keys of which at most one may be given, with the number of visits that needed one.
+    choices: Vec<(&'static [&'static str], usize)>,
+}
+
+impl TableSurvey {
+    /// Its keys.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &'static str> {
+        self.keys.iter().map(|(key, _)| *key)
+    }
+
+    /// Whether a key is always needed.
+    pub(crate) fn needs(&self, key: &str) -> bool {
+        self.keys
+            .iter()
+            .any(|(name, needed)| *name == key && *needed == self.visits)
+    }
+
+    /// Keys that exclude each other, and whether one of them is always needed.
+    pub(crate) fn choices(&self) -> impl Iterator<Item = (&'static [&'static str], bool)> {
+        self.choices
+            .iter()
+            .map(|(keys, needed)| (*keys, *needed == self.visits))
+    }
+}
+
+/// What was noted.
+#[derive(Debug, Default)]
+pub(crate) struct Survey {
+    values: BTreeMap<String, ValueSurvey>,
+    tables: BTreeMap<String, TableSurvey>,
+    /// Places of the present deck with their definitions.
+    definitions: BTreeMap<Path, &'static str>,
+    /// Places of the present deck where the only entry of a vector stands without brackets.
+    bare: BTreeSet<Path>,
+}
+
+impl Survey {
+    /// Goes on with another deck.
+    pub(crate) fn begin(&mut self) {
+        self.definitions.clear();
+        self.bare.clear();
+    }
+
+    pub(crate) fn value(&self, place: &str) -> Option<&ValueSurvey> {
+        self.values.get(place)
+    }
+
+    pub(crate) fn table(&self, place: &str) -> Option<&TableSurvey> {
+        self.tables.get(place)
+    }
+
+    /// All values.
+    pub(crate) fn values(&self) -> impl Iterator<Item = &ValueSurvey> {
+        self.values.values()
+    }
+
+    /// All tables with their places.
+    #[cfg(test)]
+    pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, &TableSurvey)> {
+        self.tables
+            .iter()
+            .map(|(place, table)| (place.as_str(), table))
+    }
+
+    /// The names of all definitions.
+    pub(crate) fn definitions(&self) -> Vec<&'static str> {
+        let forms = self.values.values().flat_map(|value| &value.forms);
+        let mut names: Vec<&'static str> = forms
+            .filter_map(|form| match form {
+                Form::Defined(name) | Form::Names(name) => Some(*name),
+                _ => None,
+            })
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// What lies at a place is said by a definition.
+    pub(super) fn define(&mut self, path: &Path, name: &'static str) {
+        self.form(path, Form::Defined(name));
+        self.definitions.insert(path.clone(), name);
+    }
+
+    /// As [`Self::define`], for the entries of a table of names.
+    pub(super) fn define_named(&mut self, table: &Path, entry: &Path, name: &'static str) {
+        self.form(table, Form::Names(name));
+        self.definitions.insert(entry.clone(), name);
+    }
+
+    /// A vector; whether it is an entry without brackets.
+    pub(super) fn vector(&mut self, path: &Path, bare: bool) {
+        self.form(path, Form::Vector);
+        if bare {
+            self.bare.insert(path.clone());
+        }
+    }
+
+    pub(super) fn form(&mut self, path: &Path, form: Form) {
+        let forms = &mut self.value_at(path).forms;
+        if !forms.iter_mut().any(|known| known.takes_in(&form)) {
+            forms.push(form);
+        }
+    }
+
+    pub(super) fn default(&mut self, path: &Path, default: Json) {
+        let defaults = &mut self.value_at(path).defaults;
+        if !defaults.contains(&default) {
+            defaults.push(default);
+        }
+    }
+
+    pub(super) fn key(&mut self, table: &Path, key: &'static str) {
+        let keys = &mut self.table_at(table).keys;
+        if !keys.iter().any(|(name, _)| *name == key) {
+            keys.push((key, 0));
+        }
+    }
+
+    pub(super) fn needed(&mut self, table: &Path, key: &'static str) {
+        let keys = &mut self.table_at(table).keys;
+        if let Some((_, needed)) = keys.iter_mut().find(|(name, _)| *name == key) {
+            *needed += 1;
+        }
+    }
+
+    pub(super) fn choice(&mut self, table: &Path, keys: &'static [&'static str], needed: bool) {
+        let choices = &mut self.table_at(table).choices;
+        let needed = usize::from(needed);
+        match choices.iter_mut().find(|(known, _)| *known == keys) {
+            Some((_, count)) => *count += needed,
+            None => choices.push((keys, needed)),
+        }
+    }
+
+    /// A table has been read to its end.
+    pub(super) fn visited(&mut self, table: &Path) {
+        self.table_at(table).visits += 1;
+    }
+
+    fn value_at(&mut self, path: &Path) -> &mut ValueSurvey {
+        self.values.entry(self.place(path)).or_default()
+    }
+
+    fn table_at(&mut self, path: &Path) -> &mut TableSurvey {
+        self.tables.entry(self.place(path)).or_default()
+    }
+
+    /// The name of a place, from the nearest definition above it or from the root.
+    fn place(&self, path: &Path) -> String {
+        let mut rest = Vec::new();
+        let mut above = path.clone();
+        let mut name = loop {
+            if let Some(definition) = self.definitions.get(&above) {
+                break (*definition).to_owned();
+            }
+            match (above.steps().last().cloned(), above.parent()) {
+                (Some(step), Some(parent)) => {
+                    rest.push(step);
+                    above = parent;
+                }
+                _ => break String::new(),
+            }
+        };
+        for step in rest.iter().rev() {
+            match step {
+                Step::Index(_) => name += "[]",
+                Step::Key(key) => name = below(&name, key),
+            }
+        }
+        // A definition says all of its entry.
+        if self.bare.contains(path) && !self.definitions.contains_key(path) {
+            name += "[]";
+        }
+        name
+    }
+}
+
+/// The place of a key in the table at a place.
+pub(crate) fn below(table: &str, key: &str) -> String {
+    if table.is_empty() {
+        return key.to_owned();
+    }
+    format!("{table}.{key}")
+}

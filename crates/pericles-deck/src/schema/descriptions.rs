@@ -1,0 +1,47 @@
+//! Sentences about tables and keys.
+
+use toml::Table;
+
+/// The key under which a table says what it is itself.
+const ABOUT: &str = "about";
+
+/// The sentences of `descriptions.toml`, by table and key; brackets of lists are left out of the names of tables.
+pub(super) struct Descriptions(Table);
+
+impl Descriptions {
+    pub(super) fn new() -> Self {
+        let text = include_str!("descriptions.toml");
+        Self(
+            text.parse()
+                .unwrap_or_else(|error| panic!("descriptions.toml: {error}")),
+        )
+    }
+
+    /// What is said of a table or definition.
+    pub(super) fn of_table(&self, place: &str) -> Option<&str> {
+        self.get(&place.replace("[]", ""), ABOUT)
+    }
+
+    /// What is said of a key.
+    pub(super) fn of_key(&self, place: &str) -> Option<&str> {
+        let place = place.replace("[]", "");
+        let (table, key) = place.rsplit_once('.').unwrap_or(("", &place));
+        self.get(table, key)
+    }
+
+    fn get(&self, table: &str, key: &str) -> Option<&str> {
+        self.0.get(table)?.get(key)?.as_str()
+    }
+
+    /// All tables and keys that something is said of; no key where it is the table.
+    #[cfg(test)]
+    pub(super) fn all(&self) -> impl Iterator<Item = (&str, Option<&str>)> {
+        self.0.iter().flat_map(|(table, keys)| {
+            let keys = keys.as_table().into_iter().flatten();
+            keys.map(move |(key, text)| {
+                assert!(text.is_str(), "[{table}] {key}");
+                (table.as_str(), (key != ABOUT).then_some(key.as_str()))
+            })
+        })
+    }
+}

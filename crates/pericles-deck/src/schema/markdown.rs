@@ -1,0 +1,204 @@
+//! The schema as a reference for people, in Markdown.
+
+use serde_json::Value as Json;
+
+use super::{Schema, names};
+use crate::reader::{Form, POSITIVE, TableSurvey, below};
+
+pub(super) fn document(schema: &Schema) -> String {
+    let mut page = Page {
+        schema,
+        text: format!(
+            "# Deck reference\n\n{}\n",
+            include_str!("../language.md").trim_end()
+        ),
+    };
+    page.section("");
+    page.text += "\n## Shared forms\n\nWhat several keys take.\n";
+    for name in schema.survey.definitions() {
+        page.heading(3, &format!("`{name}`"));
+        page.about(name);
+        if schema.survey.table(name).is_some() {
+            page.keys(name);
+        } else {
+            let forms = page.forms(name);
+            page.text += &format!("\nA value: {forms}.\n");
+        }
+    }
+    page.text
+}
+
+/// The text as far as it is written.
+struct Page<'a> {
+    schema: &'a Schema,
+    text: String,
+}
+
+impl Page<'_> {
+    /// A table, and the tables in it.
+    fn section(&mut self, place: &str) {
+        let depth = place.split('.').filter(|step| !step.is_empty()).count();
+        self.heading(2 + usize::from(depth > 1), &title(place));
+        self.about(place);
+        self.keys(place);
+        let Some(table) = self.schema.survey.table(place) else {
+            return;
+        };
+        let inner: Vec<String> = table
+            .keys()
+            .filter_map(|key| self.table_in(&below(place, key)))
+            .collect();
+        for place in inner {
+            self.section(&place);
+        }
+    }
+
+    fn heading(&mut self, level: usize, title: &str) {
+        self.text += &format!("\n{} {title}\n", "#".repeat(level));
+    }
+
+    fn about(&mut self, place: &str) {
+        if let Some(text) = self.schema.descriptions.of_table(place) {
+            self.text += &format!("\n{text}\n");
+        }
+    }
+
+    /// The place of the table that a value is, or of those that are its entries.
+    fn table_in(&self, place: &str) -> Option<String> {
+        self.schema
+            .forms(place)
+            .into_iter()
+            .find_map(|form| match form {
+                Form::Table => Some(place.to_owned()),
+                Form::List { .. } => self.table_in(&format!("{place}[]")),
+                _ => None,
+            })
+    }
+
+    fn keys(&mut self, place: &str) {
+        let Some(table) = self
+            .schema
+            .survey
+            .table(place)
+            .filter(|table| table.keys().next().is_some())
+        else {
+            return;
+        };
+        self.text += "\n| key | value | default | meaning |\n|---|---|---|---|\n";
+        for key in table.keys() {
+            let at = below(place, key);
+            let names: Vec<String> = names(key).map(|name| format!("`{name}`")).collect();
+            let mut meaning = self.schema.description(&at).unwrap_or_default().to_owned();
+            for range in self.schema.ranges(&at) {
+                meaning += &format!(" Allowed: {range}.");
+            }
+            let row = [
+                names.join(", "),
+                self.forms(&at),
+                self.default(table, key, &at),
+                meaning,
+            ];
+            let cells: Vec<String> = row.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            self.text += &format!("| {} |\n", cells.join(" | "));
+        }
+        for (keys, needed) in table.choices() {
+            let keys: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+            let count = if needed { "Exactly" } else { "At most" };
+            self.text += &format!("\n{count} one of {}.\n", keys.join(", "));
+        }
+    }
+
+    /// What a key is if it is left out.
+    fn default(&self, table: &TableSurvey, key: &str, place: &str) -> String {
+        if table.needs(key) {
+            return "needed".into();
+        }
+        let defaults = self
+            .schema
+            .survey
+            .value(place)
+            .map(|value| &value.defaults[..]);
+        let mut defaults: Vec<String> = defaults.unwrap_or_default().iter().map(plain).collect();
+        defaults.dedup();
+        defaults.join(" or ")
+    }
+
+    /// What a value may be.
+    fn forms(&self, place: &str) -> String {
+        let forms = self.schema.forms(place).into_iter();
+        let mut texts: Vec<String> = forms.map(|form| self.form(place, form)).collect();
+        texts.dedup();
+        texts.join(", or ")
+    }
+
+    /// What the entries of a list may be.
+    fn entries(&self, place: &str) -> String {
+        let entries = self.forms(&format!("{place}[]"));
+        if entries.contains(", or ") {
+            format!("({entries})")
+        } else {
+            entries
+        }
+    }
+
+    fn form(&self, place: &str, form: &Form) -> String {
+        match form {
+            Form::Text => "text".into(),
+            Form::Boolean => "`true`, `false`".into(),
+            Form::Count => "whole number from 1".into(),
+            Form::Number { quantity, allowed } => {
+                let sign = if allowed.as_deref() == Some(POSITIVE) {
+                    "positive "
+                } else {
+                    ""
+                };
+                match quantity.unit() {
+                    "" => format!("{sign}number"),
+                    unit => format!("{sign}{} ({unit})", quantity.noun()),
+                }
+            }
+            Form::Words(words) => {
+                let words: Vec<String> = words.iter().map(|word| format!("`\"{word}\"`")).collect();
+                words.join(", ")
+            }
+            Form::List { length } => {
+                let count = length.map_or(String::new(), |length| format!("{length} × "));
+                format!("list of {count}{}", self.entries(place))
+            }
+            Form::Vector => format!("vector of {}", self.entries(place)),
+            Form::Table => format!("[table](#{})", anchor(&title(place))),
+            Form::Names(name) => format!("[{name}](#{}) by name", anchor(name)),
+            Form::Defined(name) => format!("[{name}](#{})", anchor(name)),
+        }
+    }
+}
+
+/// The name of a table as decks write it.
+fn title(place: &str) -> String {
+    let name = place.replace("[]", "");
+    match place {
+        "" => "The deck".into(),
+        _ if place.ends_with("[]") => format!("[[{name}]]"),
+        _ => format!("[{name}]"),
+    }
+}
+
+/// What links to a heading end in.
+fn anchor(title: &str) -> String {
+    let kept = title.to_lowercase().replace(' ', "-");
+    kept.chars()
+        .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
+        .collect()
+}
+
+/// A default as decks write it.
+fn plain(value: &Json) -> String {
+    match value {
+        Json::Array(entries) if !entries.is_empty() => plain(&entries[0]),
+        Json::Number(number) => match number.as_f64() {
+            Some(number) => format!("`{number}`"),
+            None => format!("`{number}`"),
+        },
+        other => format!("`{other}`"),
+    }
+}

@@ -1,0 +1,164 @@
+//! The schema of decks: which keys there are, what forms their values may have and what they mean.
+//!
+//! Keys, forms, words, ranges and defaults are what the reader asks for while it reads the [`specimens`], so that a schema and the reader cannot
+//! disagree; only the sentences that explain the keys are written down, in `descriptions.toml`. Tests want every key of the reader to have its
+//! form and its sentence, and every sentence its key. Which keys go together with which shape, model or scheme is beyond the schema: it allows
+//! more than the reader, never less.
+
+mod descriptions;
+mod json;
+mod markdown;
+mod specimens;
+
+use serde_json::Value as Json;
+
+use self::descriptions::Descriptions;
+use crate::deck::Deck;
+use crate::reader::{Form, Survey};
+use crate::vocabulary::synonyms;
+
+/// A JSON Schema of decks, draft 2020-12: with it editors complete keys and words, and mark what is wrong.
+pub fn json_schema() -> Json {
+    json::document(&Schema::new())
+}
+
+/// The reference of all keys, as Markdown: a section for every table.
+pub fn reference() -> String {
+    markdown::document(&Schema::new())
+}
+
+/// All that is known of decks.
+struct Schema {
+    survey: Survey,
+    descriptions: Descriptions,
+}
+
+impl Schema {
+    fn new() -> Self {
+        let mut survey = Survey::default();
+        for specimen in specimens::SPECIMENS {
+            let changes: Vec<String> = specimen.changes.iter().map(|&text| text.into()).collect();
+            survey = Deck::survey(specimen.deck, &changes, survey)
+                .unwrap_or_else(|error| panic!("a specimen is refused: {changes:?} {error}"));
+        }
+        Self {
+            survey,
+            descriptions: Descriptions::new(),
+        }
+    }
+
+    /// The forms of a value; those that a definition says are left to it.
+    fn forms(&self, place: &str) -> Vec<&Form> {
+        let all = || self.survey.value(place).into_iter().flat_map(|v| &v.forms);
+        let defined = all().any(|form| matches!(form, Form::Defined(_) | Form::Names(_)));
+        all()
+            .filter(|form| !(defined && matches!(form, Form::Table)))
+            .collect()
+    }
+
+    /// What there is to say of a value: the sentences about the key, or about the definition or table that it holds.
+    fn description(&self, place: &str) -> Option<&str> {
+        let own = self.descriptions.of_key(place);
+        let defined = || {
+            self.forms(place).into_iter().find_map(|form| match form {
+                Form::Defined(name) => self.descriptions.of_table(name),
+                _ => None,
+            })
+        };
+        own.or_else(|| self.descriptions.of_table(place))
+            .or_else(defined)
+    }
+
+    /// The ranges of a value in words, but for those that its form says.
+    fn ranges(&self, place: &str) -> Vec<&str> {
+        let forms = self.forms(place).into_iter();
+        let mut ranges: Vec<&str> = forms
+            .filter_map(|form| match form {
+                Form::Number {
+                    allowed: Some(allowed),
+                    ..
+                } if allowed != crate::reader::POSITIVE => Some(allowed.as_str()),
+                _ => None,
+            })
+            .collect();
+        ranges.dedup();
+        ranges
+    }
+}
+
+/// The names of a key, the first name first.
+fn names(key: &'static str) -> impl Iterator<Item = &'static str> {
+    std::iter::once(key).chain(synonyms(key).iter().copied())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reader::below;
+
+    /// All keys with their places.
+    fn keys(schema: &Schema) -> Vec<String> {
+        let tables = schema.survey.tables();
+        tables
+            .flat_map(|(place, table)| table.keys().map(move |key| below(place, key)))
+            .collect()
+    }
+
+    #[test]
+    fn every_specimen_is_right() {
+        let refusals: Vec<String> = specimens::SPECIMENS
+            .iter()
+            .filter_map(|specimen| {
+                let changes: Vec<String> =
+                    specimen.changes.iter().map(|&text| text.into()).collect();
+                let error = Deck::survey(specimen.deck, &changes, Survey::default()).err()?;
+                Some(format!("{changes:?} {error}"))
+            })
+            .collect();
+        assert!(refusals.is_empty(), "{refusals:#?}");
+    }
+
+    #[test]
+    fn every_key_of_the_reader_is_explained_and_has_a_form() {
+        let schema = Schema::new();
+        let keys = keys(&schema);
+        assert!(keys.len() > 200, "{}", keys.len());
+        let (mut unexplained, mut formless) = (Vec::new(), Vec::new());
+        for place in keys {
+            if schema.description(&place).is_none() {
+                unexplained.push(place.clone());
+            }
+            if schema.forms(&place).is_empty() {
+                formless.push(place);
+            }
+        }
+        assert!(
+            unexplained.is_empty(),
+            "descriptions.toml lacks {unexplained:#?}"
+        );
+        assert!(formless.is_empty(), "no specimen has {formless:#?}");
+    }
+
+    #[test]
+    fn every_sentence_explains_something() {
+        let schema = Schema::new();
+        let keys = keys(&schema);
+        let known = |place: &str| keys.iter().any(|key| key.replace("[]", "") == place);
+        let tables: Vec<String> = schema
+            .survey
+            .tables()
+            .map(|(place, _)| place.replace("[]", ""))
+            .collect();
+        for (table, key) in schema.descriptions.all() {
+            let explains = match key {
+                Some(key) => known(&below(table, key)),
+                None => {
+                    tables.iter().any(|place| place == table)
+                        || known(table)
+                        || schema.survey.definitions().contains(&table)
+                }
+            };
+            assert!(explains, "[{table}] {key:?} is no key of the reader");
+        }
+    }
+}

@@ -1,0 +1,322 @@
+//! Right decks that hold every key between them, in every form it may have, and leave out every key that may be left out.
+
+/// A deck with changes to it.
+pub(super) struct Specimen {
+    pub(super) deck: &'static str,
+    pub(super) changes: &'static [&'static str],
+}
+
+const fn specimen(deck: &'static str, changes: &'static [&'static str]) -> Specimen {
+    Specimen { deck, changes }
+}
+
+/// The least that a bar must say.
+const BAR: &str = r#"
+[body]
+shape = "bar"
+length = 10
+spacing = 1
+[material]
+density = 1
+youngs_modulus = 1
+horizon = 3
+[sets.left]
+layer = { side = "-x", depth = 1 }
+[sets.right]
+layer = { side = "+x", depth = 1 }
+[time]
+end = 1
+"#;
+
+const PLATE: &str = r#"
+title = "a plate"
+[body]
+shape = "plate"
+size = [10, 4]
+origin = [0, 0]
+spacing = 1
+plane = "strain"
+thickness = 1
+hole = [{ all = true }]
+refine = [
+    { ratio = 2, all = true },
+    { ratio = 2, box = { min = ["-inf", 0], max = [1, "open"] } },
+    { ratio = 2, ball = { centre = [0, 0], radius = 1 } },
+    { ratio = 2, half_space = { point = [0, 0], normal = [0, 1] } },
+    { ratio = 2, layer = { side = "-x", cells = 1 } },
+    { ratio = 2, polygon = { corners = [[0, 0], [1, 0], [0, 1]] } },
+    { ratio = 2, union = [{ all = true }] },
+    { ratio = 2, intersection = [{ all = true }] },
+    { ratio = 2, complement = { all = true } },
+]
+[material]
+name = "glass"
+model = "bond-stretch"
+density = 1
+youngs_modulus = 1
+modulus = "lattice"
+poisson_ratio = 0.25
+horizon_ratio = 3
+volume_correction = "linear"
+surface_correction = "volume"
+influence = { function = "constant", acts_on = "displacement" }
+fracture_energy = 1
+no_fail = "top"
+bonds = "list"
+damage = { measure = "count", count_precut = true }
+inclusion = [{ set = "top", stiffness = 2 }]
+part = [
+    { name = "a", set = "top", density = 1, youngs_modulus = 1, modulus = "lattice", poisson_ratio = 0.25, fracture_energy = 1 },
+    { name = "b", block = 2, density = 1, bulk_modulus = 1, critical_stretch = 1 },
+    { name = "c", block = [2, 3], density = 1, shear_modulus = 1 },
+]
+[material.interface]
+rule = "harmonic"
+pair = [{ between = ["a", "b"], critical_stretch = 1 }]
+[sets.top]
+layer = { side = "+y", depth = 1 }
+[[crack]]
+segment = [[0, 0], [1, 1]]
+ends = "open"
+[[initial]]
+set = "top"
+displacement = [0, { expression = "x" }]
+velocity = [0, { expression = "x" }]
+random_velocity = { generator = "splitmix64", radius = 1, seed = 1 }
+[[initial]]
+random_velocity = { radius = 1 }
+[[prescribe]]
+set = "top"
+velocity = [0, "free"]
+function = { kind = "ramp", start = 0, duration = 1 }
+until = 1
+[[prescribe]]
+set = "top"
+displacement = [{ expression = "x*t" }, 1]
+[[prescribe]]
+set = "top"
+velocity = [{ expression = "x*t" }, "free"]
+[[prescribe]]
+set = "top"
+displacement = [1, "free"]
+[[load]]
+set = "top"
+traction = [0, { expression = "x*t" }]
+area = 1
+function = { kind = "table", rows = [[0, 0], [1, 1]] }
+from = 0
+until = 1
+[[load]]
+set = "top"
+body_force = [{ expression = "x" }, 1]
+function = { kind = "expression", expression = "t" }
+[[probe]]
+name = "a"
+at = [0, 0]
+[[probe]]
+name = "b"
+set = "top"
+[time]
+end = 1
+dt = "auto"
+safety = 0.9
+scheme = "velocity-verlet"
+allow_unstable = true
+[output]
+fields = { interval = 1, names = ["Damage"] }
+history = { every = 1 }
+cracks = { count = 1, threshold = 0.5 }
+precision = "single"
+[[output.picture]]
+field = "Displacement"
+scale = 1
+range = [0, 1]
+animation = true
+interval = 1
+[[output.picture]]
+field = "Damage"
+range = [0, 1]
+every = 1
+[[output.picture]]
+field = "Velocity"
+range = [0, 1]
+count = 1
+[[output.picture]]
+field = "Force_Density"
+range = [0, 1]
+[[output.picture]]
+field = "Stress"
+range = [0, 1]
+[[output.picture]]
+field = "Strain_Energy_Density"
+range = [0, 1]
+[checkpoint]
+wall = 1
+"#;
+
+const BLOCK: &str = r#"
+[body]
+shape = "block"
+size = [4, 4, 4]
+spacing = 1
+periodic = true
+[material]
+density = 1
+bulk_modulus = 1
+horizon = 3
+critical_stretch = 1
+no_fail = ["all"]
+[sets]
+a = { all = true }
+b = { box = { min = [0, 0, 0] } }
+c = { ball = { centre = [0, 0, 0], radius = 1 } }
+d = { cylinder = { centre = [0, 0, 0], axis = "z", radius = 1 } }
+e = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] } }
+f = { layer = { side = "-z", depth = 1 } }
+g = { polygon = { corners = [[0, 0], [1, 0], [0, 1]] } }
+h = { union = [{ cylinder = { centre = [0, 0, 0], radius = 1 } }] }
+i = { intersection = [{ all = true }] }
+j = { complement = { all = true } }
+k = { where = "x > 0" }
+l = { block = 1 }
+m = { block = [1, 2] }
+[[crack]]
+polygon = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+[[crack]]
+disc = { centre = [0, 0, 0], normal = [0, 0, 1], radius = 1 }
+[[load]]
+set = "a"
+body_force = [0, 0, 1]
+[[boundary]]
+kind = "damping-layer"
+side = "+z"
+thickness = 1
+reflection = 0.1
+power = 1
+[[boundary]]
+kind = "damping-layer"
+side = "-z"
+thickness = 1
+[time]
+end = 1
+[output]
+fields = "never"
+history = "never"
+cracks = "never"
+[[output.picture]]
+field = "Stress_xx"
+view = [1, 1, 1]
+[checkpoint]
+every = 1
+"#;
+
+const SURFACE: &str = r#"
+[body]
+shape = "icosphere"
+level = 1
+radius = 1
+[material]
+density = 1
+alpha = 0.5
+p = 2
+horizon = 1
+[[load]]
+set = "all"
+traction = [0, 0, 1]
+[time]
+end = 1
+dt = 1
+"#;
+
+/// All of them.
+#[rustfmt::skip]
+pub(super) const SPECIMENS: &[Specimen] = &[
+    specimen(BAR, &[]),
+    specimen(PLATE, &[]),
+    specimen(BLOCK, &[]),
+    specimen(SURFACE, &[]),
+    // Shapes.
+    specimen(BAR, &["body={ shape = 'bar', size = 10, origin = 0, spacing = 1, area = 1, quadrature = 'gauss' }"]),
+    specimen(BAR, &["body={ shape = 'plate', size = [9, 9], spacing = [1, 1.5], plane = 'stress' }"]),
+    specimen(BAR, &["body={ shape = 'disc', centre = [0, 0], radius = 9, inner_radius = 5, spacing = 1, plane = 'stress' }"]),
+    specimen(BAR, &["body={ shape = 'disc', radius = 9, spacing = 1, plane = 'stress' }"]),
+    specimen(BAR, &["body={ shape = 'ball', radius = 9, spacing = 1 }"]),
+    specimen(BAR, &["body={ shape = 'cylinder', base = [0, 0, 0], axis = 'x', radius = 9, inner_radius = 5, height = 9, spacing = 1 }"]),
+    specimen(BAR, &["body={ shape = 'cylinder', radius = 9, height = 9, spacing = 1 }"]),
+    specimen(
+        BAR,
+        &["body={ shape = 'block', size = [9, 9, 9], spacing = 1, refine = [{ ratio = 2, cylinder = { centre = [0, 0, 0], radius = 1 } }], hole = [{ box = {} }, { ball = { centre = [0, 0, 0], radius = 1 } }, { cylinder = { centre = [0, 0, 0], radius = 1 } }, { half_space = { point = [0, 0, 0], normal = [0, 0, 1] } }, { layer = { side = '-z', depth = 1 } }, { polygon = { corners = [[0, 0], [1, 0], [0, 1]] } }, { union = [{ all = true }] }, { intersection = [{ all = true }] }, { complement = { all = true } }] }"],
+    ),
+    specimen(BAR, &["body={ shape = 'points', file = 'cloud.txt', spacing = 1 }"]),
+    specimen(BAR, &["body={ shape = 'points', file = 'cloud.txt', spacing = 1, dimension = 2, plane = 'stress', thickness = 1 }"]),
+    specimen(SURFACE, &["body={ shape = 'uv-sphere', segments = 8, rings = 5, radius = 1 }", "body.areas=1"]),
+    specimen(SURFACE, &["body={ shape = 'ellipsoid', level = 1, half_axes = [1, 1, 1] }", "body.areas=mixed-voronoi"]),
+    specimen(SURFACE, &["body={ shape = 'torus', major_radius = 1, minor_radius = 0.3, around = 24, across = 8 }"]),
+    specimen(SURFACE, &["body={ shape = 'capsule', radius = 1, length = 1, segments = 12 }"]),
+    specimen(SURFACE, &["body={ shape = 'surface', file = 'part.stl', open = true, several = true, flip = true }"]),
+    specimen(SURFACE, &["body={ shape = 'surface', file = 'part.stl' }"]),
+    specimen(
+        SURFACE,
+        &[
+            "geodesics={ method = 'edge', ball = 'euclid' }",
+            "material={ model = 'power', name = 'a', density = 1, kappa = 1, alpha = 0.5, p = 2, horizon = 1, bond = 'displacement', self_cell = true, critical_stretch = 1, no_fail = 'all', inclusion = [{ set = 'all', stiffness = 2 }] }",
+        ],
+    ),
+    // Influence functions.
+    specimen(BAR, &["material.influence={ function = 'power', exponent = 0 }"]),
+    specimen(BAR, &["material.influence={ function = 'gaussian', length = 1, acts_on = 'displacement' }", "material.horizon=infinite"]),
+    specimen(BAR, &["material.influence={ function = 'gaussian', length = 1, cutoff = 2 }"]),
+    specimen(BAR, &["material.influence={ function = 'tabulated', table = [[0, 1], [3, 0.5]] }"]),
+    specimen(BAR, &["material.influence={ function = 'tabulated', r = 'spacing', table = [[0, 1], [3, 0.5]] }"]),
+    specimen(BAR, &["material.influence={ function = 'cosines', r = 'spacing', wavenumber = 1, coefficients = [1, 0.1] }"]),
+    specimen(BAR, &["material.influence={ function = 'cosines', wavenumber = 1, coefficients = [1] }"]),
+    specimen(BAR, &["material.influence={ function = 'classes', table = [[[1], 1], [[2], 1], [[3], 1]] }"]),
+    specimen(PLATE, &["material.horizon_ratio=1", "material.influence={ function = 'classes', table = [[[1, 0], 1]] }"]),
+    specimen(BAR, &["material.influence={ function = 'tuned' }"]),
+    specimen(
+        BAR,
+        &["material.influence={ function = 'tuned', method = 'least-squares', combination = 'separated', pressure_weight = 1, shear_weight = 1, decay = 1, lower_bound = 0.001 }"],
+    ),
+    // Other laws.
+    specimen(BAR, &["material.model=green-strain", "material.treatment=taylor-2"]),
+    specimen(PLATE, &["material.shear_modulus=1"]),
+    specimen(BAR, &["material.model=green-strain"]),
+    // Bars: cracks, ends, exact solutions.
+    specimen(BAR, &["crack=[{ section = 5 }, { section = 5, ends = 'open' }]", "probe=[{ name = 'a', at = 5 }]"]),
+    specimen(BAR, &["prescribe=[{ set = 'left', velocity = 1, function = { kind = 'pulse', duration = 1 } }]"]),
+    specimen(BAR, &["initial=[{ velocity = { expression = 'x' } }]", "load=[{ set = 'left', traction = 1, function = { kind = 'constant' } }]"]),
+    specimen(BAR, &["boundary=[{ kind = 'absorbing', side = '-x' }, { kind = 'absorbing', side = '+x', history = 'auto', tolerance = 1e-9, verify = true, method = 'discrete', exterior_data = 1 }]"]),
+    specimen(BAR, &["exact={ solution = 'local-pulse', width = 1, amplitude = 1, centre = 0, window = 1, start = true }"]),
+    specimen(BAR, &["exact={ solution = 'local-pulse', width = 1, amplitude = 1 }"]),
+    specimen(BAR, &["exact={ solution = 'stretched-bar', length = 10, strain = 0.1 }"]),
+    specimen(BAR, &["exact={ solution = 'bar-mode', length = 10, amplitude = 0.1 }"]),
+    // Schemes.
+    specimen(BAR, &["time.dt=1"]),
+    specimen(BAR, &["time.scheme=rk3", "time.alpha=1"]),
+    specimen(BAR, &["time.scheme=rk3"]),
+    specimen(BAR, &["time.scheme=dormand-prince", "time.dt=1", "time.tolerance=1e-6"]),
+    specimen(BAR, &["time.scheme=dormand-prince", "time.dt=1"]),
+    specimen(BAR, &["time.scheme=rk4-mts", "time.ratio=4", "time.fine=left", "time.predictor=structured", "time.interpolant=hermite"]),
+    specimen(BAR, &["time.scheme=rk4-mts", "time.ratio=4", "time.fine=['left', 'right']"]),
+    specimen(BAR, &["time.scheme=respa", "time.ratio=4", "time.adaptive={ every = 4, threshold = 0.8, layers = 2, hold = 1 }"]),
+    specimen(BAR, &["time.scheme=respa", "time.ratio=4", "time.adaptive={}"]),
+    specimen(BAR, &["time.scheme=implicit-midpoint", "time.dt=1", "time.linear_solver=direct"]),
+    specimen(BAR, &["time.scheme=implicit-midpoint", "time.dt=1"]),
+    specimen(BAR, &["time.scheme=trigonometric", "time.dt=1", "time.functions=lanczos", "time.loads=gauss", "time.regularisation=0"]),
+    specimen(BAR, &["time.scheme=trigonometric", "time.dt=1"]),
+    specimen(
+        BAR,
+        &["time={ end = 1, dt = 1, scheme = 'newmark', beta = 0.25, gamma = 0.5, tolerance = 1, norm = 'l2', iterations = 9, solver = 'anderson', depth = 4 }"],
+    ),
+    specimen(BAR, &["time={ end = 1, dt = 1, scheme = 'newmark', solver = 'anderson' }"]),
+    specimen(BAR, &["time={ end = 1, dt = 1, scheme = 'newmark' }"]),
+    specimen(BAR, &["time={ end = 1, dt = 1, scheme = 'discrete-gradient', tolerance = 1e-10 }"]),
+    specimen(BAR, &["time={ end = 1, dt = 1, scheme = 'discrete-gradient' }"]),
+    specimen(BAR, &["time={ scheme = 'relaxation' }"]),
+    specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 'adaptive', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
+    specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 0.1 }"]),
+    // Output.
+    specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, energy_bound = 1 }"]),
+    specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 } }"]),
+    specimen(BAR, &["output.picture=[{ field = 'Damage' }]", "checkpoint.interval=1"]),
+];

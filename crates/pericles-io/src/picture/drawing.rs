@@ -1,0 +1,177 @@
+//! A picture as shapes on a page, from which pixels or SVG are made.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::bitmap::{Bitmap, Rgb};
+use super::raster::Raster;
+use super::svg;
+use super::text::{self, Style};
+use crate::{IoError, write_atomically};
+
+/// A place on the page: pixels from the left and from the top.
+pub(super) type Spot = (f64, f64);
+
+/// What lies on the page, later shapes over earlier ones.
+#[derive(Debug)]
+pub(super) enum Shape {
+    /// Its sides at whole pixels.
+    Rectangle {
+        from: Spot,
+        to: Spot,
+        colour: Rgb,
+        /// 1 hides what lies below.
+        cover: f64,
+    },
+    /// Lines with round ends and joints, laid down in one go.
+    Strokes {
+        lines: Vec<Vec<Spot>>,
+        width: f64,
+        colour: Rgb,
+    },
+    Disc {
+        middle: Spot,
+        radius: f64,
+        colour: Rgb,
+    },
+    /// Corners clockwise on the screen.
+    Convex { corners: Vec<Spot>, colour: Rgb },
+    Text {
+        text: String,
+        place: Spot,
+        style: Style,
+    },
+    /// Cells of a body, which stay pixels in every format.
+    Cells {
+        cells: Raster,
+        left: usize,
+        top: usize,
+    },
+}
+
+/// A white page with shapes.
+#[derive(Debug)]
+pub(super) struct Drawing {
+    width: usize,
+    height: usize,
+    shapes: Vec<Shape>,
+}
+
+impl Drawing {
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        Self {
+            width,
+            height,
+            shapes: Vec::new(),
+        }
+    }
+
+    pub(super) fn width(&self) -> usize {
+        self.width
+    }
+
+    pub(super) fn height(&self) -> usize {
+        self.height
+    }
+
+    pub(super) fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    pub(super) fn fill_rectangle(&mut self, from: Spot, to: Spot, colour: Rgb, cover: f64) {
+        self.shapes.push(Shape::Rectangle {
+            from,
+            to,
+            colour,
+            cover,
+        });
+    }
+
+    /// A level or upright line of at least one pixel.
+    pub(super) fn rule(&mut self, from: Spot, to: Spot, width: f64, colour: Rgb) {
+        let half = (width.round().max(1.0) / 2.0).max(0.5);
+        let low = (from.0.min(to.0) - half, from.1.min(to.1) - half);
+        let high = (from.0.max(to.0) + half, from.1.max(to.1) + half);
+        self.fill_rectangle(low, high, colour, 1.0);
+    }
+
+    /// The outline of a rectangle.
+    pub(super) fn outline(&mut self, from: Spot, to: Spot, width: f64, colour: Rgb) {
+        let corners = [from, (to.0, from.1), to, (from.0, to.1)];
+        for (k, &corner) in corners.iter().enumerate() {
+            self.rule(corner, corners[(k + 1) % 4], width, colour);
+        }
+    }
+
+    pub(super) fn stroke(&mut self, lines: Vec<Vec<Spot>>, width: f64, colour: Rgb) {
+        self.shapes.push(Shape::Strokes {
+            lines,
+            width,
+            colour,
+        });
+    }
+
+    pub(super) fn fill_disc(&mut self, middle: Spot, radius: f64, colour: Rgb) {
+        self.shapes.push(Shape::Disc {
+            middle,
+            radius,
+            colour,
+        });
+    }
+
+    pub(super) fn fill_convex(&mut self, corners: Vec<Spot>, colour: Rgb) {
+        self.shapes.push(Shape::Convex { corners, colour });
+    }
+
+    /// Sets a text; seen along its direction, the place is in the middle of its capitals.
+    pub(super) fn text(&mut self, text: &str, place: Spot, style: Style) {
+        if !text.is_empty() {
+            let text = text.to_owned();
+            self.shapes.push(Shape::Text { text, place, style });
+        }
+    }
+
+    pub(super) fn cells(&mut self, cells: Raster, left: usize, top: usize) {
+        self.shapes.push(Shape::Cells { cells, left, top });
+    }
+
+    /// The pixels.
+    pub(super) fn to_bitmap(&self) -> Bitmap {
+        let mut bitmap = Bitmap::white(self.width, self.height);
+        for shape in &self.shapes {
+            match shape {
+                Shape::Rectangle {
+                    from,
+                    to,
+                    colour,
+                    cover,
+                } => bitmap.fill_rectangle(*from, *to, *colour, *cover),
+                Shape::Strokes {
+                    lines,
+                    width,
+                    colour,
+                } => bitmap.stroke(lines, *width, *colour),
+                Shape::Disc {
+                    middle,
+                    radius,
+                    colour,
+                } => bitmap.fill_disc(*middle, *radius, *colour),
+                Shape::Convex { corners, colour } => bitmap.fill_convex(corners, *colour),
+                Shape::Text { text, place, style } => {
+                    text::draw(&mut bitmap, text, *place, *style);
+                }
+                Shape::Cells { cells, left, top } => cells.lay_on(&mut bitmap, *left, *top),
+            }
+        }
+        bitmap
+    }
+
+    /// Writes the picture, whole or not at all: as SVG into a file that ends so, as PNG into any other.
+    pub(super) fn write(&self, path: &Path) -> Result<(), IoError> {
+        if path.extension().is_some_and(|ending| ending == "svg") {
+            let text = svg::document(self).map_err(|error| IoError::writing(path, error))?;
+            return write_atomically(path, |out| out.write_all(text.as_bytes()));
+        }
+        self.to_bitmap().write_png(path)
+    }
+}

@@ -1,0 +1,207 @@
+//! Drawings as SVG: shapes and text stay what they are, the cells of a body become an image.
+
+use std::fmt::Write as _;
+use std::io;
+
+use base64::prelude::{BASE64_STANDARD, Engine as _};
+
+use super::bitmap::{Bitmap, Rgb};
+use super::drawing::{Drawing, Shape, Spot};
+use super::raster::Raster;
+use super::text::{self, Align, Direction, Style};
+use crate::escaped;
+
+/// Fonts that have the signs of pictures, the one in which PNG files are set first.
+const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
+
+/// The whole file.
+///
+/// # Errors
+/// An image that cannot be encoded.
+pub(super) fn document(drawing: &Drawing) -> io::Result<String> {
+    let (width, height) = (drawing.width(), drawing.height());
+    let mut page = Page(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\">\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+    ));
+    for shape in drawing.shapes() {
+        page.shape(shape)?;
+    }
+    page.0 += "</svg>\n";
+    Ok(page.0)
+}
+
+/// The text as far as it is written.
+struct Page(String);
+
+impl Page {
+    fn line(&mut self, line: std::fmt::Arguments<'_>) {
+        // A string takes any text.
+        let _ = writeln!(self.0, "{line}");
+    }
+
+    fn shape(&mut self, shape: &Shape) -> io::Result<()> {
+        match shape {
+            Shape::Rectangle {
+                from,
+                to,
+                colour,
+                cover,
+            } => self.rectangle(*from, *to, *colour, *cover),
+            Shape::Strokes {
+                lines,
+                width,
+                colour,
+            } => {
+                let path: String = lines.iter().map(|line| course(line)).collect();
+                self.line(format_args!(
+                    "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>",
+                    hex(*colour),
+                    short(*width)
+                ));
+            }
+            Shape::Disc {
+                middle: (x, y),
+                radius,
+                colour,
+            } => self.line(format_args!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"/>",
+                short(*x),
+                short(*y),
+                short(*radius),
+                hex(*colour)
+            )),
+            Shape::Convex { corners, colour } => {
+                let corners: Vec<String> = corners.iter().map(|&corner| spot(corner)).collect();
+                self.line(format_args!(
+                    "<polygon points=\"{}\" fill=\"{}\"/>",
+                    corners.join(" "),
+                    hex(*colour)
+                ));
+            }
+            Shape::Text { text, place, style } => self.text(text, *place, style),
+            Shape::Cells { cells, left, top } => self.image(cells, *left, *top)?,
+        }
+        Ok(())
+    }
+
+    fn rectangle(&mut self, from: Spot, to: Spot, colour: Rgb, cover: f64) {
+        let (left, top) = (from.0.round(), from.1.round());
+        let (width, height) = (to.0.round() - left, to.1.round() - top);
+        if width <= 0.0 || height <= 0.0 {
+            return;
+        }
+        let opacity = if cover < 1.0 {
+            format!(" fill-opacity=\"{}\"", short(cover))
+        } else {
+            String::new()
+        };
+        self.line(format_args!(
+            "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"{}\"{opacity}/>",
+            hex(colour)
+        ));
+    }
+
+    fn text(&mut self, text: &str, place: Spot, style: &Style) {
+        let anchor = match style.align {
+            Align::Start => "start",
+            Align::Middle => "middle",
+            Align::End => "end",
+        };
+        // The base line lies below the middle of the capitals; text that runs upwards is turned about its place.
+        let below = text::HALF_CAPITAL * style.size;
+        let place = match style.direction {
+            Direction::Right => {
+                format!("x=\"{}\" y=\"{}\"", short(place.0), short(place.1 + below))
+            }
+            Direction::Up => format!(
+                "transform=\"translate({} {}) rotate(-90)\" y=\"{}\"",
+                short(place.0),
+                short(place.1),
+                short(below)
+            ),
+        };
+        // With the length of this font no other one runs into its neighbours.
+        self.line(format_args!(
+            "<text {place} font-size=\"{}\" text-anchor=\"{anchor}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\" fill=\"{}\">{}</text>",
+            short(style.size),
+            short(text::width(text, style.size)),
+            hex(style.colour),
+            escaped(text)
+        ));
+    }
+
+    fn image(&mut self, cells: &Raster, left: usize, top: usize) -> io::Result<()> {
+        let (width, height) = cells.size();
+        let mut bitmap = Bitmap::white(width, height);
+        cells.lay_on(&mut bitmap, 0, 0);
+        let mut png = Vec::new();
+        bitmap.encode(&mut png)?;
+        self.line(format_args!(
+            "<image x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/>",
+            BASE64_STANDARD.encode(png)
+        ));
+        Ok(())
+    }
+}
+
+/// A line as a path; a single point is a dot.
+fn course(line: &[Spot]) -> String {
+    let mut path = String::new();
+    for (k, &place) in line.iter().enumerate() {
+        path += if k == 0 { "M" } else { "L" };
+        path += &spot(place);
+    }
+    if line.len() == 1 {
+        path += "h0";
+    }
+    path
+}
+
+fn spot((x, y): Spot) -> String {
+    format!("{},{}", short(x), short(y))
+}
+
+fn hex([r, g, b]: Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Hundredths of a pixel are fine enough.
+fn short(number: f64) -> f64 {
+    (100.0 * number).round() / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shape_is_there_and_text_is_escaped() {
+        let mut drawing = Drawing::new(300, 200);
+        let black = [0, 0, 0];
+        drawing.fill_rectangle((1.2, 2.0), (10.0, 20.4), [255, 0, 128], 0.5);
+        drawing.stroke(
+            vec![vec![(0.0, 0.0), (5.5, 7.125)], vec![(1.0, 1.0)]],
+            2.0,
+            black,
+        );
+        drawing.fill_disc((50.0, 60.0), 4.0, black);
+        drawing.fill_convex(vec![(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)], black);
+        drawing.text("a < b & c", (100.0, 50.0), Style::new(20.0, Align::End));
+        drawing.text("up", (100.0, 50.0), Style::new(20.0, Align::Middle).up());
+        drawing.cells(Raster::new(30, 20, 2), 5, 6);
+        let text = document(&drawing).unwrap();
+        for part in [
+            "<rect x=\"1\" y=\"2\" width=\"9\" height=\"18\" fill=\"#ff0080\" fill-opacity=\"0.5\"/>",
+            "<path d=\"M0,0L5.5,7.13M1,1h0\"",
+            "<circle cx=\"50\" cy=\"60\" r=\"4\"",
+            "<polygon points=\"0,0 9,0 0,9\"",
+            "text-anchor=\"end\"",
+            ">a &lt; b &amp; c</text>",
+            "rotate(-90)",
+            "<image x=\"5\" y=\"6\" width=\"30\" height=\"20\" href=\"data:image/png;base64,iVBOR",
+        ] {
+            assert!(text.contains(part), "{part} is not in {text}");
+        }
+    }
+}

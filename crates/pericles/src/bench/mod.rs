@@ -1,0 +1,257 @@
+//! Timing of whole steps on fixed bodies, and how close they come to what the machine can do.
+//!
+//! A case is a small problem with bonds that could break but do not. Its time is the median of several rounds of velocity Verlet, per directed bond
+//! (an entry of a family: each bond counts twice) and thread. It is set against
+//!
+//! * the arithmetic roofline: 28 operations per eight bonds at the measured rate of independent multiply–adds of the vector width, with
+//!   the lanes that row ends and missing bonds leave idle;
+//! * the memory traffic that a step cannot do without, as GB/s.
+//!
+//! ```
+//! use pericles::bench::{Case, run};
+//! let case = Case::named("plate-512").unwrap();
+//! # let case = Case { cells: vec![16, 16], ..case };
+//! let result = run(&case, 3).unwrap();
+//! println!("{}: {:.2} ns per directed bond", result.case, result.ns_per_bond);
+//! # assert!(result.ns_per_bond > 0.0 && result.directed_bonds > 0);
+//! ```
+
+mod case;
+mod machine;
+mod scalar;
+
+use std::time::Instant;
+
+use crate::error::Result;
+use crate::family::LANES;
+use crate::operator::InstructionSet;
+use crate::time::{Integrator, VelocityVerlet};
+
+pub use case::Case;
+pub use machine::{fma_seconds, read};
+pub use scalar::StoredList;
+
+/// What a case took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timing {
+    /// Name of the case.
+    pub case: String,
+    /// Form of the operator, or what stands in its place.
+    pub form: &'static str,
+    /// What the loops are compiled for.
+    pub instruction_set: InstructionSet,
+    /// Points.
+    pub points: usize,
+    /// Entries of all families.
+    pub directed_bonds: u64,
+    /// Threads.
+    pub threads: usize,
+    /// Nanoseconds per directed bond of a full step, median over the rounds.
+    pub ns_per_bond: f64,
+    /// The same of the fastest round.
+    pub best_ns_per_bond: f64,
+    /// Nanoseconds per directed bond and thread that the roofline allows.
+    pub roofline_ns: f64,
+    /// Roofline time over time.
+    pub roofline_fraction: f64,
+    /// Traffic of a step that nothing can avoid over its time, GB/s: u, v, a read and written once, and a bit per bond.
+    pub gigabytes_per_second: f64,
+    /// Memory of operator, points, displacement, velocity and acceleration per point, bytes.
+    pub bytes_per_point: f64,
+    /// Building the operator, s.
+    pub build_seconds: f64,
+}
+
+impl Timing {
+    /// Directed bonds a second.
+    pub fn bonds_per_second(&self) -> f64 {
+        1e9 / self.ns_per_bond
+    }
+}
+
+/// Steps in a round: as many as take a tenth of a second at about 1 ns per bond.
+fn steps_per_round(directed_bonds: u64) -> usize {
+    (100_000_000 / directed_bonds.max(1)).clamp(1, 1000) as usize
+}
+
+/// A case ready to be stepped.
+struct Prepared {
+    step: Box<dyn FnMut() -> Result<()>>,
+    form: &'static str,
+    instruction_set: InstructionSet,
+    points: usize,
+    directed_bonds: u64,
+    /// Memory of the bonds, bytes.
+    bytes: usize,
+}
+
+/// A case that is being timed.
+struct Running<'a> {
+    case: &'a Case,
+    prepared: Prepared,
+    build_seconds: f64,
+    /// Nanoseconds per directed bond of each round.
+    times: Vec<f64>,
+    /// Seconds of a multiply–add, the shortest seen.
+    fma: f64,
+}
+
+/// Length of a step, s: far below the stable one.
+const DT: f64 = 1e-7;
+
+impl Prepared {
+    fn new(case: &Case) -> Result<Self> {
+        if case.scalar {
+            let (mut list, mut state) = case.stored_list()?;
+            return Ok(Self {
+                form: "scalar",
+                instruction_set: InstructionSet::Baseline,
+                points: state.u.len() / case.cells.len(),
+                directed_bonds: list.directed_bonds(),
+                bytes: list.bytes(),
+                step: Box::new(move || {
+                    list.step(&mut state, DT);
+                    Ok(())
+                }),
+            });
+        }
+        let (mut system, mut state) = case.system()?;
+        let mut verlet = VelocityVerlet;
+        verlet.start(&mut system, &mut state);
+        let operator = system.operator();
+        Ok(Self {
+            form: case.form.name(),
+            instruction_set: operator.instruction_set(),
+            points: system.points(),
+            directed_bonds: operator.directed_bonds(),
+            bytes: operator.bytes(),
+            step: Box::new(move || {
+                let next = state.t + DT;
+                verlet.step(&mut system, &mut state, next)
+            }),
+        })
+    }
+}
+
+/// Times a case on the current thread pool in `rounds` rounds, one more for warming up, by the clock on the wall.
+///
+/// # Errors
+/// See [`Case::cloud`].
+pub fn run(case: &Case, rounds: usize) -> Result<Timing> {
+    let begin = Instant::now();
+    run_by_clock(case, rounds, &|| begin.elapsed().as_secs_f64())
+}
+
+/// The same by any clock that gives seconds: the process's CPU time tells more on a machine that others use too.
+///
+/// # Errors
+/// See [`Case::cloud`].
+pub fn run_by_clock(case: &Case, rounds: usize, clock: &dyn Fn() -> f64) -> Result<Timing> {
+    let mut timings = run_in_turn(std::slice::from_ref(case), rounds, clock)?;
+    Ok(timings.remove(0))
+}
+
+/// Times several cases round by round in turn, so that all of them meet the same load.
+///
+/// # Errors
+/// See [`Case::cloud`].
+pub fn run_in_turn(cases: &[Case], rounds: usize, clock: &dyn Fn() -> f64) -> Result<Vec<Timing>> {
+    let mut running = cases
+        .iter()
+        .map(|case| Running::new(case, clock))
+        .collect::<Result<Vec<_>>>()?;
+    for round in 0..=rounds {
+        for case in &mut running {
+            let time = case.round(clock)?;
+            if round > 0 || rounds == 0 {
+                case.times.push(time);
+            }
+        }
+    }
+    Ok(running.into_iter().map(Running::timing).collect())
+}
+
+impl<'a> Running<'a> {
+    fn new(case: &'a Case, clock: &dyn Fn() -> f64) -> Result<Self> {
+        let begin = clock();
+        Ok(Self {
+            case,
+            prepared: Prepared::new(case)?,
+            build_seconds: clock() - begin,
+            times: Vec::new(),
+            fma: f64::INFINITY,
+        })
+    }
+
+    /// Steps for a while; nanoseconds per directed bond.
+    fn round(&mut self, clock: &dyn Fn() -> f64) -> Result<f64> {
+        let bonds = self.prepared.directed_bonds;
+        let steps = steps_per_round(bonds);
+        let begin = clock();
+        for _ in 0..steps {
+            (self.prepared.step)()?;
+        }
+        let time = (clock() - begin) / steps as f64;
+        self.fma = self.fma.min(fma_seconds(self.prepared.instruction_set));
+        Ok(time * 1e9 / bonds as f64)
+    }
+
+    fn timing(mut self) -> Timing {
+        self.times.sort_by(f64::total_cmp);
+        let (case, prepared) = (self.case, self.prepared);
+        // The plain loop knows no threads.
+        let threads = if case.scalar {
+            1
+        } else {
+            rayon::current_num_threads()
+        };
+        let (points, directed_bonds) = (prepared.points, prepared.directed_bonds);
+        let vectors = points * case.cells.len() * size_of::<f64>();
+        let ns_per_bond = self.times[self.times.len() / 2];
+        let operations = OPERATIONS * idle_lanes(case, directed_bonds);
+        let roofline_ns = operations * self.fma * 1e9 / LANES as f64;
+        let traffic = (6 * vectors) as f64 + directed_bonds as f64 / 8.0;
+        let cloud_bytes = vectors + points * (size_of::<f64>() + size_of::<u32>());
+        let bytes = prepared.bytes + 3 * vectors + cloud_bytes;
+        Timing {
+            case: case.name.clone(),
+            form: prepared.form,
+            instruction_set: prepared.instruction_set,
+            points,
+            directed_bonds,
+            threads,
+            ns_per_bond,
+            best_ns_per_bond: self.times[0],
+            roofline_ns,
+            roofline_fraction: roofline_ns / (ns_per_bond * threads as f64),
+            gigabytes_per_second: traffic / (ns_per_bond * directed_bonds as f64),
+            bytes_per_point: bytes as f64 / points as f64,
+            build_seconds: self.build_seconds,
+        }
+    }
+}
+
+/// Operations per eight bonds that count as the work of a step, whatever a kernel really does.
+const OPERATIONS: f64 = 28.0;
+
+/// Lanes computed over bonds there are: rows padded to whole chunks, and full families at the boundary.
+fn idle_lanes(case: &Case, directed_bonds: u64) -> f64 {
+    let rows: usize = case.cells[1..].iter().product();
+    let places = case.cells[0].next_multiple_of(LANES) * rows;
+    places as f64 * case.family() / directed_bonds as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_block_is_the_one_of_the_comparison() {
+        let case = Case::named("block-46").unwrap();
+        let system = case.system().unwrap().0;
+        assert_eq!(system.points(), 97_336);
+        assert_eq!(system.operator().directed_bonds(), 11_006_544);
+        // (48 · 122)/(46 · 113.08)
+        assert!((idle_lanes(&case, 11_006_544) - 1.126).abs() < 1e-3);
+    }
+}
