@@ -174,7 +174,7 @@ fn what_does_not_fit_is_refused() {
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), rest.clone(), 0.1, 10);
     assert!(matches!(
         run.run(|_| Control::Continue),
-        Err(SimulationError::Step(PericlesError::Absorbing(
+        Err(SimulationError::Misfit(PericlesError::Absorbing(
             AbsorbingError::Scheme { .. }
         )))
     ));
