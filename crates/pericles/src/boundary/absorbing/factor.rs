@@ -23,22 +23,13 @@ pub fn factor_kernels(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<Ve
     Factor::new(stencil, dt, steps).run()
 }
 
-/// The rounded sum of some numbers, and the sum of its rounding errors (Knuth).
-fn exact_sum(numbers: &[f64]) -> [f64; 2] {
-    numbers.iter().fold([0.0; 2], |[sum, error], x| {
-        let next = sum + x;
-        let taken = next - sum;
-        [next, error + (sum - (next - taken)) + (x - taken)]
-    })
-}
-
 struct Factor {
     reach: usize,
     length: usize,
     /// dt² a_k.
     weights: Vec<f64>,
-    /// 2 s, and what its rounding left.
-    pull: [f64; 2],
+    /// 2 s.
+    pull: f64,
     h: Vec<Vec<f64>>,
     g: Vec<f64>,
     /// The last difference of g.
@@ -62,7 +53,7 @@ impl Factor {
         Self {
             reach,
             length,
-            pull: exact_sum(&weights).map(|s| 2.0 * s),
+            pull: 2.0 * dt * dt * stencil.sum(),
             weights,
             h: (0..reach).map(|_| series()).collect(),
             g: series(),
@@ -98,9 +89,7 @@ impl Factor {
         // By increments: 2 g[j − 1] − g[j − 2] would lose digits for small steps.
         let before = if j > 0 { self.g[j - 1] } else { 0.0 };
         let source = if j > 0 { self.sums[0][j] } else { 1.0 };
-        // The weights' sum to the last digit: a lattice with a little stiffness to the ground returns an error that grows with the square of time.
-        let [pull, rest] = self.pull;
-        self.slope += source - pull * before - rest * before;
+        self.slope += source - self.pull * before;
         self.g[j] = before + self.slope;
     }
 
