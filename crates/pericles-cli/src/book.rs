@@ -150,7 +150,9 @@ fn command_lines_of_the_pages_are_read() {
                 let place = &block.place;
                 let words = shlex::split(&line);
                 let words = words.unwrap_or_else(|| panic!("{place}: {line}"));
-                let words = words.into_iter().take_while(|word| word != "|");
+                let words = words
+                    .into_iter()
+                    .take_while(|word| word != "|" && word != ">");
                 let cli = Cli::try_parse_from(words);
                 let cli = cli.unwrap_or_else(|error| panic!("{place}: {line}\n{error}"));
                 let (deck, overrides) = match cli.command {
@@ -168,4 +170,13 @@ fn command_lines_of_the_pages_are_read() {
         }
     }
     assert!(count > 10, "{count}");
+}
+
+#[test]
+fn the_page_of_the_deck_is_what_the_program_writes() {
+    let page = fs::read_to_string(root().join("book/src/deck.md")).unwrap();
+    assert!(
+        page.trim_end() == pericles_deck::reference().trim_end(),
+        "write it again: pericles schema --markdown > book/src/deck.md"
+    );
 }
