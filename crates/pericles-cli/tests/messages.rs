@@ -88,7 +88,7 @@ fn an_unstable_run_is_status_4_and_keeps_its_state() {
 #[test]
 fn bench_names_its_cases_and_writes_json() {
     let place = with_plate();
-    let (status, message) = fail(place.path(), "bench block-47");
+    let (status, message) = fail(place.path(), "bench cube-46");
     assert_eq!(status, 2);
     assert!(message.contains("block-46-list"), "{message}");
     let timed = succeed(place.path(), "bench plate-512 --threads 1 --json -");
