@@ -6,6 +6,8 @@
 
 mod args;
 mod bench;
+#[cfg(test)]
+mod book;
 mod charts;
 mod check;
 mod checkpoint;

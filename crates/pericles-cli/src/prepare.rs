@@ -10,8 +10,8 @@ use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure
 use pericles::space::surface::Surface;
 use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources};
 use pericles_io::observers::{
-    Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, History, InnerColumns, PictureOf,
-    Pictures, Probes, Reactions, SurfaceCourse,
+    Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
+    PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
 use pericles_io::{DiskCache, OutputFolder, read_points, read_surface};
 use serde::Serialize;
@@ -211,6 +211,11 @@ pub(crate) fn simulation(
         let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
         simulation.observe(output.cracks.schedule, Box::new(cracks));
+    }
+    if can_break && output.fragments.schedule != Schedule::Never {
+        let smallest = output.fragments.smallest;
+        let course = FragmentCourse::new(folder.file("fragments.csv"), smallest);
+        simulation.observe(output.fragments.schedule, Box::new(course));
     }
     if let Some(surface) = &surface {
         let measure = SurfaceMeasure::new(surface.clone());

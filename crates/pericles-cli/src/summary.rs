@@ -52,7 +52,7 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
         console::print(format_args!("go on with: pericles resume {folder}"))?;
     }
     console::print(format_args!(
-        "results in {folder}: fields.pvd (ParaView), history.csv, run.json"
+        "results in {folder}: history.csv, fields.pvd (ParaView), run.json …; what there is says: pericles info {folder}"
     ))
 }
 

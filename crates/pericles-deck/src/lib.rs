@@ -189,6 +189,7 @@
 //! #                                        this τ (best: the time that is looked at), and the margin to it; not with supports that move
 //! history = { count = 200 }              # default; or "never". Reactions follow it too
 //! cracks = { threshold = 0.35 }          # default threshold of damage; schedule by default that of the history; or "never"
+//! # fragments = { count = 50, smallest = 1e-3 }   # default "never": fragments.csv, the pieces that bonds hold together; those below that share of the body's mass do not count
 //! precision = "double"                   # default; or single: numbers in field files
 //! [[output.picture]]                     # any number
 //! field = "Damage"                       # Displacement, Velocity, Force_Density (magnitude, or _x, _y, _z), Damage, Strain_Energy_Density,
@@ -296,7 +297,7 @@ pub use expression::{Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Subject, Warning};
 pub use material::{Inclusion, Material};
-pub use output::{Checkpoint, CrackOutput, Output, Picture, Precision};
+pub use output::{Checkpoint, CrackOutput, FragmentOutput, Output, Picture, Precision};
 pub use part::{MaterialInterface, Part, PartPlace};
 pub use points::PointsFile;
 pub use quantity::{metres, seconds};

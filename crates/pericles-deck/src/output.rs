@@ -18,6 +18,8 @@ pub struct Output {
     pub history: Schedule,
     /// The table of crack tips.
     pub cracks: CrackOutput,
+    /// The table of fragments.
+    pub fragments: FragmentOutput,
     /// Precision of numbers in field files.
     pub precision: Precision,
     /// Rate ν of the bound of the energy in the history, 1/s; none if it is not wanted.
@@ -33,6 +35,15 @@ pub struct CrackOutput {
     pub schedule: Schedule,
     /// The damage beyond which a point counts as cracked.
     pub threshold: f64,
+}
+
+/// The table of fragments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FragmentOutput {
+    /// When a row is added.
+    pub schedule: Schedule,
+    /// The share of the body's mass from which on a piece counts as a fragment.
+    pub smallest: f64,
 }
 
 /// Precision of numbers in field files.
@@ -85,6 +96,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> 
     let (fields, names) = fields(&table, dimension);
     let history = scheduled(&table, "history", 200);
     let cracks = cracks(&table, history);
+    let fragments = fragments(&table);
     let precision = table.choice_or_first(
         "precision",
         "precision",
@@ -110,6 +122,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> 
         names: names?,
         history: history?,
         cracks: cracks?,
+        fragments: fragments?,
         precision: precision?,
         energy_bound: energy_bound?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
@@ -225,6 +238,32 @@ fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<CrackOutput> {
     Some(CrackOutput {
         schedule: schedule?,
         threshold: threshold?,
+    })
+}
+
+/// Only where asked for: they take a pass over all bonds.
+fn fragments(table: &Table<'_>) -> Option<FragmentOutput> {
+    const SMALLEST: f64 = 1e-3;
+    let wanted = table.optional("fragments").is_some();
+    if !wanted || is_never(table, "fragments") {
+        return Some(FragmentOutput {
+            schedule: Schedule::Never,
+            smallest: SMALLEST,
+        });
+    }
+    let table = table.table_or_empty("fragments")?;
+    let schedule = schedule(&table, Schedule::Count(50));
+    let smallest = table.or("smallest", SMALLEST, |item| {
+        item.within(
+            Quantity::Number,
+            "a share of the body's mass from 0 on, below 1",
+            |share| (0.0..1.0).contains(&share),
+        )
+    });
+    table.finish();
+    Some(FragmentOutput {
+        schedule: schedule?,
+        smallest: smallest?,
     })
 }
 

@@ -227,6 +227,10 @@ fn conditions_time_and_output_arrive() {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,
             },
+            fragments: FragmentOutput {
+                schedule: Schedule::Every(40),
+                smallest: 0.01,
+            },
             precision: Precision::Single,
             pictures: vec![damage, uplift],
         }

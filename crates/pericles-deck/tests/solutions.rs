@@ -134,3 +134,97 @@ fn strain_beside_a_hole_is_three_times_that_far_away() {
     let (found, exact) = beside_the_hole(0.5e-3);
     assert!((found / exact - 1.0).abs() < 0.05, "{found} {exact}");
 }
+
+/// Least squares: the coefficients of 1, r² and r⁴ that come nearest to the values, by the normal equations.
+fn even_polynomial(samples: &[(f64, f64)]) -> [f64; 3] {
+    let powers = |r: f64| [1.0, r * r, r.powi(4)];
+    let mut rows = [[0.0; 4]; 3];
+    for &(r, value) in samples {
+        let basis = powers(r);
+        for i in 0..3 {
+            for j in 0..3 {
+                rows[i][j] += basis[i] * basis[j];
+            }
+            rows[i][3] += basis[i] * value;
+        }
+    }
+    for i in 0..3 {
+        let row = rows[i].map(|x| x / rows[i][i]);
+        rows[i] = row;
+        for other in (0..3).filter(|&k| k != i) {
+            let factor = rows[other][i];
+            for j in 0..4 {
+                rows[other][j] -= factor * row[j];
+            }
+        }
+    }
+    rows.map(|row| row[3])
+}
+
+/// The stress concentration beside the hole: the strain along the ligament from two horizons to 25 mm off the edge, in the form of Kirsch's solution c₀ + c₂ (a/x)² + c₄ (a/x)⁴, continued to
+/// the edge and divided by c₀.
+fn concentration(spacing: f64, ratio: u32) -> f64 {
+    let radius = 0.01;
+    let half = 0.5 * spacing;
+    let overrides = [
+        format!("body.spacing={spacing}"),
+        format!("material.horizon_ratio={ratio}"),
+        format!("sets.top.layer.cells={ratio}"),
+        format!("sets.bottom.layer.cells={ratio}"),
+        "output.fields=never".to_owned(),
+        "output.picture=[]".to_owned(),
+    ];
+    let overrides: Vec<&str> = overrides.iter().map(String::as_str).collect();
+    let (mut run, _) = example("statics/hole.toml", &overrides);
+    run.run(|_| Control::Continue).unwrap();
+    let (cloud, n) = (run.system().cloud(), run.system().points());
+    let from = radius + 2.0 * f64::from(ratio) * spacing;
+    let samples: Vec<(f64, f64)> = (0..n)
+        .filter(|&i| (cloud.axis(1)[i] - half).abs() < 0.1 * half)
+        .filter(|&i| (from..radius + 0.025).contains(&cloud.axis(0)[i]))
+        .map(|i| (radius / cloud.axis(0)[i], run.state().u[n + i] / half))
+        .collect();
+    let fitted = even_polynomial(&samples);
+    fitted.iter().sum::<f64>() / fitted[0]
+}
+
+#[test]
+fn even_polynomials_are_found_again() {
+    let samples: Vec<(f64, f64)> = (1..9)
+        .map(|k| 0.1 * f64::from(k))
+        .map(|r| (r, 1.0 + 0.5 * r * r - 2.0 * r.powi(4)))
+        .collect();
+    let found = even_polynomial(&samples);
+    for (found, given) in found.iter().zip([1.0, 0.5, -2.0]) {
+        assert!((found - given).abs() < 1e-9, "{found} {given}");
+    }
+}
+
+/// Minutes, as above.
+#[test]
+#[ignore = "minutes"]
+fn the_stress_concentration_converges_to_three() {
+    let table = [
+        (2e-3, 3),
+        (1e-3, 3),
+        (0.5e-3, 3),
+        (1e-3, 4),
+        (0.5e-3, 4),
+        (1e-3, 6),
+    ];
+    let found = table.map(|(spacing, ratio)| {
+        let found = concentration(spacing, ratio);
+        let horizon = 1e3 * spacing * f64::from(ratio);
+        println!("m = {ratio}, horizon {horizon} mm: {found:.3}");
+        found
+    });
+    // Howland's for a plate ten times as wide as its hole.
+    let exact = 3.03;
+    assert!((found[2] / exact - 1.0).abs() < 0.05, "{found:?}");
+    // In m at a horizon of 6 mm it has converged, and to a horizon of zero it goes in a straight line.
+    assert!((found[5] / found[0] - 1.0).abs() < 0.02, "{found:?}");
+    for [coarse, fine] in [[found[1], found[2]], [found[3], found[4]]] {
+        let limit = 2.0 * fine - coarse;
+        assert!((limit / exact - 1.0).abs() < 0.03, "{limit} of {found:?}");
+    }
+}

@@ -135,6 +135,7 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
     wrong("dt = \"auto\"", "scheme = \"relaxation\"\ntolerance = 0", (36, 13), "0", &["forces out of balance"]),
     wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
+    wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a share of the body's mass"]),
     // Boundaries.
     wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),

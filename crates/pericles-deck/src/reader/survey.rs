@@ -96,11 +96,13 @@ impl TableSurvey {
             .any(|(name, needed)| *name == key && *needed == self.visits)
     }
 
-    /// Keys that exclude each other, and whether one of them is always needed.
+    /// Keys that exclude each other, and whether one of them is always needed: by choice, or by its own name where the others have no place.
     pub(crate) fn choices(&self) -> impl Iterator<Item = (&'static [&'static str], bool)> {
-        self.choices
-            .iter()
-            .map(|(keys, needed)| (*keys, *needed == self.visits))
+        self.choices.iter().map(|(keys, chosen)| {
+            let named = self.keys.iter().filter(|(key, _)| keys.contains(key));
+            let needed = chosen + named.map(|(_, needed)| needed).sum::<usize>();
+            (*keys, needed == self.visits)
+        })
     }
 }
 

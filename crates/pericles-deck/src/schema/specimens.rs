@@ -126,6 +126,7 @@ allow_unstable = true
 fields = { interval = 1, names = ["Damage"] }
 history = { every = 1 }
 cracks = { count = 1, threshold = 0.5 }
+fragments = { count = 1, smallest = 0.5 }
 precision = "single"
 [[output.picture]]
 field = "Displacement"
@@ -203,6 +204,7 @@ end = 1
 fields = "never"
 history = "never"
 cracks = "never"
+fragments = "never"
 [[output.picture]]
 field = "Stress_xx"
 view = [1, 1, 1]
@@ -316,7 +318,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 'adaptive', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 0.1 }"]),
     // Output.
-    specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, energy_bound = 1 }"]),
-    specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 } }"]),
+    specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, fragments = { every = 1 }, energy_bound = 1 }"]),
+    specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 }, fragments = { interval = 1 } }"]),
     specimen(BAR, &["output.picture=[{ field = 'Damage' }]", "checkpoint.interval=1"]),
 ];

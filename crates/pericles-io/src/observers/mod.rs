@@ -6,6 +6,7 @@
 //! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; where there are such, the distance from a known solution, a bound of the energy, inner iterations |
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
+//! | [`FragmentCourse`] | `fragments.csv` | pieces that bonds hold together |
 //! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
 //! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, concentrations of energy |
 //! | [`Pictures`] | `pictures/Damage-000000.png` …, `pictures/Damage.apng` | a field as a picture, and all of them as an animation |
@@ -52,6 +53,7 @@ mod background;
 mod columns;
 mod cracks;
 mod fields;
+mod fragments;
 mod history;
 mod pictures;
 mod probes;
@@ -62,6 +64,7 @@ mod table;
 pub use columns::{EnergyBoundColumns, ErrorColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
 pub use fields::FieldSeries;
+pub use fragments::FragmentCourse;
 pub use history::History;
 pub use pictures::{DrawnState, PictureOf, Pictures};
 pub use probes::Probes;

@@ -5,6 +5,7 @@
 
 mod crack;
 mod energy_inequality;
+mod fragments;
 mod probe;
 mod schedule;
 mod snapshot;
@@ -13,6 +14,7 @@ mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use energy_inequality::EnergyInequality;
+pub use fragments::{FragmentCount, Fragments};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
 pub use snapshot::{Energies, Field, Snapshot, StartEnergy};

@@ -176,6 +176,11 @@ pub trait ForceOperator: Saved + Send + Sync {
         out.fill(0.0);
     }
 
+    /// Calls `visit` with the two ends of every bond that is left, once or twice for each. Operators whose bonds never break need not know them and visit none.
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        let _ = visit;
+    }
+
     /// Family entries that the loops run over: each bond counts twice.
     fn directed_bonds(&self) -> u64;
 

@@ -8,6 +8,7 @@ use super::padded::Padded;
 use super::wanted::WantedPoints;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
+use crate::family::LANES;
 use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
@@ -130,6 +131,25 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
             } else {
                 0.0
             };
+        }
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        let offsets = self.stencil.offsets();
+        for (number, block) in self.blocks.iter().enumerate() {
+            let chunks = self.layout.chunks_of(number);
+            for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
+                let chunk = &self.layout.chunks()[chunk];
+                // The other end of a bond tells of it otherwise.
+                let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
+                for (mask, offset) in forward {
+                    for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
+                        let place = chunk.place as usize * LANES + lane;
+                        let there = place.wrapping_add_signed(offset.shift);
+                        visit(i, self.layout.point_at(there));
+                    }
+                }
+            }
         }
     }
 

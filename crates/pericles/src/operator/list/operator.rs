@@ -130,6 +130,15 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
             });
     }
 
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for i in 0..self.points() {
+            let family = self.bonds.family(i);
+            for (_, j) in family.filter(|&(entry, j)| j > i && self.is_intact(i, entry)) {
+                visit(i, j);
+            }
+        }
+    }
+
     fn directed_bonds(&self) -> u64 {
         self.bonds.directed_bonds()
     }

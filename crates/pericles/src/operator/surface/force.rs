@@ -234,6 +234,17 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
             });
     }
 
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        // A broken bond has lost its weight.
+        let weights = self.bonds.weights();
+        for i in 0..self.points() {
+            let row = self.bonds.row(i);
+            for (_, j) in row.filter(|&(entry, j)| j > i && weights[entry] != 0.0) {
+                visit(i, j);
+            }
+        }
+    }
+
     fn directed_bonds(&self) -> u64 {
         self.bonds.directed()
     }

@@ -1,0 +1,182 @@
+//! The book and the pages of the repository hold: their decks are built, their command lines are read.
+//!
+//! A block of TOML is marked as `deck` (a whole deck) or with the name of a deck in `book/decks/` that it is a part of: its keys then replace those of that deck.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use pericles_deck::Deck;
+
+use crate::args::{Cli, Command};
+
+/// A fenced block of a page.
+struct Block {
+    /// Page and line, for messages.
+    place: String,
+    /// `toml`, `sh`, …
+    language: String,
+    /// What the language is followed by.
+    mark: String,
+    text: String,
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn pages() -> Vec<PathBuf> {
+    let mut pages = vec![root().join("README.md")];
+    let mut folders = vec![root().join("book/src"), root().join("examples")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "md") {
+                pages.push(path);
+            }
+        }
+    }
+    assert!(pages.len() > 20, "{pages:?}");
+    pages
+}
+
+fn blocks(page: &Path) -> Vec<Block> {
+    let text = fs::read_to_string(page).unwrap();
+    let mut found: Vec<Block> = Vec::new();
+    let mut inside = false;
+    for (line, number) in text.lines().zip(1..) {
+        if let Some(info) = line.strip_prefix("```") {
+            inside = !inside;
+            if inside {
+                let (language, mark) = info.split_once(',').unwrap_or((info, ""));
+                found.push(Block {
+                    place: format!("{}:{number}", page.display()),
+                    language: language.into(),
+                    mark: mark.into(),
+                    text: String::new(),
+                });
+            }
+        } else if let Some(block) = found.last_mut().filter(|_| inside) {
+            let included = line
+                .strip_prefix("{{#include ")
+                .and_then(|rest| rest.strip_suffix("}}"));
+            match included {
+                Some(path) => {
+                    let path = page.parent().unwrap().join(path);
+                    block.text += &fs::read_to_string(path).unwrap();
+                }
+                None => block.text += line,
+            }
+            block.text.push('\n');
+        }
+    }
+    assert!(!inside, "{}: a block has no end", page.display());
+    found
+}
+
+/// Puts a part of a deck in the place of what the whole has under the same keys.
+fn put(part: toml::Table, whole: &mut toml::Table) {
+    for (key, value) in part {
+        match (value, whole.get_mut(&key)) {
+            (toml::Value::Table(part), Some(toml::Value::Table(whole)))
+                if !part.contains_key("shape") =>
+            {
+                put(part, whole);
+            }
+            (value, _) => {
+                whole.insert(key, value);
+            }
+        }
+    }
+}
+
+/// The whole deck of a block.
+fn deck(block: &Block) -> String {
+    if block.mark == "deck" {
+        return block.text.clone();
+    }
+    let base = root()
+        .join("book/decks")
+        .join(format!("{}.toml", block.mark));
+    let base = fs::read_to_string(base)
+        .unwrap_or_else(|_| panic!("{}: mark it as a deck or a part of one", block.place));
+    let mut whole: toml::Table = base.parse().unwrap();
+    let part = block.text.parse();
+    let part = part.unwrap_or_else(|error| panic!("{}: {error}", block.place));
+    put(part, &mut whole);
+    toml::to_string(&whole).unwrap()
+}
+
+#[test]
+fn decks_of_the_book_are_built() {
+    let mut count = 0;
+    for page in pages()
+        .iter()
+        .filter(|page| page.starts_with(root().join("book")))
+    {
+        for block in blocks(page).iter().filter(|block| block.language == "toml") {
+            let (place, text) = (&block.place, deck(block));
+            let deck = Deck::parse(&text, place, &[]);
+            let deck = deck.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
+            let built = deck.build();
+            built.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
+            count += 1;
+        }
+    }
+    assert!(count > 20, "{count}");
+}
+
+/// The deck a command line names: an example, wherever it has been copied.
+fn example(deck: &Path) -> Option<PathBuf> {
+    let name = deck.file_name()?;
+    let topics = fs::read_dir(root().join("examples")).unwrap();
+    topics
+        .map(|topic| topic.unwrap().path().join(name))
+        .find(|path| path.is_file())
+}
+
+#[test]
+fn command_lines_of_the_pages_are_read() {
+    let mut count = 0;
+    for page in pages() {
+        for block in blocks(&page).iter().filter(|block| block.language == "sh") {
+            for line in block.text.lines() {
+                let line = line.replacen("cargo run --release -- ", "pericles ", 1);
+                if !line.starts_with("pericles ") {
+                    continue;
+                }
+                let place = &block.place;
+                let words = shlex::split(&line);
+                let words = words.unwrap_or_else(|| panic!("{place}: {line}"));
+                let words = words
+                    .into_iter()
+                    .take_while(|word| word != "|" && word != ">");
+                let cli = Cli::try_parse_from(words);
+                let cli = cli.unwrap_or_else(|error| panic!("{place}: {line}\n{error}"));
+                let (deck, overrides) = match cli.command {
+                    Command::Run(run) => (run.deck, run.overrides),
+                    Command::Check(check) => (check.deck, check.overrides),
+                    Command::Dispersion(dispersion) => (dispersion.deck, dispersion.overrides),
+                    _ => continue,
+                };
+                if let Some(deck) = example(&deck) {
+                    let deck = Deck::read(deck, &overrides.set);
+                    deck.unwrap_or_else(|error| panic!("{place}: {line}\n{error}"));
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert!(count > 10, "{count}");
+}
+
+#[test]
+fn the_page_of_the_deck_is_what_the_program_writes() {
+    let page = fs::read_to_string(root().join("book/src/deck.md")).unwrap();
+    assert!(
+        page.trim_end() == pericles_deck::reference().trim_end(),
+        "write it again: pericles schema --markdown > book/src/deck.md"
+    );
+}

@@ -1,0 +1,64 @@
+//! Fragments over time.
+
+use std::path::PathBuf;
+
+use pericles::observe::{Fragments, ObserveError, Observer, Snapshot};
+use pericles::{Archive, Result, Saved};
+
+use super::table::{ObserverTable, step_and_time, whole};
+use crate::csv::Column;
+
+/// What the bonds that are left hold together: `fragments.csv`.
+///
+/// One row per output. Columns: step, time, number of fragments, mass of the heaviest piece; number and mass of the pieces below the smallest fragment; number and mass of the
+/// points that have lost all bonds.
+pub struct FragmentCourse {
+    table: ObserverTable,
+    smallest: f64,
+}
+
+impl FragmentCourse {
+    /// A piece of at least the share `smallest` of the body's mass is a fragment.
+    pub fn new(path: impl Into<PathBuf>, smallest: f64) -> Self {
+        let mut columns = step_and_time();
+        columns.push(Column::integer("fragments"));
+        columns.push(Column::real("largest_mass", "kg"));
+        columns.push(Column::integer("small_pieces"));
+        columns.push(Column::real("small_mass", "kg"));
+        columns.push(Column::integer("single_points"));
+        columns.push(Column::real("single_mass", "kg"));
+        Self {
+            table: ObserverTable::new(path.into(), "observer/fragments", columns),
+            smallest,
+        }
+    }
+}
+
+impl Observer for FragmentCourse {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        let (state, system) = (snapshot.state(), snapshot.system());
+        let count = Fragments::of(system.operator())
+            .count(&system.masses()[..system.points()], self.smallest);
+        self.table.append(&[
+            whole(state.step),
+            state.t.into(),
+            whole(count.fragments),
+            count.largest.into(),
+            whole(count.small),
+            count.small_mass.into(),
+            whole(count.single),
+            count.single_mass.into(),
+        ])?;
+        Ok(())
+    }
+}
+
+impl Saved for FragmentCourse {
+    fn save(&self, archive: &mut Archive) {
+        self.table.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.table.restore(archive)
+    }
+}

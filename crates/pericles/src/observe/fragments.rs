@@ -1,0 +1,88 @@
+//! Fragments: what the bonds that are left hold together.
+
+use crate::operator::ForceOperator;
+
+/// The pieces of a body: two points belong to one piece if a chain of bonds that are left joins them. One bond is enough, so that pieces which hang together by a thread count
+/// as one. Cost: a pass over all bonds (10 ns each on one core) and 4 bytes a point.
+#[derive(Debug, Clone)]
+pub struct Fragments {
+    /// The first point of each point's piece.
+    first: Vec<u32>,
+}
+
+/// How many pieces there are, and what they weigh.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FragmentCount {
+    /// Pieces that are heavy enough to count as fragments.
+    pub fragments: u64,
+    /// Mass of the heaviest piece, kg.
+    pub largest: f64,
+    /// Lighter pieces of two points or more.
+    pub small: u64,
+    /// Their mass, kg.
+    pub small_mass: f64,
+    /// Points that have lost all bonds.
+    pub single: u64,
+    /// Their mass, kg.
+    pub single_mass: f64,
+}
+
+impl Fragments {
+    /// The pieces of a body whose bonds can break.
+    pub fn of(operator: &dyn ForceOperator) -> Self {
+        let mut first: Vec<u32> = (0..operator.points() as u32).collect();
+        operator.for_each_intact(&mut |i, j| {
+            let (i, j) = (root(&mut first, i as u32), root(&mut first, j as u32));
+            // The smaller number leads, whatever the order of the bonds.
+            first[i.max(j) as usize] = i.min(j);
+        });
+        for i in 0..first.len() as u32 {
+            let root = root(&mut first, i);
+            first[i as usize] = root;
+        }
+        Self { first }
+    }
+
+    /// For each point the first point of its piece.
+    pub fn first(&self) -> &[u32] {
+        &self.first
+    }
+
+    /// Counts the pieces, given the mass of each point (kg); a piece of at least the share `smallest` of the whole mass is a fragment, if it has two points or more.
+    pub fn count(&self, masses: &[f64], smallest: f64) -> FragmentCount {
+        let mut points = vec![0u32; masses.len()];
+        let mut mass = vec![0.0; masses.len()];
+        for (&first, m) in self.first.iter().zip(masses) {
+            points[first as usize] += 1;
+            mass[first as usize] += m;
+        }
+        let least = smallest * masses.iter().sum::<f64>();
+        let mut count = FragmentCount::default();
+        for (points, mass) in points.into_iter().zip(mass) {
+            count.largest = count.largest.max(mass);
+            match points {
+                0 => {}
+                1 => {
+                    count.single += 1;
+                    count.single_mass += mass;
+                }
+                _ if mass < least => {
+                    count.small += 1;
+                    count.small_mass += mass;
+                }
+                _ => count.fragments += 1,
+            }
+        }
+        count
+    }
+}
+
+/// The first point of a piece, found through ever shorter chains.
+fn root(first: &mut [u32], mut i: u32) -> u32 {
+    while first[i as usize] != i {
+        let next = first[first[i as usize] as usize];
+        first[i as usize] = next;
+        i = next;
+    }
+    i
+}
