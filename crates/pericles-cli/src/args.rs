@@ -9,6 +9,7 @@ use pericles::family::geodesic::GeodesicMethod;
 use pericles_io::DiskCache;
 
 use crate::exit::Exit;
+use crate::machine;
 use crate::plot::Frames;
 use crate::sweep::Axis;
 
@@ -195,6 +196,8 @@ pub(crate) struct CheckArgs {
     pub(crate) overrides: Overrides,
     #[command(flatten)]
     pub(crate) caching: Caching,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }
@@ -509,6 +512,23 @@ pub(crate) struct Limits {
     /// Stop in time, with a checkpoint, before so much time on the clock has passed, such as 2h, "90 min" or seconds; the exit status is then 7
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     pub(crate) wall_time: Option<Duration>,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
+}
+
+/// Memory.
+#[derive(Debug, Args)]
+pub(crate) struct Memory {
+    /// Refuse what is estimated to need more memory, such as 8GB, 512MiB or bytes; the exit status is then 8 [default: what the machine has free]
+    #[arg(long = "max-memory", value_name = "SIZE", value_parser = machine::size)]
+    most: Option<u64>,
+}
+
+impl Memory {
+    /// Bytes that a run may take; without a limit from the user those that are free, where the system tells.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.most.or_else(machine::free_memory).unwrap_or(u64::MAX)
+    }
 }
 
 fn wall_time(text: &str) -> Result<Duration, String> {
@@ -579,6 +599,8 @@ mod tests {
                 "{wrong}"
             );
         }
+        assert!(parse("pericles check a.toml --max-memory 8GB").is_ok());
+        assert!(parse("pericles resume a --max-memory much").is_err());
         assert!(parse("pericles dispersion a.toml --direction 2,1").is_ok());
         for wrong in ["0,0", "1,x", "1,2,3,4"] {
             assert!(parse(&format!("pericles dispersion a.toml --direction {wrong}")).is_err());

@@ -9,7 +9,7 @@ use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::prepare::{self, Facts};
+use crate::prepare::{self, Facts, Means};
 use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
 use crate::waves::WaveSpeeds;
@@ -21,7 +21,13 @@ use crate::waves::WaveSpeeds;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = Deck::read(&args.deck, &args.overrides.set)?;
-    let model = prepare::model(&deck, &args.caching)?;
+    let model = prepare::model(
+        &deck,
+        &Means {
+            caching: &args.caching,
+            memory: args.memory.bytes(),
+        },
+    )?;
     let facts = Facts::of(&deck, &model);
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));

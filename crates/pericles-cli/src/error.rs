@@ -31,7 +31,7 @@ pub(crate) enum CliError {
         /// The folder.
         path: PathBuf,
     },
-    /// The run became unstable.
+    /// The run became unstable, or found no way on.
     #[error("{source}")]
     Unstable {
         /// What happened.
@@ -156,14 +156,14 @@ impl CliError {
         }
     }
 
-    /// Sorts the failure of a run; `left` tells what is left if it became unstable.
+    /// Sorts the failure of a run; `left` tells what is left if it came to no end of its own.
     pub(crate) fn of_run(error: SimulationError, left: impl FnOnce() -> String) -> Self {
         match error {
             SimulationError::Observe(source) => match source.downcast::<IoError>() {
                 Ok(error) => Self::Io(*error),
                 Err(source) => Self::Simulation(SimulationError::Observe(source)),
             },
-            SimulationError::Unstable { .. } => Self::Unstable {
+            SimulationError::Unstable { .. } | SimulationError::Stuck { .. } => Self::Unstable {
                 source: error,
                 left: left(),
             },
@@ -174,6 +174,7 @@ impl CliError {
     /// The exit status it leads to.
     pub(crate) fn exit(&self) -> Exit {
         match self {
+            Self::Deck(error) if error.is_too_large() => Exit::Memory,
             Self::Deck(_)
             | Self::Checkpoint { .. }
             | Self::NoRun { .. }
@@ -186,7 +187,7 @@ impl CliError {
             Self::Io(_) => Exit::Input,
             Self::OutExists { .. } | Self::FileExists { .. } => Exit::Output,
             Self::Unstable { .. } => Exit::Numerical,
-            Self::Simulation(SimulationError::Step(_)) => Exit::Numerical,
+            Self::Simulation(SimulationError::Misfit(_)) => Exit::Input,
             Self::Unknown { .. } => Exit::Usage,
             Self::Simulation(_) | Self::Threads(_) | Self::Signals(_) | Self::Json(_) => {
                 Exit::Internal
@@ -239,7 +240,7 @@ mod tests {
         let unstable = SimulationError::Unstable {
             step: 20,
             t: 1e-6,
-            cause: "a velocity is not a number",
+            cause: pericles::Cause::NotANumber,
             point: 0,
             place: [0.0; 3],
             speed: f64::INFINITY,

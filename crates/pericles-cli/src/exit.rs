@@ -14,13 +14,14 @@ pub(crate) enum Exit {
     Comparison = 5,
     Output = 6,
     StoppedEarly = 7,
+    Memory = 8,
     Interrupted = 130,
     Terminated = 143,
 }
 
 impl Exit {
     /// All statuses in the order of their numbers.
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::Done,
         Self::Internal,
         Self::Usage,
@@ -29,6 +30,7 @@ impl Exit {
         Self::Comparison,
         Self::Output,
         Self::StoppedEarly,
+        Self::Memory,
         Self::Interrupted,
         Self::Terminated,
     ];
@@ -48,6 +50,9 @@ impl Exit {
             Self::Comparison => "a comparison failed (reproduce, diff)",
             Self::Output => "the output cannot be written, is full or in use",
             Self::StoppedEarly => "stopped early at a limit, with a checkpoint",
+            Self::Memory => {
+                "more memory would be needed than there is, or than --max-memory allows"
+            }
             Self::Interrupted => "Ctrl-C, with a checkpoint (a second one ends at once)",
             Self::Terminated => "SIGTERM, with a checkpoint",
         }
@@ -76,7 +81,7 @@ mod tests {
     #[test]
     fn the_help_page_lists_every_status_once() {
         let table = Exit::table();
-        for status in [0, 1, 2, 3, 4, 5, 6, 7, 130, 143] {
+        for status in [0, 1, 2, 3, 4, 5, 6, 7, 8, 130, 143] {
             let line = format!("\n  {status:>3}  ");
             assert_eq!(table.matches(&line).count(), 1, "{status}");
         }

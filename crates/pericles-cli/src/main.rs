@@ -37,6 +37,7 @@ mod signals;
 mod summary;
 mod sweep;
 mod units;
+mod watch;
 mod waves;
 
 use std::process::ExitCode;

@@ -154,14 +154,22 @@ impl Facts {
     }
 }
 
+/// What a model may be made with.
+pub(crate) struct Means<'a> {
+    pub(crate) caching: &'a Caching,
+    /// Bytes.
+    pub(crate) memory: u64,
+}
+
 /// The model of a deck; what is dear to compute comes from the cache if it is there.
 ///
 /// # Errors
 /// A deck that is refused.
-pub(crate) fn model(deck: &Deck, caching: &Caching) -> Result<Model, CliError> {
-    let cache = caching.cache();
+pub(crate) fn model(deck: &Deck, means: &Means<'_>) -> Result<Model, CliError> {
+    let cache = means.caching.cache();
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
+        memory: means.memory,
         ..readers()
     });
     for note in cache.iter().flat_map(DiskCache::notes) {
@@ -260,6 +268,7 @@ pub(crate) fn readers() -> Resources<'static> {
         read_points: &|path, dimension| {
             read_points(path, dimension).map_err(|error| error.to_string())
         },
+        ..Resources::default()
     }
 }
 

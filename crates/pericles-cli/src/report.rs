@@ -14,6 +14,7 @@ use crate::error::CliError;
 use crate::machine;
 use crate::prepare::Facts;
 use crate::refinement::RefinementAudit;
+use crate::watch;
 
 /// How a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -104,6 +105,8 @@ pub(crate) struct Audit {
     pub(crate) evaluated_points: u64,
     /// None for schemes with one time step.
     pub(crate) refinement: Option<RefinementAudit>,
+    /// What is odd about the results.
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Report {
@@ -189,7 +192,7 @@ impl Audit {
         let damage = snapshot.field(Field::Damage);
         let table = read_csv(history)?;
         let rows = table.column("balance").unwrap_or_default();
-        Ok(Self {
+        let audit = Self {
             kinetic_energy: energies.kinetic,
             elastic_energy: energies.elastic,
             dissipated_energy: energies.dissipated,
@@ -216,6 +219,11 @@ impl Audit {
                 .integrator()
                 .refinement()
                 .map(|refinement| RefinementAudit::of(&refinement, system)),
+            warnings: Vec::new(),
+        };
+        Ok(Self {
+            warnings: watch::warnings(simulation, &audit),
+            ..audit
         })
     }
 }

@@ -7,13 +7,13 @@ use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
 use pericles_deck::{Deck, Model};
 use pericles_io::{IoError, OutputFolder};
 
-use crate::args::{Caching, ResumeArgs, RunArgs};
+use crate::args::{ResumeArgs, RunArgs};
 use crate::checkpoint::{Checkpoints, DeckText, Stored};
 use crate::console;
 use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::prepare::{self, Facts};
+use crate::prepare::{self, Facts, Means};
 use crate::progress::Progress;
 use crate::report::{Audit, Report, Status};
 use crate::signals::Signals;
@@ -38,7 +38,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         console::note(format_args!("{}: building the model", text.file));
     }
     // The folder is made once nothing in the deck can be wrong any more.
-    let modelled = modelled(&deck, &args.caching)?;
+    let means = Means {
+        caching: &args.caching,
+        memory: args.limits.memory.bytes(),
+    };
+    let modelled = modelled(&deck, &means)?;
     let folder = output_folder(args.out.as_deref(), args.force, &args.deck, "")?;
     let session = Session::begun(&deck, text, modelled, folder, quiet)?;
     session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?)
@@ -55,7 +59,11 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
     let deadline = Deadline::from_now(args.limits.wall_time);
     args.execution.threads.start()?;
     let quiet = args.execution.quiet;
-    match Session::resumed(&args.dir, &args.caching, quiet)? {
+    let means = Means {
+        caching: &args.caching,
+        memory: args.limits.memory.bytes(),
+    };
+    match Session::resumed(&args.dir, &means, quiet)? {
         Some(session) => session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?),
         None => {
             if !quiet {
@@ -73,8 +81,8 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
 ///
 /// # Errors
 /// A deck that is refused.
-pub(crate) fn modelled(deck: &Deck, caching: &Caching) -> Result<(Model, Facts), CliError> {
-    let model = prepare::model(deck, caching)?;
+pub(crate) fn modelled(deck: &Deck, means: &Means<'_>) -> Result<(Model, Facts), CliError> {
+    let model = prepare::model(deck, means)?;
     let facts = Facts::of(deck, &model);
     Ok((model, facts))
 }
@@ -177,7 +185,7 @@ impl Session {
     /// No usable checkpoint, one that does not go with its deck.
     pub(crate) fn resumed(
         path: &Path,
-        caching: &Caching,
+        means: &Means<'_>,
         quiet: bool,
     ) -> Result<Option<Self>, CliError> {
         if path.is_dir() && !path.join("checkpoints").is_dir() {
@@ -189,7 +197,7 @@ impl Session {
         }
         let stored = Stored::latest(&folder)?;
         let deck = stored.metadata.deck.read()?;
-        let (model, mut facts) = modelled(&deck, caching)?;
+        let (model, mut facts) = modelled(&deck, means)?;
         facts.warnings.extend(doubts(&stored, &facts));
         let mut simulation = prepare::simulation(&deck, model, &folder)?;
         // The state is still that of the start.

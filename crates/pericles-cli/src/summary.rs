@@ -44,6 +44,9 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
     ))?;
     if let Some(audit) = &report.audit {
         energies(audit)?;
+        for warning in &audit.warnings {
+            console::note(format_args!("warning: {warning}"));
+        }
         if let Some(refinement) = &audit.refinement {
             console::print(format_args!("{}", refinement.line()))?;
         }

@@ -399,3 +399,69 @@ fn waves_in_the_periodic_plate() {
     let report = report(&out);
     assert!(report["audit"]["balance_over_work"].as_f64().unwrap().abs() < 1e-3);
 }
+
+#[test]
+fn waves_leave_a_bar_of_tuned_bonds() {
+    let (_place, out) = check("composition", "tuned-bar");
+    let history = table(&out, "history.csv");
+    let column = |name: &str| history.column(name).unwrap();
+    let left = column("kinetic_energy").last().unwrap() + column("elastic_energy").last().unwrap();
+    assert!(left < 1e-20 * column("elastic_energy")[0], "{left:e}");
+}
+
+#[test]
+fn exact_steps_of_a_torus_do_not_depend_on_their_length() {
+    let (place, out) = check("composition", "torus-trigonometric");
+    let deck = examples().join("composition/torus-trigonometric.toml");
+    let deck = deck.canonicalize().unwrap();
+    let line = format!(
+        "run {} --quiet --out long --set time.dt=2.5",
+        deck.display()
+    );
+    succeed(place.path(), &line);
+    let kinetic = |out: &Path| {
+        *table(out, "history.csv")
+            .column("kinetic_energy")
+            .unwrap()
+            .last()
+            .unwrap()
+    };
+    let (short, long) = (kinetic(&out), kinetic(&place.path().join("long")));
+    assert!((short / long - 1.0).abs() < 1e-9, "{short} {long}");
+}
+
+#[test]
+fn nonlinear_surfaces_and_bars_keep_energy_and_momentum() {
+    for (name, energy) in [("sphere-rk4", 1e-7), ("gauss-nonlinear", 1e-3)] {
+        let (_place, out) = check("composition", name);
+        let audit = &report(&out)["audit"];
+        let number = |key: &str| audit[key].as_f64().unwrap();
+        assert!(number("energy_drift").abs() < energy, "{name}");
+        assert!(number("momentum_error_relative") < 1e-12, "{name}");
+        assert!(audit["warnings"].as_array().unwrap().is_empty(), "{audit}");
+    }
+}
+
+#[test]
+fn transforms_and_the_stencil_move_a_plate_alike() {
+    let (place, out) = check("composition", "periodic-plate");
+    let deck = examples().join("composition/periodic-plate.toml");
+    let deck = deck.canonicalize().unwrap();
+    let line = format!(
+        "run {} --quiet --out stencil --set body.periodic=false --set material.bonds=grid",
+        deck.display()
+    );
+    succeed(place.path(), &line);
+    let stencil = place.path().join("stencil");
+    assert_eq!(report(&stencil)["model"]["operator"], "grid");
+    for column in ["ahead_u_x", "ahead_v_y", "aside_u_x", "aside_v_x"] {
+        let [a, b] =
+            [&out, &stencil].map(|out| table(out, "probes.csv").column(column).unwrap().to_vec());
+        let size = a.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+        let apart = a
+            .iter()
+            .zip(&b)
+            .fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+        assert!(apart < 1e-9 * size, "{column}: {apart:e} of {size:e}");
+    }
+}

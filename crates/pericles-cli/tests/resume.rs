@@ -185,6 +185,6 @@ fn a_relaxation_goes_on_to_the_same_bytes() {
     )
     .unwrap();
     succeed(place.path(), "resume begun --quiet");
-    assert_eq!(report(&begun)["progress"]["first_step"], step);
+    assert_eq!(report(&begun)["progress"]["first_step"], 3);
     assert_same_results(&place.path().join("whole"), &begun);
 }

@@ -182,3 +182,60 @@ fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
         );
     }
 }
+
+#[test]
+#[ignore = "minutes: a million steps"]
+fn a_million_steps_lose_no_energy_and_take_no_memory() {
+    // A free bar that rings: velocity Verlet keeps its own energy but for rounding, whose sum over N steps grows at most as N, as √N where errors are random.
+    const DECK: &str = r#"
+[body]
+shape = "bar"
+length = 100
+spacing = 1
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+bonds = "list"
+[[initial]]
+velocity = { expression = "sin(0.1*x)" }
+[time]
+end = 5e5
+dt = 0.5
+[output]
+fields = "never"
+history = { count = 1000 }
+[checkpoint]
+every = 100000
+"#;
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("ringing.toml"), DECK).unwrap();
+    let peak = |out: &str| {
+        report(&place.path().join(out))["progress"]["peak_memory"]
+            .as_f64()
+            .unwrap()
+    };
+    succeed(
+        place.path(),
+        "run ringing.toml --quiet --threads 1 --out short --set time.end=5e2",
+    );
+    succeed(
+        place.path(),
+        "run ringing.toml --quiet --threads 1 --out long",
+    );
+    let history = pericles_io::read_csv(place.path().join("long/history.csv")).unwrap();
+    let column = |name: &str| history.column(name).unwrap();
+    let energy = column("kinetic_energy")[0];
+    let drift = column("balance").iter().map(|b| b / energy);
+    let (last, most) = drift.fold((0.0, 0.0f64), |(_, most), d| (d, most.max(d.abs())));
+    let grown = peak("long") - peak("short");
+    println!(
+        "a million steps: energy off by {last:e} at the end, {most:e} at most, of the energy there was; memory {:.1} MB, {:.1} MB more than of a thousand steps",
+        1e-6 * peak("long"),
+        1e-6 * grown
+    );
+    // Linear growth of one rounding a step would be 1e6 · 1.1e-16.
+    assert!(most < 1.1e-10, "{most:e}");
+    assert!(grown < 2e6, "{grown}");
+}

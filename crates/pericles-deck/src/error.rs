@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
 
+use crate::fault::Fault;
 use crate::finding::Problem;
 
 /// Why a deck cannot be used.
@@ -42,6 +43,17 @@ impl DeckError {
             Self::Refused { problems } => problems,
             Self::Unreadable { .. } => &[],
         }
+    }
+
+    /// Whether nothing is wrong with the deck but that it needs more memory than it may have.
+    pub fn is_too_large(&self) -> bool {
+        let too_large = |problem: &Problem| {
+            matches!(
+                problem.subject(),
+                Fault::TooLarge { .. } | Fault::LongHistory { .. }
+            )
+        };
+        !self.problems().is_empty() && self.problems().iter().all(too_large)
     }
 }
 

@@ -3,6 +3,7 @@
 use miette::Severity;
 use pericles::PericlesError;
 
+use crate::build::bytes;
 use crate::finding::Subject;
 
 /// Kinds of wrong.
@@ -242,6 +243,32 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
+    /// A body that would need more memory than there is.
+    #[error(
+        "the body would have {points:.3e} points and need some {} of memory; {} may be taken",
+        bytes(*needed), bytes(*memory as f64)
+    )]
+    TooLarge {
+        /// Its points, or how many there can be.
+        points: f64,
+        /// The estimate, bytes.
+        needed: f64,
+        /// What may be taken, bytes.
+        memory: u64,
+    },
+    /// A history of an absorbing end that would need more memory than there is.
+    #[error(
+        "the history of {steps:.3e} steps would need some {} of memory; {} may be taken",
+        bytes(*needed), bytes(*memory as f64)
+    )]
+    LongHistory {
+        /// Steps of the run.
+        steps: f64,
+        /// The estimate, bytes.
+        needed: f64,
+        /// What may be taken, bytes.
+        memory: u64,
+    },
     /// The library refuses the value.
     #[error(transparent)]
     Model(#[from] PericlesError),
@@ -304,6 +331,10 @@ impl Subject for Fault {
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
             Self::OtherSpacing { .. } => "places in the file are in m and volumes in m³".into(),
+            Self::TooLarge { .. } => "a larger spacing or a shorter horizon needs less".into(),
+            Self::LongHistory { .. } => {
+                "fewer or longer steps need less, as do exponentials (give a `tolerance`)".into()
+            }
             // Their own text says what is allowed.
             Self::WrongKind { .. } | Self::Model(_) => return None,
         })
@@ -341,6 +372,7 @@ impl Subject for Fault {
             Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
             Self::UnknownArea { .. } => "which area?",
             Self::NoExactSolution { .. } => "of another problem",
+            Self::TooLarge { .. } | Self::LongHistory { .. } => "too large",
             Self::Model(_) => "refused",
         }
     }

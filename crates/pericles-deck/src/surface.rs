@@ -119,6 +119,28 @@ pub(crate) enum SurfaceKind {
 }
 
 impl SurfaceFormula {
+    /// How many vertices it will have, about; so many that no surface is made is no error here.
+    pub(crate) fn vertices(&self) -> f64 {
+        match *self {
+            Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } => {
+                10.0 * 4f64.powi(level.min(i32::MAX as u32) as i32)
+            }
+            Self::UvSphere {
+                segments, rings, ..
+            } => f64::from(segments) * f64::from(rings),
+            Self::Torus { around, across, .. } => f64::from(around) * f64::from(across),
+            Self::Capsule {
+                radius,
+                length,
+                segments,
+            } => {
+                let segments = f64::from(segments);
+                let side = std::f64::consts::TAU * radius / segments;
+                segments * (0.5 * segments + length / side)
+            }
+        }
+    }
+
     /// The surface, its vertices numbered along a space-filling curve.
     ///
     /// # Errors

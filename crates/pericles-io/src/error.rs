@@ -16,6 +16,13 @@ pub enum IoError {
         source: io::Error,
     },
 
+    /// The folder of the file has gone.
+    #[error("cannot write {}: its folder is not there any more; run again, into a folder that stays", path.display())]
+    FolderGone {
+        /// What was to be written.
+        path: PathBuf,
+    },
+
     /// No space is left, or a quota or the largest allowed file size is reached.
     #[error("no room to write {}: {source}; free some space or choose another disk", path.display())]
     DiskFull {
@@ -148,10 +155,10 @@ impl IoError {
             return Self::DiskFull { path, source };
         }
         match source.kind() {
-            // NotFound on writing means that a parent folder is missing.
+            // The file itself need not be there.
+            Kind::NotFound => Self::FolderGone { path },
             Kind::PermissionDenied
             | Kind::ReadOnlyFilesystem
-            | Kind::NotFound
             | Kind::NotADirectory
             | Kind::IsADirectory => Self::NotWritable { path, source },
             _ => Self::Write { path, source },
@@ -170,6 +177,7 @@ impl IoError {
         matches!(
             self,
             Self::NotWritable { .. }
+                | Self::FolderGone { .. }
                 | Self::DiskFull { .. }
                 | Self::Locked { .. }
                 | Self::FolderExists { .. }
@@ -182,6 +190,7 @@ impl IoError {
     pub fn path(&self) -> &Path {
         match self {
             Self::NotWritable { path, .. }
+            | Self::FolderGone { path }
             | Self::DiskFull { path, .. }
             | Self::Locked { path }
             | Self::FolderExists { path }

@@ -57,10 +57,11 @@ pub use csv::{Cell, Column, CsvData, CsvTable, csv_row, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
 pub use mesh::{
-    FieldColumn, FieldData, MeshError, Place, SURFACE_ENDINGS, read_fields, read_surface,
+    FieldColumn, FieldData, MeshError, Place, SURFACE_ENDINGS, parse_fields, parse_surface,
+    read_fields, read_surface,
 };
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
-pub use points::{PointsError, read_points};
+pub use points::{PointsError, parse_points, read_points};
 pub use vtk::{PvdSeries, VtkField, VtuFile, escaped};

@@ -47,13 +47,26 @@ pub enum PointsError {
 pub fn read_points(path: impl AsRef<Path>, dimension: usize) -> Result<ListedPoints, PointsError> {
     let path = path.as_ref();
     let bytes = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
-    parse(&bytes, dimension).map_err(|wrong| match wrong {
+    parse_points(path, &bytes, dimension)
+}
+
+/// The points in the content of a file, which messages call by this name.
+///
+/// # Errors
+/// As [`read_points`], but for a file that cannot be read.
+pub fn parse_points(
+    name: impl AsRef<Path>,
+    content: &[u8],
+    dimension: usize,
+) -> Result<ListedPoints, PointsError> {
+    let path = || name.as_ref().to_path_buf();
+    parse(content, dimension).map_err(|wrong| match wrong {
         Some(Wrong { line, reason }) => PointsError::Line {
-            path: path.into(),
+            path: path(),
             line,
             reason,
         },
-        None => PointsError::Empty { path: path.into() },
+        None => PointsError::Empty { path: path() },
     })
 }
 

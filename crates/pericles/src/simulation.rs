@@ -3,6 +3,7 @@
 use crate::archive::{Archive, Saved};
 use crate::boundary::absorbing::AbsorbingError;
 use crate::error::PericlesError;
+use crate::guard::{Alarm, Cause, Watched};
 use crate::observe::{ObserveError, Observer, Schedule, Snapshot, StartEnergy};
 use crate::system::System;
 use crate::time::{Integrator, State};
@@ -29,11 +30,10 @@ pub enum Outcome {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// Numbers that are no longer numbers, or more energy than was put in.
+    /// The guard found something that no body does.
     #[error(
-        "the run became unstable at step {step}, t = {t:e} s: {cause}; the fastest point is {point} at ({}, {}, {}) m with {speed:e} m/s. \
-         Usual causes: a time step above the stable limit, a load that tears points off, a displacement prescribed too fast",
-        place[0], place[1], place[2]
+        "the run became unstable at step {step}, t = {t:e} s: {cause}; at point {point}, ({}, {}, {}) m, with {speed:e} m/s. {}",
+        place[0], place[1], place[2], cause.advice()
     )]
     Unstable {
         /// Step at which it was found.
@@ -41,7 +41,26 @@ pub enum SimulationError {
         /// Time, s.
         t: f64,
         /// What was found.
-        cause: &'static str,
+        cause: Cause,
+        /// The point where it is worst, in the user's numbering.
+        point: usize,
+        /// Its reference position, m.
+        place: [f64; 3],
+        /// Its speed, m/s.
+        speed: f64,
+    },
+    /// The scheme found no way on.
+    #[error(
+        "the run cannot go on from step {step}, t = {t:e} s: {source}; the fastest point is {point} at ({}, {}, {}) m with {speed:e} m/s",
+        place[0], place[1], place[2]
+    )]
+    Stuck {
+        /// Steps taken.
+        step: u64,
+        /// Time, s.
+        t: f64,
+        /// Why.
+        source: Box<PericlesError>,
         /// The fastest point, in the user's numbering.
         point: usize,
         /// Its reference position, m.
@@ -49,9 +68,9 @@ pub enum SimulationError {
         /// Its speed, m/s.
         speed: f64,
     },
-    /// The integrator failed.
+    /// The parts of the run do not fit together.
     #[error(transparent)]
-    Step(#[from] PericlesError),
+    Misfit(#[from] PericlesError),
     /// An observer failed, usually because it could not write.
     #[error("{0}")]
     Observe(#[source] ObserveError),
@@ -73,9 +92,6 @@ pub struct Simulation {
     observers: Vec<Scheduled>,
     start: StartEnergy,
 }
-
-/// Steps between two looks at the kinetic energy.
-const GUARD_EVERY: u64 = 20;
 
 impl Simulation {
     /// A run of `steps` steps of length `dt` from the given state, which is prepared by the integrator.
@@ -163,12 +179,12 @@ impl Simulation {
         while self.state.step < self.steps {
             // From the step's number, not by adding up, so that time carries no error.
             let t_next = (self.state.step + 1) as f64 * self.dt;
-            self.integrator
-                .step(&mut self.system, &mut self.state, t_next)?;
+            let stepped = self
+                .integrator
+                .step(&mut self.system, &mut self.state, t_next);
+            stepped.map_err(|source| self.stuck(source))?;
             let last = self.state.step == self.steps;
-            if last || self.state.step.is_multiple_of(GUARD_EVERY) {
-                self.guard()?;
-            }
+            self.guard(last)?;
             self.show()?;
             if !last && control(self) == Control::Stop {
                 return Ok(Outcome::Stopped);
@@ -233,37 +249,41 @@ impl Simulation {
         shown.map_err(SimulationError::Observe)
     }
 
-    /// The kinetic energy cannot exceed what was there and what was put in. Twice that, to leave room for the errors of a coarse step.
-    fn guard(&self) -> Result<(), SimulationError> {
-        let kinetic = self.system.kinetic_energy(&self.state.v);
-        let available = self.start.energy + self.system.ledger().exchanged;
-        let cause = if !kinetic.is_finite() {
-            "a velocity is not a number"
-        } else if kinetic > 2.0 * available.max(f64::MIN_POSITIVE) {
-            "the kinetic energy exceeds twice the energy put in"
-        } else {
-            return Ok(());
-        };
-        let n = self.system.points();
-        let speed = |i: usize| -> f64 {
-            let square: f64 = (0..self.system.dimension())
-                .map(|c| self.state.v[c * n + i].powi(2))
-                .sum();
-            if square.is_nan() {
-                f64::INFINITY
-            } else {
-                square.sqrt()
-            }
-        };
-        let point = (0..n).fold(0, |best, i| if speed(i) > speed(best) { i } else { best });
-        Err(SimulationError::Unstable {
+    fn watched(&self) -> Watched<'_> {
+        Watched {
+            system: &self.system,
+            state: &self.state,
+            integrator: &*self.integrator,
+            start: self.start,
+            dt: self.dt,
+        }
+    }
+
+    fn guard(&self, last: bool) -> Result<(), SimulationError> {
+        let watched = self.watched();
+        watched
+            .look(last)
+            .map_err(|Alarm { cause, point }| SimulationError::Unstable {
+                step: self.state.step,
+                t: self.state.t,
+                cause,
+                point: self.system.cloud().user_number(point),
+                place: self.system.cloud().point(point),
+                speed: watched.speed(point),
+            })
+    }
+
+    fn stuck(&self, source: PericlesError) -> SimulationError {
+        let watched = self.watched();
+        let point = watched.fastest();
+        SimulationError::Stuck {
             step: self.state.step,
             t: self.state.t,
-            cause,
+            source: source.into(),
             point: self.system.cloud().user_number(point),
             place: self.system.cloud().point(point),
-            speed: speed(point),
-        })
+            speed: watched.speed(point),
+        }
     }
 }
 

@@ -29,6 +29,7 @@ use crate::console;
 use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::prepare::Means;
 use crate::results::Results;
 use crate::run::{self, Session};
 use crate::signals::Signals;
@@ -160,6 +161,8 @@ pub(crate) struct Settings<'a> {
     /// Threads of one run.
     threads: usize,
     caching: &'a Caching,
+    /// Bytes for all runs together.
+    memory: u64,
     deadline: Option<Deadline>,
     quiet: bool,
 }
@@ -170,6 +173,7 @@ impl<'a> Settings<'a> {
         Self {
             threads: execution.threads.count_or(1),
             caching,
+            memory: limits.memory.bytes(),
             deadline: Deadline::from_now(limits.wall_time),
             quiet: execution.quiet,
         }
@@ -233,6 +237,10 @@ impl Record {
         let signals = Signals::watch().map_err(CliError::Signals)?;
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let at_once = (cores / settings.threads).clamp(1, members.len().max(1));
+        let means = Means {
+            caching: settings.caching,
+            memory: settings.memory / at_once as u64,
+        };
         if !settings.quiet {
             console::note(format_args!(
                 "{} runs, {at_once} at a time on {} each; results in {}",
@@ -248,7 +256,7 @@ impl Record {
                 if let Some(asked) = signals.asked() {
                     return asked;
                 }
-                let exit = member.run(folder, settings, &signals);
+                let exit = member.run(folder, settings, &means, &signals);
                 // The first trouble decides the status.
                 if worst == Exit::Done {
                     worst = exit;
@@ -269,9 +277,15 @@ impl Record {
 
 impl Member {
     /// Runs it as far as it goes, says so, and reports what went wrong.
-    fn run(&self, sweep: &OutputFolder, settings: &Settings<'_>, signals: &Signals) -> Exit {
+    fn run(
+        &self,
+        sweep: &OutputFolder,
+        settings: &Settings<'_>,
+        means: &Means<'_>,
+        signals: &Signals,
+    ) -> Exit {
         let exit = self
-            .attempt(&sweep.file(&self.name), settings, signals)
+            .attempt(&sweep.file(&self.name), settings, means, signals)
             .unwrap_or_else(|error| {
                 console::note(format_args!("{}:", self.name));
                 error.report();
@@ -292,6 +306,7 @@ impl Member {
         &self,
         path: &Path,
         settings: &Settings<'_>,
+        means: &Means<'_>,
         signals: &Signals,
     ) -> Result<Exit, CliError> {
         let pool = rayon::ThreadPoolBuilder::new()
@@ -300,7 +315,7 @@ impl Member {
         let deadline = settings.deadline.clone();
         pool.install(|| {
             let session = if path.join("checkpoints").is_dir() {
-                match Session::resumed(path, settings.caching, true)? {
+                match Session::resumed(path, means, true)? {
                     Some(session) => session,
                     None => return Ok(Exit::Done),
                 }
@@ -308,7 +323,7 @@ impl Member {
                 // A run that died before its first checkpoint begins again.
                 let folder = OutputFolder::create(path, path.exists())?;
                 let deck = self.deck.read()?;
-                let model = run::modelled(&deck, settings.caching)?;
+                let model = run::modelled(&deck, means)?;
                 Session::begun(&deck, self.deck.clone(), model, folder, true)?
             };
             session.drive(deadline, signals)

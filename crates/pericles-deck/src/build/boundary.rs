@@ -5,14 +5,13 @@ use pericles::boundary::absorbing::{
     MidpointEnd, OuterLayer, Side,
 };
 use pericles::boundary::{DampingLayer, DampingProfile};
-use pericles::cache::Cache;
 use pericles::material::BondConstants;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
 use pericles::{PericlesError, System};
 
-use super::Sets;
 use super::step::Steps;
+use super::{Resources, Sets};
 use crate::boundary::BoundaryCondition;
 use crate::caution::Caution;
 use crate::deck::Deck;
@@ -39,6 +38,7 @@ impl Deck {
         state: &State,
         sets: &Sets,
         integrator: &dyn Integrator,
+        resources: &Resources<'_>,
     ) -> Result<Vec<End>, DeckError> {
         let no_fail = self.union_of(sets, &self.material.no_fail)?;
         let mut ends = Vec::new();
@@ -82,6 +82,8 @@ impl Deck {
             let (layer, beyond) = match exterior_data {
                 None => (OuterLayer::of(system, side, state, &no_fail), None),
                 Some(depth) => {
+                    let sites = depth / system.cloud().spacing();
+                    self.check_exterior(&path.key("exterior_data"), sites, resources)?;
                     let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
                     (layer, Some(self.fields_beyond(side, depth, system.cloud())))
                 }
@@ -125,7 +127,7 @@ impl Deck {
         system: &mut System,
         ends: Vec<End>,
         steps: &Steps,
-        cache: &dyn Cache,
+        resources: &Resources<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<Vec<(Side, EndReport)>, DeckError> {
         let mut reports = Vec::new();
@@ -139,7 +141,13 @@ impl Deck {
             };
             step.check(&stencil).map_err(refuse)?;
             let count = steps.count as usize;
-            let make = || end.plan.history(&stencil, step, count, cache);
+            if !end.plan.forgets() {
+                self.check_history(&path, stencil.reach(), count as f64, resources)?;
+            }
+            let make = || {
+                let cache = resources.cache;
+                end.plan.history(&stencil, step, count, cache)
+            };
             let (history, report) = make().map_err(refuse)?;
             if let Some(growth) = report.growth {
                 warnings

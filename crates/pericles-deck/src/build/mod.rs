@@ -7,6 +7,7 @@ mod content;
 mod exact;
 mod fields;
 mod graded;
+mod memory;
 mod parts;
 mod points;
 mod resources;
@@ -17,6 +18,7 @@ mod surface;
 
 pub use exact::ExactReference;
 
+pub(crate) use memory::bytes;
 pub use resources::{PointsReader, Resources, SurfaceReader};
 
 use std::sync::Arc;
@@ -133,7 +135,6 @@ impl Deck {
     /// # Errors
     /// As [`Deck::build`].
     pub fn build_with(&self, resources: Resources<'_>) -> Result<Model, DeckError> {
-        let cache = resources.cache;
         let mut warnings = Vec::new();
         let Assembled {
             cloud,
@@ -162,11 +163,11 @@ impl Deck {
         self.judge_conditions(&system, &mut warnings);
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
-        let ends = self.ends(&system, &state, &sets, &*integrator)?;
+        let ends = self.ends(&system, &state, &sets, &*integrator, &resources)?;
         let exterior = boundary::exterior_frequency(&ends);
         let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
-        let ends = self.add_ends(&mut system, ends, &steps, cache, &mut warnings)?;
+        let ends = self.add_ends(&mut system, ends, &steps, &resources, &mut warnings)?;
         self.add_damping_layers(&mut system, &constants, &steps)?;
         Ok(Model {
             cloud,

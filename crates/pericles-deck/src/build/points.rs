@@ -19,7 +19,7 @@ impl Deck {
             Some(file) => self
                 .listed_points(file, resources)
                 .map(GradedCloud::of_one_grid),
-            None => self.grid_points(),
+            None => self.grid_points(resources),
         }
     }
 
@@ -44,6 +44,7 @@ impl Deck {
             .map_err(|error| self.at("body.file", error))?;
         let (given, found) = (self.body.grid.spacing, cloud.spacing());
         if (1.0 / OFF..=OFF).contains(&(found / given)) {
+            self.check_listed(&cloud, resources)?;
             return Ok(cloud);
         }
         let section = ["area", "thickness"].get(file.dimension - 1).copied();
@@ -55,11 +56,13 @@ impl Deck {
         Err(self.at_path(&"body.spacing".into(), fault))
     }
 
-    fn grid_points(&self) -> Result<GradedCloud, DeckError> {
+    fn grid_points(&self, resources: &Resources<'_>) -> Result<GradedCloud, DeckError> {
         let graded = GradedGrid {
             grid: self.body.grid.clone(),
             finer: self.body.finer.clone(),
         };
+        let gauss = self.body.quadrature == Quadrature::Gauss;
+        self.check_grid(&graded, if gauss { 2.0 } else { 1.0 }, resources)?;
         let grid = &graded.grid;
         let points = match (&grid.shape, self.body.quadrature) {
             (Shape::Box { origin, size }, _) if self.body.rectangular.is_some() => {

@@ -21,15 +21,18 @@ pub struct Resources<'a> {
     pub read_surface: &'a SurfaceReader<'a>,
     /// The reader of bodies with `shape = "points"`.
     pub read_points: &'a PointsReader<'a>,
+    /// Bytes that the model may take: one that is estimated to need more is refused before anything of its size is allocated.
+    pub memory: u64,
 }
 
 impl Default for Resources<'_> {
-    /// No cache, and no reader of files.
+    /// No cache, no reader of files, and memory without end.
     fn default() -> Self {
         Self {
             cache: &NoCache,
             read_surface: &|_| Err("nothing that reads surfaces was handed in".into()),
             read_points: &|_, _| Err("nothing that reads points was handed in".into()),
+            memory: u64::MAX,
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
 use crate::finding::Warning;
+use crate::scheme::Scheme;
 use crate::time::TimeStep;
 
 /// The steps of a run.
@@ -67,6 +68,9 @@ impl Deck {
                 if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
                     self.judge(dt, limit, frequency, integrator.name(), warnings)?;
                 }
+                if let (Scheme::Trigonometric(_), Ok(frequency)) = (&self.time.scheme, &frequency) {
+                    self.check_angle(dt, frequency)?;
+                }
                 Ok(Steps {
                     dt,
                     count: self.count(end, dt)?,
@@ -74,6 +78,22 @@ impl Deck {
                 })
             }
         }
+    }
+
+    /// Refuses a step that turns the fastest wave so often that its angle keeps few digits; a series would have as many terms.
+    fn check_angle(&self, dt: f64, frequency: &HighestFrequency) -> Result<(), DeckError> {
+        const MOST: f64 = 1e6;
+        let longest = MOST / frequency.bound;
+        if dt <= longest {
+            return Ok(());
+        }
+        let fault = Fault::OutOfRange {
+            value: format!("{dt:e} s"),
+            allowed: format!(
+                "allowed: at most {longest:.4e} s, in which the fastest wave turns by {MOST:e}"
+            ),
+        };
+        Err(self.at_path(&"time.dt".into(), fault))
     }
 
     /// Refuses a given step that is known to be unstable; one that may be is only warned of.

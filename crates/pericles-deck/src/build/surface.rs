@@ -26,10 +26,14 @@ impl Deck {
             SurfaceShape::File { path, checks } => {
                 self.surface_of_file(path, *checks, resources)?
             }
-            SurfaceShape::Formula(shape) => shape
-                .surface()
-                .map_err(|error| self.at("body", error.into()))?,
+            SurfaceShape::Formula(shape) => {
+                self.check_vertices(shape.vertices(), resources)?;
+                let made = shape.surface();
+                made.map_err(|error| self.at("body", error.into()))?
+            }
         };
+        let horizon = deck.material.horizon;
+        self.check_surface(surface.len(), surface.area(), horizon, resources)?;
         let areas = match deck.areas {
             VertexAreas::Rule(rule) => surface.vertex_areas(rule),
             VertexAreas::Same(area) => vec![area; surface.len()],

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crc32fast::Hasher;
@@ -118,14 +118,23 @@ impl Container {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, IoError> {
         let path = path.as_ref();
         let reading = |source| IoError::reading(path, source);
-        let damaged = |reason: String| IoError::Damaged {
-            path: path.to_path_buf(),
-            reason,
-        };
         let file = File::open(path).map_err(reading)?;
         let length = file.metadata().map_err(reading)?.len();
-        let mut file = BufReader::with_capacity(1 << 16, file);
+        Self::read_from(path, BufReader::with_capacity(1 << 16, file), length)
+    }
 
+    /// The container in the content of a file, which messages call by this name.
+    ///
+    /// # Errors
+    /// Content that is not exactly what was written.
+    pub fn parse(name: impl AsRef<Path>, content: &[u8]) -> Result<Self, IoError> {
+        let length = content.len() as u64;
+        Self::read_from(name.as_ref(), Cursor::new(content), length)
+    }
+
+    fn read_from(path: &Path, mut file: impl Read + Seek, length: u64) -> Result<Self, IoError> {
+        let reading = |source| IoError::reading(path, source);
+        let damaged = |reason: String| IoError::damaged(path, reason);
         let mut prefix = [0; PREFIX as usize];
         if length < PREFIX {
             return Err(damaged(format!(

@@ -1,6 +1,7 @@
 //! The checkpoints of a run: the last two are kept, and the newest good one is found again.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::Container;
@@ -48,7 +49,13 @@ impl CheckpointFolder {
     ///
     /// Checkpoints of later steps go too: they are left from a run that was resumed at an earlier one.
     pub fn write(&self, step: u64, container: &Container) -> Result<PathBuf, IoError> {
-        fs::create_dir_all(&self.path).map_err(|source| IoError::writing(&self.path, source))?;
+        // Not those above it: where the output folder has gone, nothing more belongs there.
+        match fs::create_dir(&self.path) {
+            Err(source) if source.kind() != ErrorKind::AlreadyExists => {
+                return Err(IoError::writing(&self.path, source));
+            }
+            _ => {}
+        }
         let file = self.file(step);
         container.write(&file)?;
         let earlier: Vec<_> = self.steps()?.into_iter().filter(|&s| s <= step).collect();

@@ -42,8 +42,16 @@ impl FieldData {
 pub fn read_fields(path: impl AsRef<Path>) -> Result<FieldData, MeshError> {
     let path = path.as_ref();
     let content = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
-    parse(&content).map_err(|Fault { place, reason }| MeshError::Content {
-        path: path.into(),
+    parse_fields(path, &content)
+}
+
+/// The same of the content of a file, which messages call by this name.
+///
+/// # Errors
+/// As [`read_fields`], but for a file that cannot be read.
+pub fn parse_fields(name: impl AsRef<Path>, content: &[u8]) -> Result<FieldData, MeshError> {
+    parse(content).map_err(|Fault { place, reason }| MeshError::Content {
+        path: name.as_ref().into(),
         place,
         reason,
     })

@@ -27,7 +27,7 @@ mod vtk_array;
 mod words;
 
 pub use error::{MeshError, Place};
-pub use fields::{FieldColumn, FieldData, read_fields};
+pub use fields::{FieldColumn, FieldData, parse_fields, read_fields};
 
 use std::path::Path;
 
@@ -51,6 +51,15 @@ pub fn read_surface(path: impl AsRef<Path>) -> Result<Surface, MeshError> {
     let format = Format::of(path)?;
     let content = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
     format.surface(path, &content)
+}
+
+/// The surface in the content of a file; its name tells the format, and is what messages call it.
+///
+/// # Errors
+/// As [`read_surface`], but for a file that cannot be read.
+pub fn parse_surface(name: impl AsRef<Path>, content: &[u8]) -> Result<Surface, MeshError> {
+    let name = name.as_ref();
+    Format::of(name)?.surface(name, content)
 }
 
 /// A format by its ending.

@@ -1,5 +1,6 @@
 //! Grids with smaller cells in parts of the body.
 
+use super::grid::Cells;
 use super::{Grid, Point, PointCloud, Region};
 use crate::error::{PericlesError, Result};
 
@@ -62,6 +63,47 @@ impl GradedCloud {
 const MOST_PARTS: usize = 200;
 
 impl GradedGrid {
+    /// How many points there will be, and nothing made yet; where they are more than `most`, how many there can be. A body that is no full box is counted cell by cell, the
+    /// small cells of a divided one being all counted.
+    ///
+    /// # Errors
+    /// Those of the grid.
+    pub fn count(&self, most: f64) -> Result<f64> {
+        let cells = self.grid.cells()?;
+        let dimension = self.grid.dimension() as i32;
+        let finest = self.finer.iter().map(|finer| finer.ratio).max();
+        let most_parts = f64::from(finest.unwrap_or(1)).powi(dimension);
+        let bound = cells.shape.iter().product::<usize>() as f64 * most_parts;
+        if bound <= most || (cells.is_full() && self.finer.is_empty()) {
+            return Ok(bound);
+        }
+        let mut count = 0.0;
+        let shape = cells.shape.map(|count| count as i32);
+        for z in 0..shape[2] {
+            for y in 0..shape[1] {
+                for x in 0..shape[0] {
+                    let centre = cells.centre([x, y, z]);
+                    if cells.holds(centre) {
+                        let ratio = self
+                            .part(&cells, centre)
+                            .map_or(1, |part| self.finer[part].ratio);
+                        count += f64::from(ratio).powi(dimension);
+                    }
+                }
+                if count > most {
+                    return Ok(bound);
+                }
+            }
+        }
+        Ok(count)
+    }
+
+    /// The part that a large cell belongs to, if it is divided.
+    fn part(&self, cells: &Cells<'_>, centre: Point) -> Option<usize> {
+        let holds = |finer: &Finer| cells.is_in(&finer.region, centre);
+        self.finer.iter().rposition(holds)
+    }
+
     /// Makes the cloud: cells of the large grid in its order, x fastest, divided ones as their small cells in the same order. Which small cells belong to
     /// the body is decided by their own centres.
     ///
@@ -91,10 +133,7 @@ impl GradedGrid {
             for y in 0..count[1] {
                 for x in 0..count[0] {
                     let centre = cells.centre([x, y, z]);
-                    let part = self
-                        .finer
-                        .iter()
-                        .rposition(|finer| cells.is_in(&finer.region, centre));
+                    let part = self.part(&cells, centre);
                     let ratio = part.map_or(1, |part| self.finer[part].ratio);
                     let size = self.grid.spacing / f64::from(ratio);
                     for_each_part(dimension, ratio, |offset| {
@@ -213,6 +252,28 @@ mod tests {
             ratio: 4,
         };
         assert!(error(vec![whole]) < 0.5 * error(vec![]));
+    }
+
+    #[test]
+    fn points_are_counted_without_making_them() {
+        let region = Region::Box {
+            min: [0.2, 0.1, f64::NEG_INFINITY],
+            max: [0.4, 0.3, f64::INFINITY],
+        };
+        let graded = block(vec![Finer { region, ratio: 3 }]);
+        // The bound is that of a body that is divided everywhere.
+        assert_eq!(graded.count(1e9).unwrap(), 48.0 * 27.0);
+        assert_eq!(graded.count(300.0).unwrap(), 48.0 - 8.0 + 8.0 * 27.0);
+        assert_eq!(graded.count(100.0).unwrap(), 48.0 * 27.0);
+        let mut bored = block(vec![]);
+        bored.grid.holes = vec![Region::Ball {
+            centre: [0.3, 0.2, 0.1],
+            radius: 0.12,
+        }];
+        let points = bored.points().unwrap().cloud.len() as f64;
+        assert!(points < 48.0);
+        assert_eq!(bored.count(47.0).unwrap(), points);
+        assert_eq!(bored.count(points - 1.0).unwrap(), 48.0);
     }
 
     #[test]

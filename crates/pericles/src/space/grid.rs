@@ -243,6 +243,11 @@ pub(super) struct Cells<'a> {
 }
 
 impl Cells<'_> {
+    /// Whether every cell belongs to the body.
+    pub(super) fn is_full(&self) -> bool {
+        self.outline.is_none()
+    }
+
     /// The centre of a cell.
     pub(super) fn centre(&self, cell: [i32; 3]) -> Point {
         std::array::from_fn(|c| {

@@ -60,7 +60,13 @@ const CHECK_EVERY: usize = 10;
 /// # Errors
 /// A body without any stiffness.
 pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency> {
-    iterate(system, u, &|vector| system.hold(vector))
+    iterate(system, u, MOST_APPLICATIONS, &|vector| system.hold(vector))
+}
+
+/// A frequency that the highest one is not below, by so many applications of the operator; zero where nothing resists motion.
+pub fn frequency_from_below(system: &System, u: &[f64], applications: usize) -> f64 {
+    let found = iterate(system, u, applications, &|vector| system.hold(vector));
+    found.map_or(0.0, |frequency| frequency.estimate)
 }
 
 /// The same with all points held but those given, ascending.
@@ -74,7 +80,7 @@ pub fn highest_frequency_on(
 ) -> Result<HighestFrequency> {
     let mut held = vec![true; system.points()];
     points.iter().for_each(|&i| held[i as usize] = false);
-    iterate(system, u, &|vector| {
+    iterate(system, u, MOST_APPLICATIONS, &|vector| {
         system.hold(vector);
         for component in vector.chunks_mut(held.len()) {
             for (entry, held) in component.iter_mut().zip(&held) {
@@ -86,7 +92,12 @@ pub fn highest_frequency_on(
     })
 }
 
-fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<HighestFrequency> {
+fn iterate(
+    system: &System,
+    u: &[f64],
+    most: usize,
+    hold: &dyn Fn(&mut [f64]),
+) -> Result<HighestFrequency> {
     let density = |i: usize| system.density().at(i);
     let bound = system.operator().frequency_bound(&density);
     let n = system.points();
@@ -105,7 +116,7 @@ fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<High
     let (mut diagonal, mut off) = (Vec::new(), Vec::<f64>::new());
     let mut estimate = 0.0;
     let mut converged = false;
-    while diagonal.len() < MOST_APPLICATIONS && !converged {
+    while diagonal.len() < most && !converged {
         system.vibration_into(u, &current, &mut next);
         hold(&mut next);
         let alpha = inner(&next, &current);
@@ -116,7 +127,7 @@ fn iterate(system: &System, u: &[f64], hold: &dyn Fn(&mut [f64])) -> Result<High
         let beta = inner(&next, &next).sqrt();
         diagonal.push(alpha);
         let exhausted = beta <= 1e-12 * (alpha.abs() + before);
-        if exhausted || diagonal.len() % CHECK_EVERY == 0 {
+        if exhausted || diagonal.len() % CHECK_EVERY == 0 || diagonal.len() == most {
             let (value, last) = largest_eigenpair(&diagonal, &off);
             estimate = value;
             converged = exhausted || beta * last.abs() <= TOLERANCE * value;

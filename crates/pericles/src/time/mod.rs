@@ -20,7 +20,9 @@ mod zones;
 
 pub use embedded::AdaptiveRungeKutta;
 pub use fine_region::{Fine, Follow};
-pub use frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
+pub use frequency::{
+    HighestFrequency, frequency_from_below, highest_frequency, highest_frequency_on,
+};
 pub use implicit::{Implicit, ImplicitRule, LinearSolver};
 pub use interface::{Interpolant, Predictor};
 pub use multi_time_step::{MultiTimeStep, MultiTimeStepOptions};

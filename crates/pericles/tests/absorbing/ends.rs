@@ -224,7 +224,7 @@ fn what_cannot_be_continued_is_refused() {
     let mut run = Simulation::new(short, Box::new(VelocityVerlet), rest, 0.1, 51);
     assert!(matches!(
         run.run(|_| Control::Continue),
-        Err(SimulationError::Step(PericlesError::Absorbing(
+        Err(SimulationError::Misfit(PericlesError::Absorbing(
             E::TooManySteps {
                 steps: 51,
                 made_for: 50

@@ -67,8 +67,9 @@ fn error(
 #[test]
 fn the_truncated_bar_equals_the_large_one_at_any_step() {
     use LinearSolver::{ConjugateGradients, Direct};
-    let (soft, hard): (fn(usize) -> System, fn(usize) -> System) =
-        (|half| bar(half, 0.5), |half| bar(half, 1.0));
+    type Make = fn(usize) -> System;
+    let soft: Make = |half| bar(half, 0.5);
+    let hard: Make = |half| bar(half, 1.0);
     for (make, dt, steps, rule, solver) in [
         (hard, 0.05, 400.0, ImplicitRule::Midpoint, Direct),
         (soft, 0.5, 120.0, ImplicitRule::Midpoint, Direct),
@@ -174,7 +175,7 @@ fn what_does_not_fit_is_refused() {
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), rest.clone(), 0.1, 10);
     assert!(matches!(
         run.run(|_| Control::Continue),
-        Err(SimulationError::Step(PericlesError::Absorbing(
+        Err(SimulationError::Misfit(PericlesError::Absorbing(
             AbsorbingError::Scheme { .. }
         )))
     ));

@@ -134,7 +134,10 @@ fn the_inner_iteration_ends_where_explicit_schemes_do() {
     let accelerated = most(0.9, InnerSolver::Anderson { depth: 5 }).unwrap();
     assert!(2 * accelerated < plain, "{accelerated} and {plain}");
     match most(1.02, InnerSolver::FixedPoint).unwrap_err() {
-        SimulationError::Step(PericlesError::InnerIteration { omega, safe, .. }) => {
+        SimulationError::Stuck { source, .. } => {
+            let PericlesError::InnerIteration { omega, safe, .. } = *source else {
+                panic!("{source}");
+            };
             assert!((omega / 20.17 - 1.0).abs() < 1e-2, "{omega}");
             assert!(safe < 2.0 / 20.17 && safe > 0.9 * 2.0 / 20.17, "{safe}");
         }

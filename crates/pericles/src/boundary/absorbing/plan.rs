@@ -70,6 +70,11 @@ impl EndPlan {
     /// Of a fit that no tolerance is given for.
     pub const TOLERANCE: f64 = 1e-9;
 
+    /// Whether only exponentials will do, whose memory does not grow with the steps; where they are compared with exact kernels, it does.
+    pub fn forgets(&self) -> bool {
+        self.form == Some(HistoryForm::Exponentials) && !self.verify
+    }
+
     /// Makes the history of an end for N steps of a scheme; exact kernels come from the cache. A fit that is tried because it would be cheaper gives way to blocks if it misses
     /// the tolerance.
     ///

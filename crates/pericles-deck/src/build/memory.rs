@@ -1,0 +1,230 @@
+//! What a model would take in memory, estimated from a few sizes before anything of its size is allocated.
+//!
+//! | what | bytes |
+//! |---|---|
+//! | a point | [`POINT`] and, for each component, [`COMPONENT`] numbers: place, state, copies for checkpoints and files, what a scheme needs |
+//! | a bond of a grid | a bit |
+//! | a bond of a list | [`LISTED`] while families are found, of which three stay; [`KEPT`] more where the stiffness of every bond is kept |
+//! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
+//! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
+//! | a bond of a surface | [`GEODESIC`] |
+//! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer |
+//!
+//! The numbers are peaks, measured on bodies of 10⁵ to 10⁶ points; the estimate is within a factor of two of them.
+
+use pericles::operator::BondForm;
+use pericles::space::{GradedGrid, PointCloud, Shape};
+
+use super::Resources;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::reader::Path;
+use crate::scheme::Scheme;
+
+const NUMBER: f64 = 8.0;
+const POINT: f64 = 120.0;
+/// Of a scheme without stages, and of any other.
+const COMPONENT: [f64; 2] = [10.0, 20.0];
+const LISTED: f64 = 11.0;
+const KEPT: f64 = 12.0;
+const TRANSFORM: f64 = 24.0;
+const VERTEX: f64 = 200.0;
+const GEODESIC: f64 = 48.0;
+const LAG: f64 = 12.0;
+
+impl Deck {
+    /// Refuses a body on a grid that does not fit, from the number of its cells.
+    pub(super) fn check_grid(
+        &self,
+        grid: &GradedGrid,
+        points_per_cell: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let dimension = grid.grid.dimension();
+        let each = points_per_cell * self.bytes_of_point(dimension, self.neighbours(dimension));
+        let memory = resources.memory as f64;
+        let cells = match (&self.body.rectangular, &grid.grid.shape) {
+            (Some(spacing), Shape::Box { size, .. }) => {
+                let counts = size.iter().zip(spacing).map(|(side, dx)| side / dx);
+                counts.product()
+            }
+            _ => match grid.count(memory / each) {
+                Ok(cells) => cells,
+                // A grid that cannot be is refused where its points are made.
+                Err(_) => return Ok(()),
+            },
+        };
+        self.refuse_if_more(
+            &"body.spacing".into(),
+            points_per_cell * cells,
+            cells * each,
+            memory,
+        )
+    }
+
+    /// Refuses listed points whose bonds do not fit.
+    pub(super) fn check_listed(
+        &self,
+        cloud: &PointCloud,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let (points, dimension) = (cloud.len() as f64, cloud.dimension());
+        let neighbours = self.neighbours(dimension).min(points);
+        let needed = points * self.bytes_of_point(dimension, neighbours);
+        self.refuse_if_more(
+            &self.horizon_key().into(),
+            points,
+            needed,
+            resources.memory as f64,
+        )
+    }
+
+    /// Refuses a surface whose vertices alone do not fit.
+    pub(super) fn check_vertices(
+        &self,
+        vertices: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let needed = vertices * (self.bytes_of_state(3) + VERTEX);
+        self.refuse_if_more(
+            &"body.shape".into(),
+            vertices,
+            needed,
+            resources.memory as f64,
+        )
+    }
+
+    /// Refuses a surface whose bonds do not fit; `area` is that of all its points, m².
+    pub(super) fn check_surface(
+        &self,
+        points: usize,
+        area: f64,
+        horizon: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let points = points as f64;
+        let neighbours = (std::f64::consts::PI * horizon * horizon / area * points).min(points);
+        let needed = points * (self.bytes_of_state(3) + VERTEX + GEODESIC * neighbours);
+        self.refuse_if_more(
+            &"material.horizon".into(),
+            points,
+            needed,
+            resources.memory as f64,
+        )
+    }
+
+    /// Refuses an absorbing end whose history does not fit; `reach` sites for so many steps.
+    pub(super) fn check_history(
+        &self,
+        path: &Path,
+        reach: usize,
+        steps: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let needed = LAG * NUMBER * reach as f64 * steps;
+        if needed <= resources.memory as f64 {
+            return Ok(());
+        }
+        let fault = Fault::LongHistory {
+            steps,
+            needed,
+            memory: resources.memory,
+        };
+        Err(self.at_path(path, fault))
+    }
+
+    /// Refuses a piece of the exterior whose initial fields do not fit.
+    pub(super) fn check_exterior(
+        &self,
+        path: &Path,
+        sites: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), DeckError> {
+        let memory = resources.memory as f64;
+        self.refuse_if_more(path, sites, 2.0 * NUMBER * sites, memory)
+    }
+
+    fn refuse_if_more(
+        &self,
+        path: &Path,
+        points: f64,
+        needed: f64,
+        memory: f64,
+    ) -> Result<(), DeckError> {
+        if needed <= memory {
+            return Ok(());
+        }
+        let fault = Fault::TooLarge {
+            points,
+            needed,
+            memory: memory as u64,
+        };
+        Err(self.at_path(path, fault))
+    }
+
+    /// Points within the horizon of a point inside.
+    fn neighbours(&self, dimension: usize) -> f64 {
+        let material = &self.material.bonds;
+        let spacing = self.body.grid.spacing;
+        let ratio = material.volume_correction.reach(material.horizon, spacing) / spacing;
+        match dimension {
+            1 => 2.0 * ratio,
+            2 => std::f64::consts::PI * ratio.powi(2),
+            _ => 4.0 / 3.0 * std::f64::consts::PI * ratio.powi(3),
+        }
+    }
+
+    fn bytes_of_state(&self, dimension: usize) -> f64 {
+        let plain = matches!(self.time.scheme, Scheme::VelocityVerlet);
+        POINT + COMPONENT[usize::from(!plain)] * NUMBER * dimension as f64
+    }
+
+    fn bytes_of_point(&self, dimension: usize, neighbours: f64) -> f64 {
+        let transform = TRANSFORM * 2f64.powi(dimension as i32) * (dimension as f64).powi(2);
+        let listed = if self.keeps_every_bond() {
+            LISTED + KEPT
+        } else {
+            LISTED
+        };
+        let bonds = match self.material.form {
+            BondForm::List => listed * neighbours,
+            BondForm::Convolution | BondForm::Spectral => transform,
+            BondForm::Grid => neighbours / 8.0,
+            _ if self.body.periodic => transform,
+            _ if self.is_on_one_grid() => (neighbours / 8.0).max(transform),
+            _ => listed * neighbours,
+        };
+        self.bytes_of_state(dimension) + bonds
+    }
+
+    /// Whether a stencil can serve all points.
+    fn is_on_one_grid(&self) -> bool {
+        let (body, material) = (&self.body, &self.material);
+        body.listed.is_none()
+            && body.finer.is_empty()
+            && body.rectangular.is_none()
+            && material.inclusions.is_empty()
+            && material.parts.is_empty()
+            && material.surface_correction == Default::default()
+            && !self.output.wants_tensors()
+    }
+
+    /// Whether bonds of a list differ one by one.
+    fn keeps_every_bond(&self) -> bool {
+        !self.material.inclusions.is_empty()
+            || !self.material.parts.is_empty()
+            || self.material.surface_correction != Default::default()
+            || !self.body.finer.is_empty()
+            || self.body.listed.is_some()
+    }
+}
+
+/// A number of bytes in words.
+pub(crate) fn bytes(count: f64) -> String {
+    let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    match units.into_iter().find(|(size, _)| count >= *size) {
+        Some((size, unit)) => format!("{:.1} {unit}", count / size),
+        None => format!("{count:.0} bytes"),
+    }
+}

@@ -1,0 +1,45 @@
+//! Files that no reader may accept: those that claim more than they hold, and what fuzzing once found. Each is refused with a message that names it, and without taking memory for what
+//! it claims. A file that is found to be trouble is put into `tests/refused/`, with the ending of its format.
+
+use std::fs;
+use std::path::Path;
+
+use pericles_io::{Container, SURFACE_ENDINGS, parse_fields, parse_points, parse_surface};
+
+/// What reading a file says; none if it is accepted.
+fn refusal(path: &Path) -> Option<String> {
+    let content = fs::read(path).unwrap();
+    let ending = path.extension().unwrap().to_str().unwrap();
+    match ending {
+        "chk" => Container::parse(path, &content)
+            .err()
+            .map(|e| e.to_string()),
+        "txt" => (1..=3)
+            .map(|dimension| parse_points(path, &content, dimension).err())
+            .map(|error| error.map(|e| e.to_string()))
+            .next_back()?,
+        _ => {
+            assert!(SURFACE_ENDINGS.contains(&ending), "{}", path.display());
+            if ending.starts_with("vt") {
+                let _ = parse_fields(path, &content);
+            }
+            parse_surface(path, &content).err().map(|e| e.to_string())
+        }
+    }
+}
+
+#[test]
+fn kept_files_are_refused() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/refused");
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    paths.sort();
+    assert!(paths.len() >= 20);
+    for path in paths {
+        let message = refusal(&path).unwrap_or_else(|| panic!("{} is accepted", path.display()));
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert!(message.contains(name), "{message}");
+    }
+}

@@ -1,0 +1,163 @@
+//! What the fuzz targets share: an allocator that knows when it is too much, surfaces by the ending of their file, and changes to arrays.
+
+pub mod decks;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use pericles::{Archive, Values};
+
+/// Bytes that an input may make the program hold.
+const MOST: usize = 1 << 30;
+
+/// Counts what is held and ends the process where that is too much. libFuzzer's own limit looks at pages that were touched; a vector of zeros is none.
+struct Counting;
+
+static HELD: AtomicUsize = AtomicUsize::new(0);
+
+impl Counting {
+    fn take(bytes: usize) {
+        let held = HELD.fetch_add(bytes, Ordering::Relaxed).saturating_add(bytes);
+        if held > MOST {
+            // Nothing may be allocated here, so no message can be made but this one.
+            eprintln!("too much memory");
+            std::process::abort();
+        }
+    }
+
+    fn give(bytes: usize) {
+        HELD.fetch_sub(bytes, Ordering::Relaxed);
+    }
+}
+
+// SAFETY: every call is handed on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        Self::take(layout.size());
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        Self::take(layout.size());
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        Self::give(layout.size());
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Reads a surface; one that can be read is checked and numbered anew, as bodies are.
+pub fn surface(name: &str, content: &[u8]) {
+    let Ok(surface) = pericles_io::parse_surface(name, content) else {
+        return;
+    };
+    if let Ok((surface, _)) = surface.checked(Default::default()) {
+        surface.renumbered();
+    }
+}
+
+/// Bytes taken from the front of an input; zeros once it is used up.
+pub struct Choices<'a>(pub &'a [u8]);
+
+impl Choices<'_> {
+    /// The next byte.
+    pub fn byte(&mut self) -> u8 {
+        match self.0.split_first() {
+            Some((&first, rest)) => {
+                self.0 = rest;
+                first
+            }
+            None => 0,
+        }
+    }
+
+    /// The next eight bytes as a number.
+    pub fn word(&mut self) -> u64 {
+        u64::from_le_bytes(std::array::from_fn(|_| self.byte()))
+    }
+
+    /// Whether there are any left.
+    pub fn are_left(&self) -> bool {
+        !self.0.is_empty()
+    }
+
+    /// Changes arrays as the input says: some are left out, renamed by a neighbour's name, cut, lengthened, and have numbers replaced by any others.
+    pub fn spoil(&mut self, archive: Archive) -> Archive {
+        let mut arrays: Vec<(String, Values)> = archive.into_arrays().into_iter().collect();
+        while self.are_left() && !arrays.is_empty() {
+            let place = usize::from(self.byte()) % arrays.len();
+            match self.byte() % 8 {
+                0 => {
+                    arrays.remove(place);
+                }
+                1 => {
+                    let other = usize::from(self.byte()) % arrays.len();
+                    let name = arrays[other].0.clone();
+                    arrays[place].0 = name;
+                }
+                2 => {
+                    let length = usize::from(self.byte());
+                    match &mut arrays[place].1 {
+                        Values::F64(values) => values.resize(length, 0.0),
+                        Values::U64(values) => values.resize(length, 0),
+                        Values::U8(values) => values.resize(length, 0),
+                    }
+                }
+                3 => arrays[place].1 = Values::U64(vec![self.word()]),
+                _ => {
+                    let (at, value) = (usize::from(self.byte()), self.word());
+                    match &mut arrays[place].1 {
+                        Values::F64(values) if !values.is_empty() => {
+                            let at = at % values.len();
+                            values[at] = f64::from_bits(value);
+                        }
+                        Values::U64(values) if !values.is_empty() => {
+                            let at = at % values.len();
+                            values[at] = value;
+                        }
+                        Values::U8(values) if !values.is_empty() => {
+                            let at = at % values.len();
+                            values[at] = value as u8;
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+        let mut spoilt = Archive::default();
+        for (name, values) in arrays {
+            spoilt.put(name, values);
+        }
+        spoilt
+    }
+}
+
+/// A text as a basic string of TOML.
+pub fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04X}", u32::from(c)),
+            c => quoted.push(c),
+        }
+    }
+    quoted + "\""
+}
+
+/// Keeps everything on one thread, so that an input takes the same branches every time.
+pub fn one_thread() {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build_global()
+        .unwrap_or_else(|error| panic!("{error}"));
+}

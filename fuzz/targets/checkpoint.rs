@@ -1,0 +1,46 @@
+#![no_main]
+//! Checkpoints: the bytes as they are; and, as random bytes hardly ever have the right checksums, the same as a header and the arrays behind it, with checksums put in.
+
+use pericles_io::Container;
+
+/// Magic, version, length and CRC-32 of the header.
+const PREFIX: usize = 24;
+
+libfuzzer_sys::fuzz_target!(|content: &[u8]| {
+    for content in [content.to_vec(), sealed(content)] {
+        if let Ok(container) = Container::parse("a.chk", &content) {
+            let _ = container.into_archive();
+        }
+    }
+});
+
+/// The first line is the header, the rest the stored arrays; the checksums written in the header as `"crc32":0` are those of the arrays in their order.
+fn sealed(content: &[u8]) -> Vec<u8> {
+    let mut parts = content.splitn(2, |&byte| byte == b'\n');
+    let header = parts.next().unwrap_or_default();
+    let mut rest = parts.next().unwrap_or_default();
+    let body = rest;
+    let mut text = String::from_utf8_lossy(header).into_owned();
+    let lengths: Vec<usize> = text
+        .split("\"stored\":")
+        .skip(1)
+        .map(|part| {
+            let digits = part.split(|c: char| !c.is_ascii_digit()).next();
+            digits.and_then(|digits| digits.parse().ok()).unwrap_or(0)
+        })
+        .collect();
+    for length in lengths {
+        let (array, more) = rest.split_at(length.min(rest.len()));
+        rest = more;
+        let crc = crc32fast::hash(array);
+        text = text.replacen("\"crc32\":0", &format!("\"crc32\":{crc}"), 1);
+    }
+    let mut file = b"PERICLES\x01\0\0\0".to_vec();
+    file.extend((text.len() as u64).to_le_bytes());
+    let crc = crc32fast::hash(&[&file[8..], text.as_bytes()].concat());
+    file.extend(crc.to_le_bytes());
+    assert_eq!(file.len(), PREFIX);
+    file.extend(text.bytes());
+    file.extend(body);
+    file
+}
