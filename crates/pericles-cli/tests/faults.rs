@@ -70,7 +70,7 @@ fn a_file_that_may_not_grow_is_a_full_disk() {
     let place = with_plate();
     // The shell hands on that the signal is ignored, so that writing fails instead.
     let line = format!(
-        "trap '' XFSZ; ulimit -f 8; exec {} run plate.toml --out results",
+        "trap '' XFSZ; ulimit -f 52; exec {} run plate.toml --out results",
         env!("CARGO_BIN_EXE_pericles")
     );
     let output = Command::new("sh")
@@ -150,7 +150,7 @@ fn a_folder_that_is_removed_ends_the_run() {
 fn a_second_ctrl_c_ends_the_run_at_once() {
     let place = with_plate();
     // Steps that take much longer than it takes to send a signal twice.
-    let line = "run plate.toml --threads 1 --set body.spacing=\"0.02 mm\" --set time.end=1e-4 --set time.dt=1e-9 --set output.picture=[] --set checkpoint.every=1000000 \
+    let line = "run plate.toml --threads 1 --set body.spacing=2e-5 --set time.end=1e-4 --set time.dt=1e-9 --set output.picture=[] --set checkpoint.every=1000000 \
                 --set output.fields=\"never\" --set output.cracks=\"never\" --set output.history.every=1 --out twice";
     let run = Background::start(place.path(), line, "twice");
     run.signal("INT");

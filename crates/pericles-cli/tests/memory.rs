@@ -19,7 +19,7 @@ fn a_run_that_does_not_fit_is_status_8_and_leaves_nothing() {
     }
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
     // Without a limit it is what the machine has.
-    let huge = "run plate.toml --set body.spacing=\"0.5 um\"";
+    let huge = "run plate.toml --set body.spacing=5e-7";
     let (status, message) = fail(place.path(), huge);
     assert_eq!(status, 8, "{message}");
     let many = "run plate.toml --set body.spacing=1e-12";

@@ -26,9 +26,9 @@ const NUMBER: f64 = 8.0;
 const POINT: f64 = 120.0;
 /// Of a scheme without stages, and of any other.
 const COMPONENT: [f64; 2] = [10.0, 20.0];
-const LISTED: f64 = 11.0;
-const KEPT: f64 = 12.0;
-const TRANSFORM: f64 = 24.0;
+const LISTED: f64 = 16.0;
+const KEPT: f64 = 4.0;
+const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 200.0;
 const GEODESIC: f64 = 48.0;
 const LAG: f64 = 12.0;
