@@ -103,6 +103,9 @@ pub(crate) struct Audit {
     pub(crate) omega_dt: Option<f64>,
     /// Points whose force was evaluated since the start of the run: the whole body counts as many as it has points.
     pub(crate) evaluated_points: u64,
+    /// Error of the last force for being computed in floats, over the largest force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) force_rounding: Option<f64>,
     /// None for schemes with one time step.
     pub(crate) refinement: Option<RefinementAudit>,
     /// What is odd about the results.
@@ -215,6 +218,7 @@ impl Audit {
                 .highest_frequency
                 .map(|omega| omega * report.model.dt),
             evaluated_points: system.evaluated_points(),
+            force_rounding: system.operator().rounding(&simulation.state().u),
             refinement: simulation
                 .integrator()
                 .refinement()

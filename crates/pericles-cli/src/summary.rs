@@ -44,6 +44,12 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
     ))?;
     if let Some(audit) = &report.audit {
         energies(audit)?;
+        if let Some(error) = audit.force_rounding {
+            console::print(format_args!(
+                "forces in single precision: off by {} of the largest at the end",
+                significant(error, 2)
+            ))?;
+        }
         for warning in &audit.warnings {
             console::note(format_args!("warning: {warning}"));
         }

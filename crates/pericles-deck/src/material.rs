@@ -117,6 +117,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         &[
             ("fastest", BondForm::Fastest),
             ("grid", BondForm::Grid),
+            ("grid-f32", BondForm::FloatGrid),
             ("list", BondForm::List),
             ("convolution", BondForm::Convolution),
             ("spectral", BondForm::Spectral),

@@ -190,7 +190,7 @@ impl Deck {
         let bonds = match self.material.form {
             BondForm::List => listed * neighbours,
             BondForm::Convolution | BondForm::Spectral => transform,
-            BondForm::Grid => neighbours / 8.0,
+            BondForm::Grid | BondForm::FloatGrid => neighbours / 8.0,
             _ if self.body.periodic => transform,
             _ if self.is_on_one_grid() => (neighbours / 8.0).max(transform),
             _ => listed * neighbours,

@@ -399,6 +399,12 @@ impl Deck {
                 BondForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
                     BondForm::List
                 }
+                BondForm::FloatGrid if !self.time.scheme.bears_rounding() => {
+                    return Err(self.at_material(PericlesError::FormNotUsable {
+                        form: BondForm::FloatGrid.name(),
+                        reason: "this scheme needs forces in double precision; use \"grid\", or a Verlet or Runge–Kutta scheme with one step",
+                    }));
+                }
                 form => form,
             };
             composite

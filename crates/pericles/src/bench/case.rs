@@ -36,9 +36,11 @@ pub struct Case {
 }
 
 /// Cases that are timed if none is asked for.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 12] = [
     "block-46",
     "block-46-avx2",
+    "block-46-f32",
+    "block-46-f32-avx2",
     "block-46-list",
     "block-46-list-avx2",
     "block-46-list-moved",
@@ -74,7 +76,7 @@ impl Case {
         }
     }
 
-    /// The case of this name: `bar-N`, `plate-N` or `block-N` with N cells along every axis, by the grid operator; then any of `-list` (by the list operator), `-scalar` (by
+    /// The case of this name: `bar-N`, `plate-N` or `block-N` with N cells along every axis, by the grid operator; then any of `-list` (by the list operator), `-f32` (by the grid operator in floats), `-scalar` (by
     /// the plain loop), `-avx2` (without AVX-512) and `-moved` (points off the lattice, hence a list).
     pub fn named(name: &str) -> Option<Self> {
         let mut words = name.split('-');
@@ -92,6 +94,7 @@ impl Case {
         for word in words {
             match word {
                 "list" => case.form = BondForm::List,
+                "f32" => case.form = BondForm::FloatGrid,
                 "scalar" => (case.form, case.scalar) = (BondForm::List, true),
                 "avx2" => case.instruction_set = InstructionSet::Avx2,
                 "moved" => (case.form, case.moved) = (BondForm::List, true),

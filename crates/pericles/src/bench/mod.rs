@@ -3,7 +3,7 @@
 //! A case is a small problem with bonds that could break but do not. Its time is the median of several rounds of velocity Verlet, per directed bond
 //! (an entry of a family: each bond counts twice) and thread. It is set against
 //!
-//! * the arithmetic roofline: 28 operations per eight bonds at the measured rate of independent multiply–adds of the vector width, with
+//! * the arithmetic roofline: 28 operations per eight bonds (sixteen in floats) at the measured rate of independent multiply–adds of the vector width, with
 //!   the lanes that row ends and missing bonds leave idle;
 //! * the memory traffic that a step cannot do without, as GB/s.
 //!
@@ -24,7 +24,7 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::family::LANES;
-use crate::operator::InstructionSet;
+use crate::operator::{BondForm, InstructionSet};
 use crate::time::{Integrator, VelocityVerlet};
 
 pub use case::Case;
@@ -209,7 +209,11 @@ impl<'a> Running<'a> {
         let vectors = points * case.cells.len() * size_of::<f64>();
         let ns_per_bond = self.times[self.times.len() / 2];
         let operations = OPERATIONS * idle_lanes(case, directed_bonds);
-        let roofline_ns = operations * self.fma * 1e9 / LANES as f64;
+        let lanes = match case.form {
+            BondForm::FloatGrid => 2 * LANES,
+            _ => LANES,
+        };
+        let roofline_ns = operations * self.fma * 1e9 / lanes as f64;
         let traffic = (6 * vectors) as f64 + directed_bonds as f64 / 8.0;
         let cloud_bytes = vectors + points * (size_of::<f64>() + size_of::<u32>());
         let bytes = prepared.bytes + 3 * vectors + cloud_bytes;

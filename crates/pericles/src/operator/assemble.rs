@@ -22,6 +22,8 @@ pub enum BondForm {
     Fastest,
     /// One stencil for all nodes of a lattice ([`GridForce`]).
     Grid,
+    /// The same with forces and breaking computed in floats ([`GridForce::in_floats`]).
+    FloatGrid,
     /// A list of every point's bonds ([`BondForce`]).
     List,
     /// Transforms of a linear body's kernel ([`ConvolutionForce`], or [`GaussForce`] on Gauss nodes).
@@ -36,6 +38,7 @@ impl BondForm {
         match self {
             Self::Fastest => "fastest",
             Self::Grid => "grid",
+            Self::FloatGrid => "grid-f32",
             Self::List => "list",
             Self::Convolution => "convolution",
             Self::Spectral => "spectral",
@@ -260,7 +263,7 @@ impl BondBody<'_> {
                     form: BondForm::List,
                 })
             }
-            BondForm::Grid | BondForm::Convolution | BondForm::Spectral => {
+            BondForm::Grid | BondForm::FloatGrid | BondForm::Convolution | BondForm::Spectral => {
                 refuse(form, "this law is kept as a list: \"list\" or \"fastest\"")
             }
         }
@@ -275,7 +278,7 @@ impl BondBody<'_> {
             BondForm::Convolution | BondForm::Spectral => {
                 (self.transformed::<D>(form)?, Vec::new())
             }
-            BondForm::Grid | BondForm::List if self.cloud.is_periodic() => {
+            BondForm::Grid | BondForm::FloatGrid | BondForm::List if self.cloud.is_periodic() => {
                 return Err(PericlesError::FormNotUsable {
                     form: form.name(),
                     reason: "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",
@@ -287,7 +290,10 @@ impl BondBody<'_> {
             }
             _ if !self.stiffness.is_empty() => return Err(PericlesError::OneStencil),
             _ => {
-                let grid = self.grid::<L, D>()?;
+                let mut grid = self.grid::<L, D>()?;
+                if form == BondForm::FloatGrid {
+                    grid = grid.in_floats();
+                }
                 let cuts = grid.cuts().to_vec();
                 (Box::new(grid), cuts)
             }

@@ -4,8 +4,8 @@
 //! set the surrounding function is compiled for; with `f64` the same text is the naive twin used by tests. No
 //! operation is contracted or reassociated, so all instruction sets give the same bits.
 //!
-//! Kernels whose speed must not depend on how well a compiler finds vectors are written on [`Lanes`]: eight numbers held in whole
-//! registers of each set. Only [`Lanes::mul_add`] may round differently from set to set.
+//! Kernels whose speed must not depend on how well a compiler finds vectors are written on [`Vector`]: numbers held in whole registers of each set, eight
+//! doubles ([`Lanes`]) or sixteen floats. Only [`Vector::mul_add`] may round differently from set to set.
 
 use std::ops::{Add, Div, Index, IndexMut, Mul, Neg, Sub};
 
@@ -57,13 +57,36 @@ impl Real for f64 {
     }
 }
 
-/// Eight numbers side by side, in whole registers of an instruction set.
-pub trait Lanes: Real {
+/// Numbers side by side, in whole registers of an instruction set.
+pub trait Vector: Real {
+    /// One bit per lane.
+    type Mask: Copy;
+    /// Relative rounding error of one number.
+    const EPSILON: f64;
+    /// self · factor + addend, rounded once where the set has such an instruction.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+    /// The larger of each pair; `other` if one of them is no number.
+    fn max(self, other: Self) -> Self;
+    /// The smaller of each pair; `other` if one of them is no number.
+    fn min(self, other: Self) -> Self;
+    /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
+    fn masked(self, mask: Self::Mask) -> Self;
+    /// One bit per lane: self > other. NaN compares false.
+    fn greater(self, other: Self) -> Self::Mask;
+}
+
+/// Eight doubles side by side.
+pub trait Lanes: Vector<Mask = u8> {
     /// The eight numbers from `numbers[at]` on.
     ///
     /// # Panics
     /// If the slice ends before.
     fn load(numbers: &[f64], at: usize) -> Self;
+    /// The same of floats.
+    ///
+    /// # Panics
+    /// If the slice ends before.
+    fn load_floats(numbers: &[f32], at: usize) -> Self;
     /// The numbers of eight rows, number by number.
     ///
     /// # Safety
@@ -73,16 +96,6 @@ pub trait Lanes: Real {
     fn inverse_root(self) -> Self;
     /// The numbers, in order.
     fn to_array(self) -> [f64; LANES];
-    /// self · factor + addend, rounded once where the set has such an instruction.
-    fn mul_add(self, factor: Self, addend: Self) -> Self;
-    /// The larger of each pair; `other` if one of them is no number.
-    fn max(self, other: Self) -> Self;
-    /// The smaller of each pair; `other` if one of them is no number.
-    fn min(self, other: Self) -> Self;
-    /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
-    fn masked(self, mask: u8) -> Self;
-    /// One bit per lane: self > other. NaN compares false.
-    fn greater(self, other: Self) -> u8;
 }
 
 /// Eight numbers.
@@ -160,24 +173,9 @@ impl Real for F64x8 {
     }
 }
 
-impl Lanes for F64x8 {
-    #[inline(always)]
-    fn load(numbers: &[f64], at: usize) -> Self {
-        let numbers = &numbers[at..at + LANES];
-        Self::from_fn(|k| numbers[k])
-    }
-    #[inline(always)]
-    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
-        vector(|c| Self::from_fn(|k| rows[indices[k]][c]))
-    }
-    #[inline(always)]
-    fn inverse_root(self) -> Self {
-        Self::splat(1.0) / self.sqrt()
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f64; LANES] {
-        self.0
-    }
+impl Vector for F64x8 {
+    type Mask = u8;
+    const EPSILON: f64 = f64::EPSILON;
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
@@ -209,6 +207,31 @@ impl Lanes for F64x8 {
     #[inline(always)]
     fn greater(self, other: Self) -> u8 {
         F64x8::greater(self, other)
+    }
+}
+
+impl Lanes for F64x8 {
+    #[inline(always)]
+    fn load(numbers: &[f64], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        Self::from_fn(|k| numbers[k])
+    }
+    #[inline(always)]
+    fn load_floats(numbers: &[f32], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        Self::from_fn(|k| f64::from(numbers[k]))
+    }
+    #[inline(always)]
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
+        vector(|c| Self::from_fn(|k| rows[indices[k]][c]))
+    }
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        Self::splat(1.0) / self.sqrt()
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        self.0
     }
 }
 
@@ -289,7 +312,7 @@ impl InstructionSet {
 
 /// Compiles one inlined function for every instruction set and chooses among the copies at run time.
 ///
-/// Written `= body on lanes`, the function's first generic argument is the set's own type of eight numbers (see [`Lanes`]).
+/// Written `= body on lanes`, the function's first generic argument is the set's own type of eight doubles (see [`Lanes`]); `on floats`, of sixteen floats.
 macro_rules! for_each_instruction_set {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident) => {
         for_each_instruction_set! {
@@ -303,6 +326,15 @@ macro_rules! for_each_instruction_set {
             [$body::<$crate::operator::lanes::F64x8, $($argument),*>]
             [$body::<$crate::operator::lanes_x86::Avx2x8, $($argument),*>]
             [$body::<$crate::operator::lanes_x86::Avx512x8, $($argument),*>]
+            $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)
+        }
+    };
+    ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident on floats) => {
+        for_each_instruction_set! {
+            @compile
+            [$body::<$crate::operator::floats::F32x16, $($argument),*>]
+            [$body::<$crate::operator::floats_x86::Avx2x16, $($argument),*>]
+            [$body::<$crate::operator::floats_x86::Avx512x16, $($argument),*>]
             $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)
         }
     };

@@ -9,7 +9,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::lanes::{Lanes, Real, Row};
+use super::lanes::{Lanes, Real, Row, Vector};
 use crate::family::LANES;
 
 /// Eight numbers in one 512-bit register.
@@ -144,12 +144,48 @@ fn refined<T: Lanes>(x: T, seed: T) -> T {
     (seed * e).mul_add(series, seed)
 }
 
+impl Vector for Avx512x8 {
+    type Mask = u8;
+    const EPSILON: f64 = f64::EPSILON;
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: used in functions compiled for AVX-512 only; so below.
+        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see mul_add.
+        Self(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see mul_add.
+        Self(unsafe { _mm512_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn masked(self, mask: u8) -> Self {
+        // SAFETY: see mul_add.
+        Self(unsafe { _mm512_maskz_mov_pd(mask, self.0) })
+    }
+    #[inline(always)]
+    fn greater(self, other: Self) -> u8 {
+        // SAFETY: see mul_add.
+        unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, other.0) }
+    }
+}
+
 impl Lanes for Avx512x8 {
     #[inline(always)]
     fn load(numbers: &[f64], at: usize) -> Self {
         let numbers = &numbers[at..at + LANES];
         // SAFETY: the slice holds eight numbers.
         Self(unsafe { _mm512_loadu_pd(numbers.as_ptr()) })
+    }
+    #[inline(always)]
+    fn load_floats(numbers: &[f32], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        // SAFETY: the slice holds eight numbers.
+        Self(unsafe { _mm512_cvtps_pd(_mm256_loadu_ps(numbers.as_ptr())) })
     }
     /// Eight rows of four are loaded in pairs and turned by eleven exchanges: fewer loads than three gathers, and they stay in line.
     #[inline(always)]
@@ -185,31 +221,6 @@ impl Lanes for Avx512x8 {
         unsafe { _mm512_storeu_pd(numbers.as_mut_ptr(), self.0) };
         numbers
     }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: used in functions compiled for AVX-512 only; so below.
-        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: see mul_add.
-        Self(unsafe { _mm512_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: see mul_add.
-        Self(unsafe { _mm512_min_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn masked(self, mask: u8) -> Self {
-        // SAFETY: see mul_add.
-        Self(unsafe { _mm512_maskz_mov_pd(mask, self.0) })
-    }
-    #[inline(always)]
-    fn greater(self, other: Self) -> u8 {
-        // SAFETY: see mul_add.
-        unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, other.0) }
-    }
 }
 
 /// Four words, all bits set where the index has a bit.
@@ -237,51 +248,9 @@ fn kept(half: __m256d, nibble: u8) -> __m256d {
     unsafe { _mm256_and_pd(half, _mm256_loadu_pd(words.as_ptr().cast())) }
 }
 
-impl Lanes for Avx2x8 {
-    #[inline(always)]
-    fn load(numbers: &[f64], at: usize) -> Self {
-        let numbers = &numbers[at..at + LANES];
-        // SAFETY: the slice holds eight numbers.
-        unsafe {
-            Self(
-                _mm256_loadu_pd(numbers.as_ptr()),
-                _mm256_loadu_pd(numbers.as_ptr().add(LANES / 2)),
-            )
-        }
-    }
-    #[inline(always)]
-    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
-        // SAFETY: the indices are in range, as the caller has promised.
-        unsafe {
-            let low = turned(rows, indices[0], indices[1], indices[2], indices[3]);
-            let high = turned(rows, indices[4], indices[5], indices[6], indices[7]);
-            [
-                Self(low[0], high[0]),
-                Self(low[1], high[1]),
-                Self(low[2], high[2]),
-                Self(low[3], high[3]),
-            ]
-        }
-    }
-    #[inline(always)]
-    fn inverse_root(self) -> Self {
-        // SAFETY: used in functions compiled for AVX2 only.
-        let seed = unsafe {
-            let half = |x: __m256d| _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x)));
-            Self(half(self.0), half(self.1))
-        };
-        refined(self, seed)
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f64; LANES] {
-        let mut numbers = [0.0; LANES];
-        // SAFETY: the array holds eight numbers.
-        unsafe {
-            _mm256_storeu_pd(numbers.as_mut_ptr(), self.0);
-            _mm256_storeu_pd(numbers.as_mut_ptr().add(LANES / 2), self.1);
-        }
-        numbers
-    }
+impl Vector for Avx2x8 {
+    type Mask = u8;
+    const EPSILON: f64 = f64::EPSILON;
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         // SAFETY: used in functions compiled for AVX2 with FMA only; so below.
@@ -324,5 +293,63 @@ impl Lanes for Avx2x8 {
             let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(self.1, other.1));
             (low | high << 4) as u8
         }
+    }
+}
+
+impl Lanes for Avx2x8 {
+    #[inline(always)]
+    fn load(numbers: &[f64], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        // SAFETY: the slice holds eight numbers.
+        unsafe {
+            Self(
+                _mm256_loadu_pd(numbers.as_ptr()),
+                _mm256_loadu_pd(numbers.as_ptr().add(LANES / 2)),
+            )
+        }
+    }
+    #[inline(always)]
+    fn load_floats(numbers: &[f32], at: usize) -> Self {
+        let numbers = &numbers[at..at + LANES];
+        // SAFETY: the slice holds eight numbers.
+        unsafe {
+            Self(
+                _mm256_cvtps_pd(_mm_loadu_ps(numbers.as_ptr())),
+                _mm256_cvtps_pd(_mm_loadu_ps(numbers.as_ptr().add(LANES / 2))),
+            )
+        }
+    }
+    #[inline(always)]
+    unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
+        // SAFETY: the indices are in range, as the caller has promised.
+        unsafe {
+            let low = turned(rows, indices[0], indices[1], indices[2], indices[3]);
+            let high = turned(rows, indices[4], indices[5], indices[6], indices[7]);
+            [
+                Self(low[0], high[0]),
+                Self(low[1], high[1]),
+                Self(low[2], high[2]),
+                Self(low[3], high[3]),
+            ]
+        }
+    }
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        // SAFETY: used in functions compiled for AVX2 only.
+        let seed = unsafe {
+            let half = |x: __m256d| _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x)));
+            Self(half(self.0), half(self.1))
+        };
+        refined(self, seed)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut numbers = [0.0; LANES];
+        // SAFETY: the array holds eight numbers.
+        unsafe {
+            _mm256_storeu_pd(numbers.as_mut_ptr(), self.0);
+            _mm256_storeu_pd(numbers.as_mut_ptr().add(LANES / 2), self.1);
+        }
+        numbers
     }
 }

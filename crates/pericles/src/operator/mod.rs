@@ -7,7 +7,7 @@
 //! |---|---|---|---|
 //! | [`BondForce`] | any | listed, 3 bytes each | 3 |
 //! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | 1.1 (p = 2), 1.2 (p = 3): see `benches/surface.rs` |
-//! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline) |
+//! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline); in floats half of that |
 //!
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
 
@@ -15,6 +15,9 @@ mod assemble;
 mod composite;
 mod damage;
 mod fast_law;
+mod floats;
+#[cfg(target_arch = "x86_64")]
+mod floats_x86;
 pub mod function;
 mod graded;
 mod grid;
@@ -179,6 +182,12 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// Calls `visit` with the two ends of every bond that is left, once or twice for each. Operators whose bonds never break need not know them and visit none.
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         let _ = visit;
+    }
+
+    /// The largest error of the force at `u` for being computed in floats, over the largest force; none of operators that compute in doubles.
+    fn rounding(&self, u: &[f64]) -> Option<f64> {
+        let _ = u;
+        None
     }
 
     /// Family entries that the loops run over: each bond counts twice.

@@ -1,7 +1,8 @@
 //! Breaking of a chunk's bonds, decided where the force sweep has seen a large strain.
 
-use super::kernels::{Grid, xi};
+use super::kernels::Grid;
 use super::layout::Chunk;
+use super::numbers::GridNumber;
 use super::stencil::Offset;
 use crate::family::LANES;
 use crate::operator::damage::{BreakEvent, Tally};
@@ -24,44 +25,55 @@ pub(super) struct GridBreaking<'a, const D: usize> {
     pub note_events: bool,
 }
 
+/// A chunk whose bonds are looked at one by one.
+pub(super) struct ChunkBonds<'a> {
+    pub chunk: &'a Chunk,
+    /// Its wanted lanes.
+    pub lanes: u8,
+    /// Its bonds left, a byte per offset.
+    pub intact: &'a mut [u8],
+    /// Number of the first byte, of all there are.
+    pub entry: usize,
+}
+
 /// Breaks the over-stretched bonds of a chunk's wanted lanes and books their energy; says whether there were any.
 ///
-/// Decided with [`crate::material::PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
+/// Decided with [`crate::material::PairForce::stretch_measure`] in doubles, whose rounding is the same at both ends and for all instruction sets. (The measure and
+/// its threshold grow alike with the unit of length.)
 #[inline(always)]
-pub(super) fn break_chunk<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
+pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
+    grid: &Grid<'_, N, D>,
     rule: &GridBreaking<'_, D>,
-    chunk: &Chunk,
-    lanes: u8,
-    intact: &mut [u8],
-    first_entry: usize,
+    bonds: ChunkBonds<'_>,
     tally: &mut Tally,
 ) -> bool {
-    let place = grid.place(chunk);
-    let here = grid.here::<T>(place);
+    let place = grid.place(bonds.chunk);
+    let mut here = [T::splat(0.0); D];
+    for c in 0..D {
+        here[c] = N::load::<T>(grid.u[c], place);
+    }
     let threshold = T::splat(rule.threshold);
     let mut any = false;
-    for (k, offset) in grid.offsets.iter().enumerate() {
-        let candidates = intact[k] & lanes;
+    for k in 0..grid.offsets.len() {
+        let offset = &grid.offsets[k];
+        let candidates = bonds.intact[k] & bonds.lanes;
         if candidates == 0 {
             continue;
         }
-        let eta = grid.eta(place, offset.shift, &here);
-        let (measure, square) = L::stretch_measure(xi::<T, D>(offset), eta);
+        let there = place.wrapping_add_signed(offset.shift);
+        let (mut xi, mut eta) = (here, here);
+        for c in 0..D {
+            xi[c] = T::splat(offset.xi[c].into());
+            eta[c] = N::load::<T>(grid.u[c], there) - here[c];
+        }
+        let (measure, square) = L::stretch_measure(xi, eta);
         let mut over = measure.greater(threshold * square) & candidates;
         if over != 0 {
-            over &= (rule.breakable)(chunk, k);
-            intact[k] &= !over;
+            over &= (rule.breakable)(bonds.chunk, k);
+            bonds.intact[k] &= !over;
             any |= over != 0;
-            book::<L, D>(
-                grid,
-                rule,
-                chunk,
-                offset,
-                over,
-                (first_entry + k) * LANES,
-                tally,
-            );
+            let entry = (bonds.entry + k) * LANES;
+            book::<L, N, D>(grid, rule, bonds.chunk, offset, over, entry, tally);
         }
     }
     any
@@ -70,31 +82,31 @@ pub(super) fn break_chunk<T: Lanes, L: FastLaw, const D: usize>(
 /// Books the energy of bonds of one offset that have just broken. Each end books half.
 #[cold]
 #[inline(never)]
-fn book<L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
+fn book<L: FastLaw, N: GridNumber, const D: usize>(
+    grid: &Grid<'_, N, D>,
     rule: &GridBreaking<'_, D>,
     chunk: &Chunk,
-    offset: &Offset<D>,
+    offset: &Offset<N, D>,
     over: u8,
     entry: usize,
     tally: &mut Tally,
 ) {
+    let xi = offset.xi.map(|component| component.into() * grid.unit);
     for k in (0..LANES).filter(|k| over >> k & 1 == 1) {
         let here = grid.place(chunk) + k;
         let there = here.wrapping_add_signed(offset.shift);
-        let difference = |field: &[&[f64]; D], here: usize, there: usize| -> [f64; D] {
-            std::array::from_fn(|c| field[c][there] - field[c][here])
-        };
-        let eta = difference(&grid.u, here, there);
-        let mut energy = L::energy(offset.xi, eta);
+        let difference = |field: &[N]| -> f64 { field[there].into() - field[here].into() };
+        let eta: [f64; D] = std::array::from_fn(|c| difference(grid.u[c]) * grid.unit);
+        let mut energy = L::energy(xi, eta);
         if let Some((velocity, dt)) = &rule.step {
-            let force = L::force(offset.xi, eta);
+            let force = L::force(xi, eta);
             let [i, j] = [here, there].map(|place| (rule.point_at)(place - grid.margin));
-            let rate = difference(velocity, i, j);
-            let power: f64 = (0..D).map(|c| force[c] * rate[c]).sum();
+            let power: f64 = (0..D)
+                .map(|c| force[c] * (velocity[c][j] - velocity[c][i]))
+                .sum();
             energy -= 0.5 * dt * power;
         }
-        let dissipated = 0.5 * rule.volume * offset.stiffness * energy;
+        let dissipated = 0.5 * rule.volume * offset.stiffness.into() * energy;
         tally.dissipated += dissipated;
         tally.broken += 1;
         if rule.note_events {

@@ -1,12 +1,13 @@
 //! The loops of the grid operator, one text for every law, dimension and instruction set.
 //!
-//! Eight nodes of a row are computed side by side: all offsets of the stencil in turn, the forces staying in registers. A byte per chunk
+//! Eight nodes of a row are computed side by side, in floats sixteen of two rows: all offsets of the stencil in turn, the forces staying in registers. A byte per chunk
 //! and offset says which of the eight bonds are there; it stands for holes, boundaries, pre-cracks and damage alike. Bonds that are not there
 //! are computed from whatever lies at their place and masked out.
 
 use super::block::{ChunkBlock, scatter};
-use super::breaking::{GridBreaking, break_chunk};
+use super::breaking::{ChunkBonds, GridBreaking, break_chunk};
 use super::layout::Chunk;
+use super::numbers::{ChunkLanes, GridNumber};
 use super::stencil::Offset;
 use crate::family::LANES;
 use crate::operator::damage::Tally;
@@ -14,32 +15,51 @@ use crate::operator::fast_law::FastLaw;
 use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set, vector};
 
 /// Read-only arrays as the loops see them.
-pub(super) struct Grid<'a, const D: usize> {
-    pub offsets: &'a [Offset<D>],
+pub(super) struct Grid<'a, N, const D: usize> {
+    pub offsets: &'a [Offset<N, D>],
     /// Displacement (or another vector) in padded rows.
-    pub u: [&'a [f64]; D],
+    pub u: [&'a [N]; D],
     /// Unused places before the first row.
     pub margin: usize,
+    /// The length that is one in these numbers, m.
+    pub unit: f64,
 }
 
-impl<const D: usize> Grid<'_, D> {
+impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
     #[inline(always)]
     pub(super) fn place(&self, chunk: &Chunk) -> usize {
         self.margin + chunk.place as usize * LANES
     }
 
+    /// Where the chunks lie that are taken together; at least one.
     #[inline(always)]
-    pub(super) fn here<T: Lanes>(&self, place: usize) -> [T; D] {
-        vector(|c| T::load(self.u[c], place))
+    fn places<T: ChunkLanes<Number = N>>(&self, chunks: &[Chunk]) -> T::Places {
+        T::places(
+            self.place(&chunks[0]),
+            self.place(&chunks[chunks.len() - 1]),
+        )
     }
 
-    /// η of eight bonds.
     #[inline(always)]
-    pub(super) fn eta<T: Lanes>(&self, place: usize, shift: isize, here: &[T; D]) -> [T; D] {
-        let there = place.wrapping_add_signed(shift);
+    pub(super) fn here<T: ChunkLanes<Number = N>>(&self, places: T::Places) -> [T; D] {
+        let mut here = [T::splat(0.0); D];
+        for c in 0..D {
+            here[c] = T::at(self.u[c], places, 0);
+        }
+        here
+    }
+
+    /// η of the bonds of an offset.
+    #[inline(always)]
+    pub(super) fn eta<T: ChunkLanes<Number = N>>(
+        &self,
+        places: T::Places,
+        shift: isize,
+        here: &[T; D],
+    ) -> [T; D] {
         let mut eta = *here;
         for c in 0..D {
-            eta[c] = T::load(self.u[c], there) - here[c];
+            eta[c] = T::at(self.u[c], places, shift) - here[c];
         }
         eta
     }
@@ -47,11 +67,11 @@ impl<const D: usize> Grid<'_, D> {
 
 /// ξ of an offset in all lanes.
 #[inline(always)]
-pub(super) fn xi<T: Lanes, const D: usize>(offset: &Offset<D>) -> [T; D] {
-    vector(|c| T::splat(offset.xi[c]))
+pub(super) fn xi<T: ChunkLanes, const D: usize>(offset: &Offset<T::Number, D>) -> [T; D] {
+    vector(|c| T::broadcast(offset.xi[c]))
 }
 
-/// Forces of a chunk in the fast form, and the range of the strains t they were computed from.
+/// Forces of chunks in the fast form, and the range of the strains t they were computed from.
 struct Fast<T, const D: usize> {
     sum: [T; D],
     largest: T,
@@ -59,26 +79,26 @@ struct Fast<T, const D: usize> {
 }
 
 #[inline(always)]
-fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
-    place: usize,
+fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
+    grid: &Grid<'_, T::Number, D>,
+    places: T::Places,
     intact: &[u8],
 ) -> Fast<T, D> {
-    let here = grid.here::<T>(place);
+    let here = grid.here::<T>(places);
     let zero = T::splat(0.0);
     let mut fast = Fast {
         sum: [zero; D],
         largest: zero,
         smallest: zero,
     };
-    let intact = &intact[..grid.offsets.len()];
+    let bonds = T::bonds(intact, grid.offsets.len());
     // No adapter here: one that is not inlined would pass all registers through memory.
     for k in 0..grid.offsets.len() {
-        let (offset, mask) = (&grid.offsets[k], intact[k]);
-        if mask == 0 {
+        let (offset, mask) = (&grid.offsets[k], T::present(bonds, k));
+        if T::none(mask) {
             continue;
         }
-        let eta = grid.eta(place, offset.shift, &here);
+        let eta = grid.eta(places, offset.shift, &here);
         let bond = offset.lanes::<T>();
         let t = L::strain(&bond, eta).masked(mask);
         fast.largest = t.max(fast.largest);
@@ -88,70 +108,99 @@ fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
     fast
 }
 
-/// Forces of a chunk by the law itself, however large the strains.
+/// Forces of chunks by the law itself, however large the strains.
 #[inline(always)]
-fn exact_force<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
-    place: usize,
+fn exact_force<T: ChunkLanes, L: FastLaw, const D: usize>(
+    grid: &Grid<'_, T::Number, D>,
+    places: T::Places,
     intact: &[u8],
 ) -> [T; D] {
-    let here = grid.here::<T>(place);
+    let here = grid.here::<T>(places);
     let mut sum = [T::splat(0.0); D];
-    let intact = &intact[..grid.offsets.len()];
+    let bonds = T::bonds(intact, grid.offsets.len());
     for k in 0..grid.offsets.len() {
-        let (offset, mask) = (&grid.offsets[k], intact[k]);
-        let eta = grid.eta(place, offset.shift, &here);
-        let force = L::force(xi(offset), eta);
+        let (offset, mask) = (&grid.offsets[k], T::present(bonds, k));
+        let eta = grid.eta(places, offset.shift, &here);
+        let force = L::force(xi::<T, D>(offset), eta);
         for c in 0..D {
-            sum[c] = sum[c] + (T::splat(offset.stiffness) * force[c]).masked(mask);
+            sum[c] = sum[c] + (T::broadcast(offset.stiffness) * force[c]).masked(mask);
         }
     }
     sum
 }
 
-/// Forces of a chunk. A lane takes the exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's force
+/// Forces of chunks. A lane takes the exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's force
 /// does not depend on which other points are computed beside it.
 #[inline(always)]
-fn chunk_force<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
-    place: usize,
+fn chunk_force<T: ChunkLanes, L: FastLaw, const D: usize>(
+    grid: &Grid<'_, T::Number, D>,
+    places: T::Places,
     intact: &[u8],
     fast: Fast<T, D>,
 ) -> [T; D] {
     let reach = T::splat(L::REACH);
-    let beyond = fast.largest.greater(reach) | (-fast.smallest).greater(reach);
-    if beyond == 0 {
+    let beyond = T::either(fast.largest.greater(reach), (-fast.smallest).greater(reach));
+    if T::none(beyond) {
         return fast.sum;
     }
-    let exact = exact_force::<T, L, D>(grid, place, intact);
+    let exact = exact_force::<T, L, D>(grid, places, intact);
     let mut sum = fast.sum;
     for c in 0..D {
         // One of the two is zero in every lane.
-        sum[c] = exact[c].masked(beyond) + fast.sum[c].masked(!beyond);
+        sum[c] = exact[c].masked(beyond) + fast.sum[c].masked(T::others(beyond));
     }
     sum
 }
 
+/// Which lanes of the chunks taken together are wanted, and whether any is.
 #[inline(always)]
-fn force_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
+fn wanted<T: ChunkLanes>(block: &ChunkBlock<'_>, first: usize, count: usize) -> ([u8; 2], bool) {
+    let mut lanes = [0; 2];
+    for c in 0..count {
+        lanes[c] = block.wanted(first + c);
+    }
+    (lanes, lanes != [0; 2])
+}
+
+/// Adds the forces of chunks taken together to their points.
+#[inline(always)]
+fn add_to_points<T: ChunkLanes, const D: usize>(
+    sum: [T; D],
+    chunks: &[Chunk],
+    lanes: [u8; 2],
+    first_point: usize,
+    out: &mut [&mut [f64]; D],
+) {
+    for (number, chunk) in chunks.iter().enumerate() {
+        if lanes[number] != 0 {
+            for c in 0..D {
+                let numbers = sum[c].numbers(number);
+                scatter(numbers, chunk, lanes[number], first_point, out[c]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn force_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
+    grid: &Grid<'_, T::Number, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
     out: &mut [&mut [f64]; D],
 ) {
     let m = grid.offsets.len();
-    for (k, chunk) in block.chunks.iter().enumerate() {
-        let lanes = block.wanted(k);
-        if lanes == 0 {
+    for first in (0..block.chunks.len()).step_by(T::CHUNKS) {
+        let count = T::CHUNKS.min(block.chunks.len() - first);
+        let (lanes, any) = wanted::<T>(block, first, count);
+        if !any {
             continue;
         }
-        let intact = &intact[k * m..(k + 1) * m];
-        let place = grid.place(chunk);
-        let fast = fast_force::<T, L, D>(grid, place, intact);
-        let sum = chunk_force::<T, L, D>(grid, place, intact, fast);
-        for c in 0..D {
-            scatter(sum[c].to_array(), chunk, lanes, block.first_point, out[c]);
-        }
+        let chunks = &block.chunks[first..first + count];
+        let intact = &intact[first * m..(first + count) * m];
+        let places = grid.places::<T>(chunks);
+        let fast = fast_force::<T, L, D>(grid, places, intact);
+        let sum = chunk_force::<T, L, D>(grid, places, intact, fast);
+        add_to_points(sum, chunks, lanes, block.first_point, out);
     }
 }
 
@@ -159,8 +208,8 @@ fn force_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_chunks_body<T: Lanes, L: FastLaw, const D: usize, const FORCE: bool>(
-    grid: &Grid<'_, D>,
+fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize, const FORCE: bool>(
+    grid: &Grid<'_, T::Number, D>,
     rule: &GridBreaking<'_, D>,
     block: &ChunkBlock<'_>,
     intact: &mut [u8],
@@ -168,33 +217,45 @@ fn accept_chunks_body<T: Lanes, L: FastLaw, const D: usize, const FORCE: bool>(
     tally: &mut Tally,
 ) {
     let m = grid.offsets.len();
-    let watch = T::splat(rule.threshold * WATCH);
-    for (k, chunk) in block.chunks.iter().enumerate() {
-        let lanes = block.wanted(k);
-        if lanes == 0 {
+    let watch = T::splat(rule.threshold * WATCH - T::STRAIN_ERROR);
+    for first in (0..block.chunks.len()).step_by(T::CHUNKS) {
+        let count = T::CHUNKS.min(block.chunks.len() - first);
+        let (lanes, any) = wanted::<T>(block, first, count);
+        if !any {
             continue;
         }
-        let intact = &mut intact[k * m..(k + 1) * m];
-        let place = grid.place(chunk);
-        let mut fast = fast_force::<T, L, D>(grid, place, intact);
-        if fast.largest.greater(watch) & lanes != 0 {
-            let entry = (block.first_chunk + k) * m;
-            if break_chunk::<T, L, D>(grid, rule, chunk, lanes, intact, entry, tally) {
-                fast = fast_force::<T, L, D>(grid, place, intact);
+        let chunks = &block.chunks[first..first + count];
+        let intact = &mut intact[first * m..(first + count) * m];
+        let places = grid.places::<T>(chunks);
+        let mut fast = fast_force::<T, L, D>(grid, places, intact);
+        let strained = fast.largest.greater(watch);
+        if !T::none(strained) {
+            let mut broken = false;
+            for number in 0..count {
+                if T::of_chunk(strained, number) & lanes[number] != 0 {
+                    let own = ChunkBonds {
+                        chunk: &chunks[number],
+                        lanes: lanes[number],
+                        intact: &mut intact[number * m..(number + 1) * m],
+                        entry: (block.first_chunk + first + number) * m,
+                    };
+                    broken |= break_chunk::<T::Wide, L, T::Number, D>(grid, rule, own, tally);
+                }
+            }
+            if broken {
+                fast = fast_force::<T, L, D>(grid, places, intact);
             }
         }
         if FORCE {
-            let sum = chunk_force::<T, L, D>(grid, place, intact, fast);
-            for c in 0..D {
-                scatter(sum[c].to_array(), chunk, lanes, block.first_point, out[c]);
-            }
+            let sum = chunk_force::<T, L, D>(grid, places, intact, fast);
+            add_to_points(sum, chunks, lanes, block.first_point, out);
         }
     }
 }
 
 #[inline(always)]
 fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
+    grid: &Grid<'_, f64, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
     out: &mut [&mut [f64]; 1],
@@ -208,7 +269,7 @@ fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
-            let energy = L::energy(xi(offset), eta);
+            let energy = L::energy(xi::<T, D>(offset), eta);
             sum = sum + (T::splat(0.5 * offset.stiffness) * energy).masked(mask);
         }
         scatter(
@@ -223,8 +284,8 @@ fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 
 #[inline(always)]
 fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
-    direction: &Grid<'_, D>,
+    grid: &Grid<'_, f64, D>,
+    direction: &Grid<'_, f64, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
     out: &mut [&mut [f64]; D],
@@ -240,7 +301,7 @@ fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
             let d = direction.eta(place, offset.shift, &direction_here);
-            let force = L::tangent(xi(offset), eta, d);
+            let force = L::tangent(xi::<T, D>(offset), eta, d);
             for c in 0..D {
                 sum[c] = sum[c] + (T::splat(offset.stiffness) * force[c]).masked(mask);
             }
@@ -260,7 +321,7 @@ fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 for_each_instruction_set! {
     /// Adds the force density of the wanted points to `out` (indexed from the block's first point).
     pub(super) fn force_chunks [L: FastLaw, const D: usize] <L, D> (
-        grid: &Grid<'_, D>,
+        grid: &Grid<'_, f64, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
         out: &mut [&mut [f64]; D],
@@ -268,9 +329,19 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
+    /// [`force_chunks`] in floats.
+    pub(super) fn force_chunks_in_floats [L: FastLaw, const D: usize] <L, D> (
+        grid: &Grid<'_, f32, D>,
+        block: &ChunkBlock<'_>,
+        intact: &[u8],
+        out: &mut [&mut [f64]; D],
+    ) = force_chunks_body on floats
+}
+
+for_each_instruction_set! {
     /// Breaks over-stretched bonds of the wanted points and, with FORCE, adds the force density of those that are left.
     pub(super) fn accept_chunks [L: FastLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
-        grid: &Grid<'_, D>,
+        grid: &Grid<'_, f64, D>,
         rule: &GridBreaking<'_, D>,
         block: &ChunkBlock<'_>,
         intact: &mut [u8],
@@ -280,9 +351,21 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
+    /// [`accept_chunks`] in floats.
+    pub(super) fn accept_chunks_in_floats [L: FastLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
+        grid: &Grid<'_, f32, D>,
+        rule: &GridBreaking<'_, D>,
+        block: &ChunkBlock<'_>,
+        intact: &mut [u8],
+        out: &mut [&mut [f64]; D],
+        tally: &mut Tally,
+    ) = accept_chunks_body on floats
+}
+
+for_each_instruction_set! {
     /// Adds the energy density of all points to `out`.
     pub(super) fn energy_chunks [L: FastLaw, const D: usize] <L, D> (
-        grid: &Grid<'_, D>,
+        grid: &Grid<'_, f64, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
         out: &mut [&mut [f64]; 1],
@@ -292,8 +375,8 @@ for_each_instruction_set! {
 for_each_instruction_set! {
     /// Adds the derivative of the force density in a direction to `out`.
     pub(super) fn tangent_chunks [L: FastLaw, const D: usize] <L, D> (
-        grid: &Grid<'_, D>,
-        direction: &Grid<'_, D>,
+        grid: &Grid<'_, f64, D>,
+        direction: &Grid<'_, f64, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
         out: &mut [&mut [f64]; D],

@@ -283,12 +283,13 @@ impl GridLayout {
         row * self.stride + column
     }
 
-    /// Copies the named columns of each row of one component of a vector on points to its padded rows; other places keep what they have.
-    pub fn pad(
+    /// Copies the named columns of each row of one component of a vector on points to its padded rows, as the numbers they become there; other places keep what they have.
+    pub fn pad<N: Send>(
         &self,
         values: &[f64],
         columns: impl Fn(usize) -> Range<usize> + Sync,
-        padded: &mut [f64],
+        number: &(impl Fn(f64) -> N + Sync),
+        padded: &mut [N],
     ) {
         // Whole rows to a task, or pieces of a very long one.
         if self.stride <= PIECE {
@@ -301,7 +302,13 @@ impl GridLayout {
                         let row = group * rows + k;
                         let columns = columns(row);
                         if !columns.is_empty() {
-                            self.pad_piece(row, columns.start, values, &mut padded[columns]);
+                            self.pad_piece(
+                                row,
+                                columns.start,
+                                values,
+                                number,
+                                &mut padded[columns],
+                            );
                         }
                     }
                 });
@@ -313,7 +320,7 @@ impl GridLayout {
                         .par_chunks_mut(PIECE)
                         .enumerate()
                         .for_each(|(k, padded)| {
-                            self.pad_piece(row, columns.start + k * PIECE, values, padded);
+                            self.pad_piece(row, columns.start + k * PIECE, values, number, padded);
                         });
                 }
             }
@@ -321,7 +328,14 @@ impl GridLayout {
     }
 
     /// Copies the points of a row from column x on.
-    fn pad_piece(&self, row: usize, x: usize, values: &[f64], padded: &mut [f64]) {
+    fn pad_piece<N>(
+        &self,
+        row: usize,
+        x: usize,
+        values: &[f64],
+        number: &impl Fn(f64) -> N,
+        padded: &mut [N],
+    ) {
         let (from, to) = (
             self.row_start[row] as usize,
             self.row_start[row + 1] as usize,
@@ -330,14 +344,16 @@ impl GridLayout {
             None => {
                 let from = (from + x).min(to);
                 let len = padded.len().min(to - from);
-                padded[..len].copy_from_slice(&values[from..from + len]);
+                for (place, &value) in padded[..len].iter_mut().zip(&values[from..from + len]) {
+                    *place = number(value);
+                }
             }
             Some(columns) => {
                 let first =
                     from + columns[from..to].partition_point(|&column| (column as usize) < x);
                 for point in first..to {
                     match padded.get_mut(columns[point] as usize - x) {
-                        Some(place) => *place = values[point],
+                        Some(place) => *place = number(values[point]),
                         None => break,
                     }
                 }

@@ -6,10 +6,12 @@ mod build;
 mod force;
 mod kernels;
 mod layout;
+mod numbers;
 mod operator;
 mod padded;
 mod stencil;
 mod wanted;
+mod working;
 mod zoned;
 
 pub use force::GridForce;

@@ -3,9 +3,8 @@
 use std::sync::PoisonError;
 
 use super::force::GridForce;
-use super::kernels::{energy_chunks, force_chunks, tangent_chunks};
-use super::padded::Padded;
-use super::wanted::WantedPoints;
+use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
+use super::padded::Frame;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
 use crate::family::LANES;
@@ -24,15 +23,26 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 
     fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
-        self.sweep::<D>(u, &on, out, |grid, block, intact, out| {
-            force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
-        });
+        match &self.floats {
+            Some(floats) => {
+                self.sweep::<f32, D>(floats, u, &on, out, |grid, block, intact, out| {
+                    force_chunks_in_floats::<L, D>(self.instruction_set, grid, block, intact, out);
+                })
+            }
+            None => self.add_force_in_doubles(u, &on, out),
+        }
     }
 
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
-        self.sweep::<1>(u, &On::All, out, |grid, block, intact, out| {
-            energy_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
-        });
+        self.sweep::<f64, 1>(
+            &self.doubles,
+            u,
+            &On::All,
+            out,
+            |grid, block, intact, out| {
+                energy_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
+            },
+        );
     }
 
     fn energy(&self, t: f64, u: &[f64]) -> f64 {
@@ -84,14 +94,19 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
                 .unwrap_or_else(PoisonError::into_inner)
         };
         let idle = spare().take();
-        let mut padded =
-            idle.unwrap_or_else(|| Padded::new(&self.layout, self.stencil.farthest_shift()));
-        padded.fill(&self.layout, direction);
-        let direction = self.grid(&padded);
+        let mut padded = idle.unwrap_or_else(|| self.doubles.room(&self.layout));
+        padded.fill(&self.layout, direction, &Frame::of(direction, 1.0));
+        let direction = self.doubles.grid(&padded);
         out.fill(0.0);
-        self.sweep::<D>(u, &On::All, out, |grid, block, intact, out| {
-            tangent_chunks::<L, D>(self.instruction_set, grid, &direction, block, intact, out);
-        });
+        self.sweep::<f64, D>(
+            &self.doubles,
+            u,
+            &On::All,
+            out,
+            |grid, block, intact, out| {
+                tangent_chunks::<L, D>(self.instruction_set, grid, &direction, block, intact, out);
+            },
+        );
         *spare() = Some(padded);
     }
 
@@ -153,16 +168,33 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         }
     }
 
+    fn rounding(&self, u: &[f64]) -> Option<f64> {
+        self.floats.as_ref()?;
+        let (mut rounded, mut exact) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+        self.add_force(0.0, u, On::All, &mut rounded);
+        self.add_force_in_doubles(u, &On::All, &mut exact);
+        let largest = |of: &dyn Fn(usize) -> f64| (0..u.len()).map(of).fold(0.0, f64::max);
+        let difference = largest(&|k| (rounded[k] - exact[k]).abs());
+        let scale = largest(&|k| exact[k].abs());
+        Some(if difference > 0.0 {
+            difference / scale
+        } else {
+            0.0
+        })
+    }
+
     fn directed_bonds(&self) -> u64 {
         self.directed_bonds
     }
 
     fn bytes(&self) -> usize {
         let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
-        let padded = Padded::<D>::bytes_for(&self.layout, self.stencil.farthest_shift());
+        let working = match &self.floats {
+            Some(floats) => floats.bytes(&self.layout),
+            None => self.doubles.bytes(&self.layout),
+        };
         masks
-            + padded
-            + WantedPoints::bytes_for(&self.layout)
+            + working
             + self.layout.bytes()
             + self.held.as_ref().map_or(0, Vec::len)
             + size_of_val(&self.precut[..])
@@ -179,19 +211,25 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
     }
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        L::LINEAR.then_some(self as &dyn LinearOperator)
+        (L::LINEAR && self.floats.is_none()).then_some(self as &dyn LinearOperator)
     }
 
     fn as_zoned(&self) -> Option<&dyn ZonedForce> {
-        Some(self)
+        self.floats.is_none().then_some(self)
     }
 
     fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
-        Some(self)
+        self.floats.is_none().then_some(self)
     }
 }
 
 impl<L: FastLaw, const D: usize> GridForce<L, D> {
+    fn add_force_in_doubles(&self, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+        self.sweep::<f64, D>(&self.doubles, u, on, out, |grid, block, intact, out| {
+            force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
+        });
+    }
+
     /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
     fn for_each_block(
         &self,

@@ -3,15 +3,33 @@
 use std::ops::Range;
 
 use super::layout::GridLayout;
+use super::numbers::GridNumber;
 use super::wanted::WantedPoints;
 use crate::parallel::components;
 
 /// Bytes of a cache line; numbers loaded across two lines cost twice.
 const LINE: usize = 64;
 
+/// What floats keep of a vector: its difference from one point's, in units. Not from that of a point that is wanted, for results do not depend on which are.
+pub(super) struct Frame<const D: usize> {
+    origin: [f64; D],
+    per_unit: f64,
+}
+
+impl<const D: usize> Frame<D> {
+    /// The frame of a field in which `unit` is one.
+    pub fn of(field: &[f64], unit: f64) -> Self {
+        let n = field.len() / D;
+        Self {
+            origin: std::array::from_fn(|c| field.get(c * n + n / 2).copied().unwrap_or(0.0)),
+            per_unit: 1.0 / unit,
+        }
+    }
+}
+
 /// One vector field in padded rows (see [`GridLayout`]), made once and filled at each evaluation.
-pub(super) struct Padded<const D: usize> {
-    values: Vec<f64>,
+pub(super) struct Padded<N, const D: usize> {
+    values: Vec<N>,
     /// First number used, so that rows start on cache lines.
     start: usize,
     places: usize,
@@ -19,13 +37,13 @@ pub(super) struct Padded<const D: usize> {
     margin: usize,
 }
 
-impl<const D: usize> Padded<D> {
+impl<N: GridNumber, const D: usize> Padded<N, D> {
     /// Room for a vector field; neighbours are at most `farthest` places away.
     pub fn new(layout: &GridLayout, farthest: usize) -> Self {
-        let per_line = LINE / size_of::<f64>();
+        let per_line = LINE / size_of::<N>();
         let margin = farthest.next_multiple_of(per_line);
         let places = layout.places();
-        let values = vec![0.0; D * (places + margin) + margin + per_line];
+        let values = vec![N::default(); D * (places + margin) + margin + per_line];
         let start = values.as_ptr().align_offset(LINE).min(per_line);
         Self {
             values,
@@ -36,31 +54,40 @@ impl<const D: usize> Padded<D> {
     }
 
     /// Copies all points.
-    pub fn fill(&mut self, layout: &GridLayout, field: &[f64]) {
+    pub fn fill(&mut self, layout: &GridLayout, field: &[f64], frame: &Frame<D>) {
         let whole = 0..layout.row_length();
-        self.copy(layout, field, |_| whole.clone());
+        self.copy(layout, field, frame, |_| whole.clone());
     }
 
     /// Copies at least the wanted points and their neighbours.
-    pub fn fill_around(&mut self, layout: &GridLayout, field: &[f64], wanted: &WantedPoints) {
-        self.copy(layout, field, |row| wanted.columns(row));
+    pub fn fill_around(
+        &mut self,
+        layout: &GridLayout,
+        field: &[f64],
+        frame: &Frame<D>,
+        wanted: &WantedPoints,
+    ) {
+        self.copy(layout, field, frame, |row| wanted.columns(row));
     }
 
     fn copy(
         &mut self,
         layout: &GridLayout,
         field: &[f64],
+        frame: &Frame<D>,
         columns: impl Fn(usize) -> Range<usize> + Sync,
     ) {
         let field = components::<D>(field, field.len() / D);
         let rows = self.values[self.start + self.margin..].chunks_mut(self.places + self.margin);
-        for (padded, values) in rows.zip(field) {
-            layout.pad(values, &columns, &mut padded[..self.places]);
+        for (c, (padded, values)) in rows.zip(field).enumerate() {
+            let (origin, per_unit) = (frame.origin[c], frame.per_unit);
+            let number = |value| N::of(value, origin, per_unit);
+            layout.pad(values, &columns, &number, &mut padded[..self.places]);
         }
     }
 
     /// The components, each with the margins around it.
-    pub fn components(&self) -> [&[f64]; D] {
+    pub fn components(&self) -> [&[N]; D] {
         std::array::from_fn(|c| {
             let from = self.start + c * (self.places + self.margin);
             &self.values[from..from + self.places + 2 * self.margin]
@@ -74,9 +101,9 @@ impl<const D: usize> Padded<D> {
 
     /// Memory of one field, bytes.
     pub fn bytes_for(layout: &GridLayout, farthest: usize) -> usize {
-        let per_line = LINE / size_of::<f64>();
+        let per_line = LINE / size_of::<N>();
         let margin = farthest.next_multiple_of(per_line);
         let numbers = D * (layout.places() + margin) + margin + per_line;
-        numbers * size_of::<f64>()
+        numbers * size_of::<N>()
     }
 }

@@ -1,33 +1,34 @@
 //! The family of a lattice's node, once for all nodes.
 
+use super::numbers::{ChunkLanes, GridNumber};
 use crate::operator::fast_law::FixedBond;
-use crate::operator::lanes::{Lanes, vector};
+use crate::operator::lanes::vector;
 use crate::space::Lattice;
 
 /// One bond of the stencil, with everything the loops need of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Offset<const D: usize> {
+pub(super) struct Offset<N, const D: usize> {
     /// From a node's place in a padded array to that of its neighbour.
     pub shift: isize,
-    /// ξ, m.
-    pub xi: [f64; D],
-    /// 1/|ξ|², m⁻².
-    pub inverse_square: f64,
+    /// ξ, in units of length: m, or spacings.
+    pub xi: [N; D],
+    /// 1/|ξ|², per square of the unit.
+    pub inverse_square: N,
     /// c α κ V, N/m³.
-    pub stiffness: f64,
-    /// c α κ V/|ξ|, N/m⁴.
-    pub factor: f64,
+    pub stiffness: N,
+    /// c α κ V/|ξ|, N/m³ per unit.
+    pub factor: N,
 }
 
-impl<const D: usize> Offset<D> {
+impl<N: GridNumber, const D: usize> Offset<N, D> {
     /// The bond in all lanes.
     #[inline(always)]
-    pub fn lanes<T: Lanes>(&self) -> FixedBond<T, D> {
+    pub fn lanes<T: ChunkLanes<Number = N>>(&self) -> FixedBond<T, D> {
         FixedBond {
-            xi: vector(|c| T::splat(self.xi[c])),
-            inverse_square: T::splat(self.inverse_square),
-            stiffness: T::splat(self.stiffness),
-            factor: T::splat(self.factor),
+            xi: vector(|c| T::broadcast(self.xi[c])),
+            inverse_square: T::broadcast(self.inverse_square),
+            stiffness: T::broadcast(self.stiffness),
+            factor: T::broadcast(self.factor),
         }
     }
 }
@@ -43,7 +44,7 @@ pub(super) struct Stencil<const D: usize> {
     lengths: Vec<f64>,
     /// κ V of the neighbour, m³.
     volumes: Vec<f64>,
-    offsets: Vec<Offset<D>>,
+    offsets: Vec<Offset<f64, D>>,
 }
 
 /// What the stencil's entries are made of.
@@ -134,14 +135,36 @@ impl<const D: usize> Stencil<D> {
     }
 
     /// What the loops need.
-    pub fn offsets(&self) -> &[Offset<D>] {
+    pub fn offsets(&self) -> &[Offset<f64, D>] {
         &self.offsets
+    }
+
+    /// The offsets with lengths in spacings, in which ξ is made of integers, rounded to floats.
+    pub fn offsets_in_floats(&self) -> Vec<Offset<f32, D>> {
+        let spacings = |cell: &[i32; 3]| cell.map(f64::from);
+        let cells = self.cells.iter().map(spacings);
+        let rounded = |(offset, cell): (&Offset<f64, D>, [f64; 3])| {
+            let square = cell.iter().map(|x| x * x).sum::<f64>();
+            Offset {
+                shift: offset.shift,
+                xi: std::array::from_fn(|c| f32::rounded(cell[c])),
+                inverse_square: f32::rounded(1.0 / square),
+                stiffness: f32::rounded(offset.stiffness),
+                factor: f32::rounded(offset.stiffness / square.sqrt()),
+            }
+        };
+        self.offsets.iter().zip(cells).map(rounded).collect()
     }
 
     /// The farthest a neighbour's place is from the node's.
     pub fn farthest_shift(&self) -> usize {
-        let shift = |offset: &Offset<D>| offset.shift.unsigned_abs();
+        let shift = |offset: &Offset<f64, D>| offset.shift.unsigned_abs();
         self.offsets.iter().map(shift).max().unwrap_or(0)
+    }
+
+    /// The farthest a neighbour is along each axis, in spacings.
+    pub fn radius(&self) -> [usize; 3] {
+        std::array::from_fn(|axis| self.farthest(axis))
     }
 
     /// The farthest a neighbour is along an axis, in spacings.

@@ -76,7 +76,7 @@ impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
     /// Takes a work array of one byte per bond group of the blocks concerned.
     fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
         let partners = self.partners(partners);
-        self.sweep::<D>(u, &on, out, |grid, block, intact, out| {
+        self.sweep::<f64, D>(&self.doubles, u, &on, out, |grid, block, intact, out| {
             let left = self.bonds_to(&partners, block, intact);
             force_chunks::<L, D>(self.instruction_set, grid, block, &left, out);
         });
@@ -105,17 +105,23 @@ impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
         let threshold = L::threshold(fraction * self.critical_stretch);
         let mut found = vec![0.0; self.points()];
         let breakable = |chunk: &Chunk, offset: usize| self.breakable(chunk, offset);
-        self.sweep::<1>(u, &On::All, &mut found, |grid, block, intact, out| {
-            endangered_chunks::<L, D>(
-                self.instruction_set,
-                grid,
-                threshold,
-                &breakable,
-                block,
-                intact,
-                out,
-            );
-        });
+        self.sweep::<f64, 1>(
+            &self.doubles,
+            u,
+            &On::All,
+            &mut found,
+            |grid, block, intact, out| {
+                endangered_chunks::<L, D>(
+                    self.instruction_set,
+                    grid,
+                    threshold,
+                    &breakable,
+                    block,
+                    intact,
+                    out,
+                );
+            },
+        );
         for (mark, found) in marks.iter_mut().zip(found) {
             *mark |= found > 0.0;
         }
@@ -124,7 +130,7 @@ impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
 
 #[inline(always)]
 fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, D>,
+    grid: &Grid<'_, f64, D>,
     threshold: f64,
     breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
     block: &ChunkBlock<'_>,
@@ -141,7 +147,7 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
-            let over = L::strain(&offset.lanes(), eta).greater(threshold) & mask;
+            let over = L::strain(&offset.lanes::<T>(), eta).greater(threshold) & mask;
             if over & !endangered != 0 {
                 endangered |= over & breakable(chunk, k);
             }
@@ -159,7 +165,7 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 for_each_instruction_set! {
     /// Adds one to the points with a bond that may break and is strained beyond the threshold.
     fn endangered_chunks [L: FastLaw, const D: usize] <L, D> (
-        grid: &Grid<'_, D>,
+        grid: &Grid<'_, f64, D>,
         threshold: f64,
         breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
         block: &ChunkBlock<'_>,

@@ -11,7 +11,7 @@ use pericles::time::{Integrator, VelocityVerlet};
 fn cases() -> Vec<(String, Case)> {
     let mut cases = Vec::new();
     for cells in [vec![200_000], vec![256; 2], vec![30; 3]] {
-        for form in [BondForm::Grid, BondForm::List] {
+        for form in [BondForm::Grid, BondForm::FloatGrid, BondForm::List] {
             let case = Case::new("", cells.clone(), form);
             cases.push((format!("{}d-{form:?}", cells.len()).to_lowercase(), case));
         }

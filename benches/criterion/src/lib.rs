@@ -1,0 +1,1 @@
+//! Nothing but benchmarks: see `operators.rs`, `linear.rs` and `output.rs`.
