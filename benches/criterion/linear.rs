@@ -1,6 +1,6 @@
 //! Linear operators: a line by its three routes, and lattice bodies by convolution and by the bond list.
 //!
-//! `cargo bench -p pericles --bench linear`; threads by RAYON_NUM_THREADS. These figures are where the constants of `operator/linear/cost.rs`
+//! `cd benches/criterion && cargo bench --bench linear`; threads by RAYON_NUM_THREADS. These figures are where the constants of `operator/linear/cost.rs`
 //! come from.
 
 use std::hint::black_box;

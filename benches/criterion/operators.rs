@@ -1,6 +1,6 @@
 //! Building, force and step of both operator forms in one, two and three dimensions.
 //!
-//! `cargo bench -p pericles --bench operators`; throughput is in directed bonds.
+//! `cd benches/criterion && cargo bench --bench operators`; throughput is in directed bonds.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pericles::bench::Case;

@@ -38,18 +38,20 @@ time = { end = 10, SCHEME }
 enum Operator {
     List,
     Grid,
+    FloatGrid,
     Surface,
     Convolution,
     Spectral,
 }
 
-use Operator::{Convolution, Grid, List, Spectral, Surface};
+use Operator::{Convolution, FloatGrid, Grid, List, Spectral, Surface};
 
 impl Operator {
     fn word(self) -> &'static str {
         match self {
             List => "list",
             Grid => "grid",
+            FloatGrid => "grid-f32",
             Convolution => "convolution",
             Spectral => "spectral",
             Surface => "surface",
@@ -275,6 +277,28 @@ fn every_scheme_steps_a_list() {
 fn every_scheme_steps_a_grid() {
     compare(Grid, &ONE_STEP);
     compare(Grid, &TWO_STEPS);
+}
+
+#[test]
+fn schemes_that_bear_rounding_step_a_grid_in_single_precision() {
+    let explicit = [
+        "scheme = \"velocity-verlet\", dt = 0.05",
+        "scheme = \"rk3\", dt = 0.1",
+        "scheme = \"rk4\", dt = 0.1",
+    ];
+    // Forces have six digits; their errors do not cancel as those of doubles do.
+    let rounded = explicit.map(|time| Scheme {
+        time,
+        error: 1e-3,
+        momentum: 1e-5,
+    });
+    compare(FloatGrid, &rounded);
+    let others: Vec<Scheme> = ONE_STEP.into_iter().skip(3).chain(TWO_STEPS).collect();
+    refused(FloatGrid, &others, "needs forces in double precision");
+    refusal(
+        &FloatGrid.deck("scheme = \"relaxation\""),
+        "needs forces in double precision",
+    );
 }
 
 #[test]
