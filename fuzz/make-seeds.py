@@ -130,7 +130,7 @@ def checkpoint():
 
 BAR = """body = { shape = "bar", length = 12, spacing = 1 }
 material = { density = 1, youngs_modulus = 1, horizon_ratio = 2, MATERIAL }
-initial = [{ velocity = [{ expression = "0.01*sin(x)" }] }]
+initial = [{ velocity = [{ expression = "0.01*exp(-4*(x-6)^2)" }] }]
 time = { end = 2, dt = 0.1, SCHEME }
 MORE"""
 
