@@ -668,7 +668,8 @@ fn waves_leave_in_implicit_steps_beyond_the_explicit_limit() {
         let mut run = build(&BAR.replace("[time]", &time)).simulation();
         run.run(|_| pericles::Control::Continue).unwrap();
         let energies = run.snapshot().energies();
-        assert!(energies.work < -0.8 * energies.initial, "{energies:?}");
+        // Long steps slow down the short waves of a jump, many of which are still under way.
+        assert!(energies.work < -0.5 * energies.initial, "{energies:?}");
         assert!(
             energies.balance().abs() < 1e-11 * energies.initial,
             "{energies:?}"

@@ -30,7 +30,7 @@ fn the_operators_outrun_the_plain_loop() {
         .build()
         .expect("a thread");
     let timings = pool
-        .install(|| run_in_turn(&cases, 9, &clock::cpu_seconds))
+        .install(|| run_in_turn(&cases, 4, &clock::cpu_seconds))
         .expect("the cases are sound");
     for body in timings.chunks(3) {
         let best: Vec<f64> = body.iter().map(|case| case.best_ns_per_bond).collect();
