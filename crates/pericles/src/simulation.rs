@@ -249,6 +249,17 @@ impl Simulation {
         shown.map_err(SimulationError::Observe)
     }
 
+    /// Whether the state's step is one of this run, and its time that step's.
+    fn check_time(&self) -> Result<(), PericlesError> {
+        let State { step, t, .. } = self.state;
+        if step <= self.steps && t == step as f64 * self.dt {
+            return Ok(());
+        }
+        let (steps, dt) = (self.steps, self.dt);
+        let reason = format!("step {step} at t = {t:e} s is none of the {steps} steps of {dt:e} s");
+        Err(PericlesError::BadArchive { reason })
+    }
+
     fn watched(&self) -> Watched<'_> {
         Watched {
             system: &self.system,
@@ -299,6 +310,7 @@ impl Saved for Simulation {
 
     fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
         self.state.restore(archive)?;
+        self.check_time()?;
         self.system.restore(archive)?;
         self.integrator.restore(archive)?;
         for scheduled in &mut self.observers {

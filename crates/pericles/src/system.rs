@@ -250,7 +250,7 @@ impl System {
     /// motion to [`System::finish`].
     pub fn accept_on(&mut self, accepted: Accepted<'_>, on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         self.operator.accept_and_force(accepted, on.clone(), out);
         self.add_loads(accepted.t, on, out);
         self.divide_by_density(on, out);
@@ -266,7 +266,7 @@ impl System {
         out: &mut [f64],
     ) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         if let Some(zoned) = self.operator.as_zoned_mut() {
             zoned.accept_and_force_from(accepted, on.clone(), partners, out);
         }
@@ -276,10 +276,16 @@ impl System {
         self.divide_by_density(on, out);
     }
 
+    /// Counts an evaluation. A counter from a checkpoint may be anything.
+    fn count(&mut self, on: &On<'_>) {
+        let points = on.count(self.points()) as u64;
+        self.evaluated = self.evaluated.saturating_add(points);
+    }
+
     /// f/ρ with loads, for the points named by `on`, whether or not their motion is prescribed.
     pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         self.operator.add_force(t, u, on.clone(), out);
         self.add_loads(t, on, out);
         self.divide_by_density(on, out);
@@ -296,7 +302,7 @@ impl System {
         out: &mut [f64],
     ) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         if let Some(zoned) = self.operator.as_zoned() {
             zoned.add_force_from(t, u, on.clone(), partners, out);
         }

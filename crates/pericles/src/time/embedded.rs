@@ -188,7 +188,7 @@ impl Integrator for AdaptiveRungeKutta {
                 }
                 continue;
             }
-            self.accepted += 1;
+            self.accepted = self.accepted.saturating_add(1);
             let t = if last { t_next } else { state.t + try_h };
             let [u_next, v_next] = &mut self.next;
             system.constrain(t, u_next, v_next);

@@ -140,14 +140,16 @@ impl Refinement {
     /// Counts a step.
     pub(super) fn count(&mut self, starting: bool) {
         if starting {
-            self.starting_steps += 1;
+            self.starting_steps = self.starting_steps.saturating_add(1);
             return;
         }
         let fine = self.zones.fine.len() as u64;
-        self.steps += 1;
-        self.fine_total += fine;
+        let border = self.zones.coarse_border.len() as u64;
+        // Counters from a checkpoint may be anything.
+        self.steps = self.steps.saturating_add(1);
+        self.fine_total = self.fine_total.saturating_add(fine);
         self.fine_most = self.fine_most.max(fine);
-        self.border_total += self.zones.coarse_border.len() as u64;
+        self.border_total = self.border_total.saturating_add(border);
     }
 
     pub(super) fn report(&self) -> RefinementReport {
