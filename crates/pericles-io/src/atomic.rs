@@ -132,7 +132,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("none").join("a.csv");
         let error = write_atomically(&path, |_| Ok(())).unwrap_err();
-        assert!(matches!(error, IoError::NotWritable { .. }), "{error}");
+        assert!(matches!(error, IoError::FolderGone { .. }), "{error}");
+        assert!(error.is_output_problem());
     }
 
     #[test]

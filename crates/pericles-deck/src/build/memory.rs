@@ -10,7 +10,7 @@
 //! | a bond of a surface | [`GEODESIC`] |
 //! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer |
 //!
-//! The numbers are peaks, measured on bodies of 10⁵ to 10⁶ points; the estimate is within a factor of two of them.
+//! The numbers of points and bonds of lists and grids are peaks measured on blocks in 3D, of which the estimate is within a factor of two; the others are estimates from the sizes of the arrays.
 
 use pericles::operator::BondForm;
 use pericles::space::{GradedGrid, PointCloud, Shape};

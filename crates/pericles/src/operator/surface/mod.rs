@@ -7,7 +7,7 @@
 //! For p = 2 the operator is linear, the same for the three components. The exponents 2, 2.5 … 5.5 are computed by roots and products, others by
 //! the power function.
 //!
-//! A bond costs a load of 12 bytes and of its neighbour's row: about 1.0 ns for p = 2 and 1.2 ns for p = 3 with AVX-512 (Xeon of family 6, model 207, one thread), where the
+//! A bond costs a load of 12 bytes and of its neighbour's row: about 1.1 ns for p = 2 and 1.2 ns for p = 3 with AVX-512 (Xeon of family 6, model 207, one thread; reading 12 bytes a bond and nothing else takes 1.1), where the
 //! memory is the limit. `cargo bench -p pericles --bench surface` measures it beside the memory's bandwidth. Surfaces can be taken apart by zones
 //! ([`ZonedForce`](crate::operator::ZonedForce)), so schemes with two time steps serve them too.
 //!
