@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::accounts::{Completed, Ledger, Path};
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::{Archive, Counter, Saved, Values};
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Accepted, ForceOperator, On};
@@ -45,7 +45,7 @@ pub struct System {
     motions: Vec<PrescribedMotion>,
     boundaries: Vec<Box<dyn Boundary>>,
     ledger: Ledger,
-    evaluated: u64,
+    evaluated: Counter,
 }
 
 impl System {
@@ -76,7 +76,7 @@ impl System {
             motions: Vec::new(),
             boundaries: Vec::new(),
             ledger: Ledger::default(),
-            evaluated: 0,
+            evaluated: Counter::default(),
         })
     }
 
@@ -148,7 +148,7 @@ impl System {
 
     /// Points whose force has been evaluated so far: an evaluation of the whole body counts as many as it has points.
     pub fn evaluated_points(&self) -> u64 {
-        self.evaluated
+        self.evaluated.get()
     }
 
     /// Whether there are boundaries with a state of their own.
@@ -276,10 +276,9 @@ impl System {
         self.divide_by_density(on, out);
     }
 
-    /// Counts an evaluation. A counter from a checkpoint may be anything.
     fn count(&mut self, on: &On<'_>) {
-        let points = on.count(self.points()) as u64;
-        self.evaluated = self.evaluated.saturating_add(points);
+        let points = on.count(self.points());
+        self.evaluated.add(points as u64);
     }
 
     /// f/ρ with loads, for the points named by `on`, whether or not their motion is prescribed.
@@ -488,7 +487,7 @@ impl Saved for System {
             impulse: [x, y, z],
         } = self.ledger;
         archive.put("ledger", Values::F64(vec![work, exchanged, x, y, z]));
-        archive.put("evaluated", Values::U64(vec![self.evaluated]));
+        archive.put("evaluated", Values::U64(vec![self.evaluated.get()]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
@@ -507,7 +506,9 @@ impl Saved for System {
             exchanged,
             impulse: [x, y, z],
         };
-        archive.u64_into("evaluated", std::slice::from_mut(&mut self.evaluated))?;
+        let mut evaluated = [0];
+        archive.u64_into("evaluated", &mut evaluated)?;
+        self.evaluated = evaluated[0].into();
         Ok(())
     }
 }

@@ -96,7 +96,7 @@ fn book<L: FastLaw, const D: usize>(
         }
         let dissipated = 0.5 * rule.volume * offset.stiffness * energy;
         tally.dissipated += dissipated;
-        tally.broken += 1;
+        tally.broken.add(1);
         if rule.note_events {
             tally.events.push(BreakEvent {
                 point: chunk.point,
