@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Writes book/src/verification.md: what is tested, how, and the numbers of every study as this build computes them.
+"""Writes book/src/verification.md and a page per topic in book/src/verification/: what is tested, how, and the numbers of every study as a build computes them.
 
     book/verification.py [PROGRAM] [SECONDS]
 
-PROGRAM is the release build (default target/release/pericles), SECONDS the longest a study may take (default 600). Studies that take longer are named as such.
+PROGRAM is the release build (default target/release/pericles), SECONDS the longest a study may take (default 600). Studies that take longer are named as such. Rows that fail are on the page
+itself, all rows on the pages of the topics.
 """
 
 import json
@@ -11,9 +12,12 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 
 HERE = pathlib.Path(__file__).parent
 ROOT = HERE.parent
+PAGES = HERE / "src/verification"
+COLUMNS = "| case | printed | expected | computed | tolerance | |\n|---|---|---|---|---|---|\n"
 
 
 def number(value):
@@ -27,52 +31,88 @@ def number(value):
 def row(entry):
     verdict = {True: "holds", False: "**fails**", None: ""}[entry["pass"]]
     tolerance = ""
-    if entry["tolerance"] is not None:
+    if entry["tolerance"] is not None and entry["expected"] is not None:
         tolerance = "± " + (number(entry["tolerance"]) if entry["absolute"] else f"{100 * entry['tolerance']:.3g} %")
     note = f" ({entry['note']})" if entry["note"] else ""
     cells = [entry["case"] + note, number(entry["printed"]), number(entry["expected"]), number(entry["computed"]), tolerance, verdict]
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
 
 
-def study(program, name, seconds, folder):
-    """A section, and how many rows are judged and hold; none if it took too long."""
-    out = pathlib.Path(folder) / "rows.json"
-    command = [program, "reproduce", name, "--quiet", "--json", str(out), "--out", str(pathlib.Path(folder) / name.replace("/", "-"))]
-    try:
-        subprocess.run(command, timeout=seconds, stdout=subprocess.DEVNULL, check=False)
-    except subprocess.TimeoutExpired:
-        return None
-    results = json.loads(out.read_text())
-    out.unlink()
-    judged = [entry for entry in results["rows"] if entry["pass"] is not None]
-    held = sum(entry["pass"] for entry in judged)
-    head = f"### {name}\n\n{results['paper']}. {held} of {len(judged)} judged rows hold.\n\n"
-    head += "| case | printed | expected | computed | tolerance | |\n|---|---|---|---|---|---|\n"
-    return head + "\n".join(map(row, results["rows"])) + "\n", held, len(judged)
+class Study:
+    """A study as listed, with its results; none if it took too long."""
+
+    def __init__(self, line):
+        self.name, rest = line.split(None, 1)
+        self.topic = self.name.split("/")[0]
+        self.title, _, self.paper = rest.strip().removesuffix(")").rpartition(" (")
+        self.results, self.seconds = None, 0.0
+
+    def run(self, program, limit, folder):
+        out = pathlib.Path(folder) / "rows.json"
+        command = [program, "reproduce", self.name, "--quiet", "--json", str(out), "--out", str(pathlib.Path(folder) / self.name.replace("/", "-"))]
+        began = time.monotonic()
+        try:
+            subprocess.run(command, timeout=limit, stdout=subprocess.DEVNULL, check=False)
+            self.results = json.loads(out.read_text())
+            out.unlink()
+        except subprocess.TimeoutExpired:
+            pass
+        self.seconds = time.monotonic() - began
+
+    @property
+    def rows(self):
+        return self.results["rows"] if self.results else []
+
+    @property
+    def judged(self):
+        return [entry for entry in self.rows if entry["pass"] is not None]
+
+    @property
+    def failing(self):
+        return [entry for entry in self.judged if not entry["pass"]]
+
+    def summary(self, page):
+        name = f"[{self.name}]({page})"
+        if self.results is None:
+            return f"| {name} | {self.title} | | | not run: it takes longer | |\n"
+        held = len(self.judged) - len(self.failing)
+        return f"| {name} | {self.title} | {self.paper} | {len(self.rows)} | {held} of {len(self.judged)} | {self.seconds:.1f} |\n"
+
+
+def topic_page(topic, studies):
+    text = f"# {topic.replace('-', ' ').capitalize()}\n\nAll rows of these studies, as `book/verification.py` computed them. SI units. Rows without a tolerance are information; printed is the number in the paper.\n"
+    for study in studies:
+        text += f"\n## {study.name}\n\n{study.title} ({study.paper}).\n\n"
+        if study.results is None:
+            text += "Not run here: it takes longer than a study was given.\n"
+            continue
+        text += COLUMNS + "".join(map(row, study.rows))
+    (PAGES / f"{topic}.md").write_text(text)
 
 
 def main():
     program = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "target/release/pericles")
-    seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 600
+    limit = float(sys.argv[2]) if len(sys.argv) > 2 else 600
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     listing = subprocess.run([program, "reproduce", "--list"], capture_output=True, text=True, check=True).stdout
-    names = [line.split()[0] for line in listing.splitlines()]
-    sections, late, held, judged = [], [], 0, 0
+    studies = [Study(line) for line in listing.splitlines()]
     with tempfile.TemporaryDirectory() as folder:
-        for name in names:
-            found = study(program, name, seconds, folder)
-            if found is None:
-                late.append(name)
-                continue
-            text, good, all_ = found
-            sections.append(text)
-            held, judged = held + good, judged + all_
-            print(f"{name}: {good} of {all_}", flush=True)
+        for study in studies:
+            study.run(program, limit, folder)
+            print(f"{study.name}: {len(study.failing)} of {len(study.judged)} fail, {study.seconds:.1f} s", flush=True)
+    PAGES.mkdir(exist_ok=True)
+    topics = list(dict.fromkeys(study.topic for study in studies))
+    for topic in topics:
+        topic_page(topic, [study for study in studies if study.topic == topic])
+    done = [study for study in studies if study.results is not None]
+    judged, failing = sum(len(study.judged) for study in done), sum(len(study.failing) for study in done)
     text = (HERE / "verification-head.md").read_text()
-    text += f"\n## Studies\n\nComputed by {version}: {held} of {judged} judged rows of {len(sections)} studies hold. SI units. Rows without a tolerance are information.\n\n"
-    text += "\n".join(sections)
-    if late:
-        text += f"\nNot computed here, because each takes more than {seconds:.0f} s: {', '.join(late)}.\n"
+    text += f"\n## Studies of papers\n\n{judged - failing} of {judged} judged rows of {len(done)} studies hold, computed by {version} on {time.strftime('%d %B %Y')}; a study was given {limit:.0f} s. "
+    text += "The names lead to all rows.\n\n| study | shows | paper | rows | hold | s |\n|---|---|---|---|---|---|\n"
+    text += "".join(study.summary(f"verification/{study.topic}.md") for study in studies)
+    if failing:
+        text += "\nThe rows that do not hold:\n\n" + COLUMNS
+        text += "".join(row({**entry, "case": f"{study.name}: {entry['case']}"}) for study in done for entry in study.failing)
     (HERE / "src/verification.md").write_text(text)
 
 

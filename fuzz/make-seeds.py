@@ -181,8 +181,9 @@ def models():
 
 def texts():
     expressions = ["1e-3 * exp(-(x/0.01)^2)", "sin(2*pi*x) + t^2/(1+t)", "x > 0 && (y < 1 || block == 2)", "-x^2^0.5*step(t-1)", "0 < x <= 1", "!(x == 3)"]
+    # The first byte says where an expression stands.
     for k, text in enumerate(expressions):
-        write("expression", f"{k}", text)
+        write("expression", f"{k}", ("0" if set("<>=") & set(text) else str(1 + k % 2)) + text)
     for k, text in enumerate(["72 GPa", "0.25 mm", "135 J/m2", "kg/m3", "2440 kg·m^-3", "1e-3 N/m²", "5 %", "90 min", "1/s", "-.5e-3 µs"]):
         write("quantity", f"{k}", text)
     # The first byte names a deck or a way to spoil.

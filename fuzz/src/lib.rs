@@ -1,11 +1,15 @@
-//! What the fuzz targets share: an allocator that knows when it is too much, surfaces by the ending of their file, and changes to arrays.
+//! What the fuzz targets share: an allocator that knows when it is too much, a clock that runs with the work, surfaces by the ending of their file, and changes to arrays.
 
 pub mod decks;
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-use pericles::{Archive, Values};
+use pericles::cache::{Cache, Key};
+use pericles::{Archive, Control, Simulation, Values};
 
 /// Bytes that an input may make the program hold.
 const MOST: usize = 1 << 30;
@@ -53,6 +57,73 @@ unsafe impl GlobalAlloc for Counting {
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
+
+/// A target: what it does with an input, on one thread and within [`LONGEST`].
+#[macro_export]
+macro_rules! target {
+    (|$input:ident: &$kind:tt| $body:expr) => {
+        libfuzzer_sys::fuzz_target!(
+            init: { $crate::one_thread(); },
+            |$input: &$kind| $crate::timed(|| $body)
+        );
+    };
+}
+
+/// Time that an input may take of the processor. libFuzzer has a limit of its own, by the clock on the wall: a busy machine lets that one pass with nothing done.
+const LONGEST: Duration = Duration::from_secs(1);
+
+/// Runs an input.
+///
+/// # Panics
+/// If it takes longer than it may.
+pub fn timed(run: impl FnOnce()) {
+    let (began, used) = (Instant::now(), processor_time());
+    run();
+    // Asking for the processor's time is a call of the system; most inputs need none.
+    if began.elapsed() > LONGEST {
+        let used = processor_time().saturating_sub(used);
+        assert!(used <= LONGEST, "it took {used:?} of the processor");
+    }
+}
+
+/// Time that this thread has had.
+fn processor_time() -> Duration {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the pointer is to a place of the right type that lives on this frame.
+    let status = unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
+    assert_eq!(status, 0);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+/// Runs some steps of a simulation; what runs may fail of is no trouble.
+pub fn advance(simulation: &mut Simulation, steps: u32) {
+    let mut left = steps;
+    let _ = simulation.run(|_| {
+        left -= 1;
+        if left == 0 { Control::Stop } else { Control::Continue }
+    });
+}
+
+/// A cache in memory, as the program has one on the disk: kernels that earlier inputs needed are not computed again.
+#[derive(Default)]
+pub struct Memory(Mutex<HashMap<String, Archive>>);
+
+impl Cache for Memory {
+    fn load(&self, key: &Key) -> Option<Archive> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.get(&key.digest()).cloned()
+    }
+
+    fn store(&self, key: &Key, arrays: &Archive) {
+        /// Entries of a few kilobytes each.
+        const MOST: usize = 1000;
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= MOST {
+            kept.clear();
+        }
+        kept.insert(key.digest(), arrays.clone());
+    }
+}
 
 /// Reads a surface; one that can be read is checked and numbered anew, as bodies are.
 pub fn surface(name: &str, content: &[u8]) {

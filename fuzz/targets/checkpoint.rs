@@ -6,7 +6,7 @@ use pericles_io::Container;
 /// Magic, version, length and CRC-32 of the header.
 const PREFIX: usize = 24;
 
-libfuzzer_sys::fuzz_target!(|content: &[u8]| {
+pericles_fuzz::target!(|content: &[u8]| {
     for content in [content.to_vec(), sealed(content)] {
         if let Ok(container) = Container::parse("a.chk", &content) {
             let _ = container.into_archive();

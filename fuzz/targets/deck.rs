@@ -1,7 +1,7 @@
 #![no_main]
 //! Decks: the text, and after a line `%%` one override a line.
 
-libfuzzer_sys::fuzz_target!(|content: &str| {
+pericles_fuzz::target!(|content: &str| {
     let mut parts = content.splitn(2, "\n%%\n");
     let text = parts.next().unwrap_or_default();
     let overrides: Vec<String> = parts

@@ -1,7 +1,7 @@
 #![no_main]
 //! Listed points: the first byte is the dimension, the rest the file.
 
-libfuzzer_sys::fuzz_target!(|content: &[u8]| {
+pericles_fuzz::target!(|content: &[u8]| {
     let Some((first, content)) = content.split_first() else {
         return;
     };

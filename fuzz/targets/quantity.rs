@@ -17,7 +17,7 @@ const KEYS: [&str; 6] = [
     "time.end",
 ];
 
-libfuzzer_sys::fuzz_target!(|text: &str| {
+pericles_fuzz::target!(|text: &str| {
     let quoted = pericles_fuzz::quoted(text);
     let overrides = KEYS.map(|key| format!("{key}={quoted}"));
     let _ = Deck::parse(DECK, "a.toml", &overrides);

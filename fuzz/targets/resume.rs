@@ -1,54 +1,54 @@
 #![no_main]
 //! Checkpoints that are whole, but not of this run: the first byte names a deck, the rest spoils the arrays of its state. What is taken back must go on, or
-//! fail as runs may.
+//! fail as runs may; and whatever was taken, the true state can be taken back after it, to the last bit.
 
-use std::sync::OnceLock;
+use std::cell::RefCell;
 
-use pericles::{Archive, Control, Saved, Simulation};
+use pericles::{Archive, Saved, Simulation};
 use pericles_deck::Deck;
-use pericles_fuzz::{Choices, decks};
+use pericles_fuzz::{Choices, advance, decks};
 
 /// Steps before the state is stored, and after it is taken back.
 const BEFORE: u32 = 5;
 const AFTER: u32 = 3;
 
-fn simulation(deck: &Deck) -> Simulation {
-    deck.build().unwrap_or_else(|error| panic!("{error}")).simulation()
+/// A run, and its state after some steps.
+struct Run {
+    simulation: Simulation,
+    stored: Archive,
 }
 
-fn advance(simulation: &mut Simulation, steps: u32) {
-    let mut left = steps;
-    let _ = simulation.run(|_| {
-        left -= 1;
-        if left == 0 { Control::Stop } else { Control::Continue }
-    });
+thread_local! {
+    static RUNS: RefCell<Vec<Run>> = RefCell::new(decks::ALL.iter().map(|text| begun(text)).collect());
 }
 
-fn stored() -> &'static [(Deck, Archive)] {
-    static STORED: OnceLock<Vec<(Deck, Archive)>> = OnceLock::new();
-    STORED.get_or_init(|| {
-        let begun = |text: &&str| {
-            let deck = Deck::parse(text, "a.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
-            let mut simulation = simulation(&deck);
-            advance(&mut simulation, BEFORE);
-            let mut archive = Archive::default();
-            simulation.save(&mut archive);
-            (deck, archive)
-        };
-        decks::ALL.iter().map(begun).collect()
-    })
+fn begun(text: &str) -> Run {
+    let deck = Deck::parse(text, "a.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let model = deck.build().unwrap_or_else(|error| panic!("{error}"));
+    let mut simulation = model.simulation();
+    advance(&mut simulation, BEFORE);
+    let stored = state(&simulation);
+    Run { simulation, stored }
 }
 
-libfuzzer_sys::fuzz_target!(
-    init: { pericles_fuzz::one_thread(); },
-    |content: &[u8]| {
-        let mut choices = Choices(content);
-        let stored = stored();
-        let (deck, archive) = &stored[usize::from(choices.byte()) % stored.len()];
-        let spoilt = choices.spoil(archive.clone());
-        let mut simulation = simulation(deck);
+fn state(simulation: &Simulation) -> Archive {
+    let mut archive = Archive::default();
+    simulation.save(&mut archive);
+    archive
+}
+
+pericles_fuzz::target!(|content: &[u8]| {
+    let mut choices = Choices(content);
+    let number = usize::from(choices.byte()) % decks::ALL.len();
+    RUNS.with_borrow_mut(|runs| {
+        let Run { simulation, stored } = &mut runs[number];
+        let spoilt = choices.spoil(stored.clone());
         if simulation.restore(&spoilt).is_ok() {
-            advance(&mut simulation, AFTER);
+            advance(simulation, AFTER);
         }
-    }
-);
+        if let Err(error) = simulation.restore(stored) {
+            panic!("the true state is refused: {error}");
+        }
+        assert!(state(simulation) == *stored, "the true state is not what was stored");
+    });
+});

@@ -1,7 +1,7 @@
 #![no_main]
 //! Surfaces and fields from `.vtu` files.
 
-libfuzzer_sys::fuzz_target!(|content: &[u8]| {
+pericles_fuzz::target!(|content: &[u8]| {
     pericles_fuzz::surface("a.vtu", content);
     let _ = pericles_io::parse_fields("a.vtu", content);
 });

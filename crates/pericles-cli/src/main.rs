@@ -8,6 +8,7 @@ mod args;
 mod bench;
 #[cfg(test)]
 mod book;
+mod bug;
 mod charts;
 mod check;
 mod checkpoint;
@@ -45,16 +46,9 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Cli, Command};
-use exit::Exit;
 
 fn main() -> ExitCode {
-    std::panic::set_hook(Box::new(|panic| {
-        console::note(format_args!(
-            "pericles: {panic}\nThis is a bug in Pericles {}. Please report it with the deck and the command line.",
-            env!("CARGO_PKG_VERSION")
-        ));
-        std::process::exit(i32::from(Exit::Internal.status()));
-    }));
+    bug::end_at_panics();
     let outcome = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),

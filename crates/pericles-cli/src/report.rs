@@ -205,7 +205,10 @@ impl Audit {
             balance,
             balance_over_work: balance / energies.work.abs(),
             balance_over_dissipated: balance / energies.dissipated,
-            largest_balance: rows.iter().fold(0.0, |most: f64, b| most.max(b.abs())),
+            // A run may keep no history.
+            largest_balance: rows
+                .iter()
+                .fold(balance.abs(), |most: f64, b| most.max(b.abs())),
             momentum,
             impulse,
             momentum_error: error,

@@ -138,6 +138,17 @@ end = 1
 dt = 0.01
 "#;
     assert!(built(text, ["level = 2", "level = 2"], 3_000_000).is_ok());
+    // Nor are they made to know how far apart their vertices are: this would take seconds, and more memory than allowed.
+    let relative = text.replace("horizon = 0.6", "horizon_ratio = 3");
+    let began = std::time::Instant::now();
+    refusal(
+        &relative,
+        ["level = 2", "level = 10"],
+        1_000_000_000,
+        "a.toml:2:9: ",
+        "1.049e7 points",
+    );
+    assert!(began.elapsed().as_secs_f64() < 1.0);
     refusal(
         text,
         ["level = 2", "level = 10"],
@@ -181,4 +192,32 @@ dt = 0.1
     refusal(text, same, 100_000, "a.toml:10", "1.000e3 steps");
     let forgetful = text.replace("\"blocked\"", "\"exponentials\"\ntolerance = 1e-4");
     assert!(built(&forgetful, same, 100_000).is_ok());
+}
+
+#[test]
+fn a_fit_of_more_steps_than_can_be_told_apart_is_refused() {
+    let text = r#"[body]
+shape = "bar"
+length = 10
+spacing = 1
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+[[boundary]]
+kind = "absorbing"
+side = "+x"
+history = "exponentials"
+tolerance = 1e-4
+[time]
+end = 1e9
+dt = 0.1
+"#;
+    let error = built(text, ["1e9", "1e9"], u64::MAX).unwrap_err();
+    let message = error.to_string();
+    assert!(message.starts_with("a.toml:10:"), "{message}");
+    assert!(message.contains("at most 1e9 steps, not 1e10"), "{message}");
+    // As many steps as can be counted.
+    assert!(built(text, ["1e9", "8e14"], u64::MAX).is_err());
 }

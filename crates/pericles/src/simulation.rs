@@ -249,6 +249,20 @@ impl Simulation {
         shown.map_err(SimulationError::Observe)
     }
 
+    /// Whether the state's step is one of this run, and its time that step's.
+    fn check_time(&self) -> Result<(), PericlesError> {
+        /// Parts of a step. A step that is found from frequencies differs by rounding where it is found with other instructions.
+        const ROUNDING: f64 = 1e-3;
+        let State { step, t, .. } = self.state;
+        let of_step = step as f64 * self.dt;
+        if step <= self.steps && (t - of_step).abs() <= ROUNDING * self.dt {
+            return Ok(());
+        }
+        let (steps, dt) = (self.steps, self.dt);
+        let reason = format!("step {step} at t = {t:e} s is none of the {steps} steps of {dt:e} s");
+        Err(PericlesError::BadArchive { reason })
+    }
+
     fn watched(&self) -> Watched<'_> {
         Watched {
             system: &self.system,
@@ -299,6 +313,7 @@ impl Saved for Simulation {
 
     fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
         self.state.restore(archive)?;
+        self.check_time()?;
         self.system.restore(archive)?;
         self.integrator.restore(archive)?;
         for scheduled in &mut self.observers {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::accounts::{Completed, Ledger, Path};
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::{Archive, Counter, Saved, Values};
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Accepted, ForceOperator, On};
@@ -45,7 +45,7 @@ pub struct System {
     motions: Vec<PrescribedMotion>,
     boundaries: Vec<Box<dyn Boundary>>,
     ledger: Ledger,
-    evaluated: u64,
+    evaluated: Counter,
 }
 
 impl System {
@@ -76,7 +76,7 @@ impl System {
             motions: Vec::new(),
             boundaries: Vec::new(),
             ledger: Ledger::default(),
-            evaluated: 0,
+            evaluated: Counter::default(),
         })
     }
 
@@ -148,7 +148,7 @@ impl System {
 
     /// Points whose force has been evaluated so far: an evaluation of the whole body counts as many as it has points.
     pub fn evaluated_points(&self) -> u64 {
-        self.evaluated
+        self.evaluated.get()
     }
 
     /// Whether there are boundaries with a state of their own.
@@ -250,7 +250,7 @@ impl System {
     /// motion to [`System::finish`].
     pub fn accept_on(&mut self, accepted: Accepted<'_>, on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         self.operator.accept_and_force(accepted, on.clone(), out);
         self.add_loads(accepted.t, on, out);
         self.divide_by_density(on, out);
@@ -266,7 +266,7 @@ impl System {
         out: &mut [f64],
     ) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         if let Some(zoned) = self.operator.as_zoned_mut() {
             zoned.accept_and_force_from(accepted, on.clone(), partners, out);
         }
@@ -276,10 +276,15 @@ impl System {
         self.divide_by_density(on, out);
     }
 
+    fn count(&mut self, on: &On<'_>) {
+        let points = on.count(self.points());
+        self.evaluated.add(points as u64);
+    }
+
     /// f/ρ with loads, for the points named by `on`, whether or not their motion is prescribed.
     pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         self.operator.add_force(t, u, on.clone(), out);
         self.add_loads(t, on, out);
         self.divide_by_density(on, out);
@@ -296,7 +301,7 @@ impl System {
         out: &mut [f64],
     ) {
         self.zero(on, out);
-        self.evaluated += on.count(self.points()) as u64;
+        self.count(on);
         if let Some(zoned) = self.operator.as_zoned() {
             zoned.add_force_from(t, u, on.clone(), partners, out);
         }
@@ -482,7 +487,7 @@ impl Saved for System {
             impulse: [x, y, z],
         } = self.ledger;
         archive.put("ledger", Values::F64(vec![work, exchanged, x, y, z]));
-        archive.put("evaluated", Values::U64(vec![self.evaluated]));
+        archive.put("evaluated", Values::U64(vec![self.evaluated.get()]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
@@ -501,7 +506,9 @@ impl Saved for System {
             exchanged,
             impulse: [x, y, z],
         };
-        archive.u64_into("evaluated", std::slice::from_mut(&mut self.evaluated))?;
+        let mut evaluated = [0];
+        archive.u64_into("evaluated", &mut evaluated)?;
+        self.evaluated = evaluated[0].into();
         Ok(())
     }
 }

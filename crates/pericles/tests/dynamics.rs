@@ -11,7 +11,7 @@ use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, Stress
 use pericles::operator::{Accepted, BondForce, DamageMeasure, FastLaw, ForceOperator, On};
 use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
-use pericles::{Archive, Control, Outcome, Saved, Simulation, SimulationError, System};
+use pericles::{Archive, Control, Outcome, Saved, Simulation, SimulationError, System, Values};
 
 const DENSITY: f64 = 7850.0;
 const YOUNG: f64 = 210e9;
@@ -360,9 +360,79 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
 
     let mut other = breaking_plate(600);
     let mut broken = archive.clone();
-    broken.put("state/u", pericles::Values::F64(vec![0.0]));
+    broken.put("state/u", Values::F64(vec![0.0]));
     assert!(other.restore(&broken).is_err());
     assert!(other.restore(&Archive::default()).is_err());
+}
+
+#[test]
+fn a_state_of_another_time_is_refused() {
+    let mut first = breaking_plate(600);
+    first
+        .run(|s| match s.state().step {
+            5 => Control::Stop,
+            _ => Control::Continue,
+        })
+        .unwrap();
+    let mut archive = Archive::default();
+    first.save(&mut archive);
+    let t = first.state().t;
+    let wrong: [(u64, f64); 6] = [
+        (6, t),
+        (5, 0.0),
+        (5, f64::NAN),
+        (5, -t),
+        (601, 601.0 * 2e-8),
+        (u64::MAX, t),
+    ];
+    for (step, t) in wrong {
+        let mut spoilt = archive.clone();
+        spoilt.put("state/step", Values::U64(vec![step]));
+        spoilt.put("state/t", Values::F64(vec![t]));
+        let error = breaking_plate(600).restore(&spoilt).unwrap_err();
+        let told = error.to_string();
+        assert!(
+            told.contains(&format!(
+                "step {step} at t = {t:e} s is none of the 600 steps of 2e-8 s"
+            )),
+            "{told}"
+        );
+    }
+    // The end of the run is one of its times.
+    archive.put("state/step", Values::U64(vec![600]));
+    archive.put("state/t", Values::F64(vec![600.0 * 2e-8]));
+    breaking_plate(600).restore(&archive).unwrap();
+}
+
+#[test]
+fn counts_of_any_size_do_no_harm() {
+    let mut first = breaking_plate(600);
+    first
+        .run(|s| match s.state().step {
+            100 => Control::Stop,
+            _ => Control::Continue,
+        })
+        .unwrap();
+    let mut archive = Archive::default();
+    first.save(&mut archive);
+    let mut counts = 0;
+    for (name, values) in archive.clone().into_arrays() {
+        if let (Values::U64(values), false) = (values, name == "state/step") {
+            archive.put(name, Values::U64(vec![u64::MAX; values.len()]));
+            counts += 1;
+        }
+    }
+    // Broken bonds by blocks, and evaluated points.
+    assert_eq!(counts, 2);
+    let mut second = breaking_plate(600);
+    second.restore(&archive).unwrap();
+    second.run(|_| Control::Continue).unwrap();
+    assert_eq!(second.system().evaluated_points(), u64::MAX);
+    assert_eq!(second.system().operator().broken_bonds(), u64::MAX / 2);
+    // What moves knows no counts.
+    let mut whole = breaking_plate(600);
+    whole.run(|_| Control::Continue).unwrap();
+    assert_eq!(whole.state(), second.state());
 }
 
 #[test]

@@ -14,7 +14,7 @@ use pericles::operator::{
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, PericlesError, PointScalar, Saved, Simulation, System};
+use pericles::{Archive, Control, PericlesError, PointScalar, Saved, Simulation, System, Values};
 
 const SPACING: f64 = 0.01;
 
@@ -527,6 +527,17 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
     second.run(|_| Control::Continue).unwrap();
     assert!(archive(&whole) == archive(&second));
     assert!(run().restore(&Archive::default()).is_err());
+
+    // A bond to where the body has no point, or one that a crack has cut.
+    let mut strange = archive(&first);
+    let intact = strange.arrays()["operator/grid/intact"].clone();
+    let Values::U8(mut intact) = intact else {
+        panic!("bytes");
+    };
+    intact.fill(0xFF);
+    strange.put("operator/grid/intact", Values::U8(intact));
+    let told = run().restore(&strange).unwrap_err().to_string();
+    assert!(told.contains("bonds near point"), "{told}");
 }
 
 #[test]

@@ -131,6 +131,7 @@ impl Deck {
         warnings: &mut Vec<Warning>,
     ) -> Result<Vec<(Side, EndReport)>, DeckError> {
         let mut reports = Vec::new();
+        let mut sites = 0;
         for end in ends {
             let path = end.path;
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
@@ -142,7 +143,8 @@ impl Deck {
             step.check(&stencil).map_err(refuse)?;
             let count = steps.count as usize;
             if !end.plan.forgets() {
-                self.check_history(&path, stencil.reach(), count as f64, resources)?;
+                sites += stencil.reach() * if end.beyond.is_some() { 3 } else { 1 };
+                self.check_history(&path, sites, count as f64, resources)?;
             }
             let make = || {
                 let cache = resources.cache;

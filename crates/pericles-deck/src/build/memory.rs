@@ -8,9 +8,9 @@
 //! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
 //! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
-//! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer |
+//! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer; three times as many with fields beyond it |
 //!
-//! The numbers of points and bonds of lists and grids are peaks measured on blocks in 3D, of which the estimate is within a factor of two; the others are estimates from the sizes of the arrays.
+//! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
 
 use pericles::operator::BondForm;
 use pericles::space::{GradedGrid, PointCloud, Shape};
@@ -29,9 +29,9 @@ const COMPONENT: [f64; 2] = [10.0, 20.0];
 const LISTED: f64 = 16.0;
 const KEPT: f64 = 4.0;
 const TRANSFORM: f64 = 4.0;
-const VERTEX: f64 = 200.0;
-const GEODESIC: f64 = 48.0;
-const LAG: f64 = 12.0;
+const VERTEX: f64 = 400.0;
+const GEODESIC: f64 = 84.0;
+const LAG: f64 = 24.0;
 
 impl Deck {
     /// Refuses a body on a grid that does not fit, from the number of its cells.
@@ -114,15 +114,15 @@ impl Deck {
         )
     }
 
-    /// Refuses an absorbing end whose history does not fit; `reach` sites for so many steps.
+    /// Refuses an absorbing end whose histories do not fit with those of the ends before; `sites` of all of them for so many steps.
     pub(super) fn check_history(
         &self,
         path: &Path,
-        reach: usize,
+        sites: usize,
         steps: f64,
         resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
-        let needed = LAG * NUMBER * reach as f64 * steps;
+        let needed = LAG * NUMBER * sites as f64 * steps;
         if needed <= resources.memory as f64 {
             return Ok(());
         }

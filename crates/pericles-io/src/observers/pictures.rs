@@ -7,7 +7,7 @@ use std::sync::Arc;
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
 use pericles::space::surface::Surface;
-use pericles::{Archive, Result, Saved, Values};
+use pericles::{Archive, PericlesError, Result, Saved, Values};
 
 use crate::error::IoError;
 use crate::picture::{CellSize, ColourMap, FieldPicture, write_animation};
@@ -239,7 +239,19 @@ impl Saved for Pictures {
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        archive.u64_into(&self.key(), std::slice::from_mut(&mut self.drawn))
+        let mut drawn = [0];
+        archive.u64_into(&self.key(), &mut drawn)?;
+        let last = drawn[0].checked_sub(1).map(|last| self.still(last));
+        if let Some(missing) = last.filter(|last| !last.exists()) {
+            let reason = format!(
+                "it knows of {} pictures, and {} is not there",
+                drawn[0],
+                missing.display()
+            );
+            return Err(PericlesError::BadArchive { reason });
+        }
+        self.drawn = drawn[0];
+        Ok(())
     }
 }
 

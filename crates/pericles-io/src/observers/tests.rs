@@ -12,7 +12,7 @@ use pericles::observe::{CrackTracker, Field, Probe, Schedule, TrackedCrack};
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
 use pericles::space::{Face, Grid, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, Outcome, PointScalar, Saved, Simulation, System};
+use pericles::{Archive, Control, Outcome, PointScalar, Saved, Simulation, System, Values};
 
 use super::*;
 use crate::{IoError, read_csv};
@@ -232,6 +232,24 @@ fn a_table_that_was_tampered_with_is_refused() {
     fs::write(folder.path().join("probes.csv"), "step\n").unwrap();
     let error = simulation(folder.path()).restore(&archive).unwrap_err();
     assert!(error.to_string().contains("probes.csv"), "{error}");
+}
+
+#[test]
+fn more_pictures_than_there_are_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = whole_run(folder.path());
+    let mut archive = Archive::default();
+    run.save(&mut archive);
+    for drawn in [4, u64::MAX] {
+        let mut spoilt = archive.clone();
+        spoilt.put("observer/pictures/Damage", Values::U64(vec![drawn]));
+        let error = simulation(folder.path()).restore(&spoilt).unwrap_err();
+        assert!(
+            error.to_string().contains(&format!("{drawn} pictures")),
+            "{error}"
+        );
+    }
+    simulation(folder.path()).restore(&archive).unwrap();
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Damage by breaking bonds: which are left, and what those lost took with them. One account for every form of operator.
 
-use crate::archive::{Archive, Values};
+use crate::archive::{Archive, Counter, Values};
 use crate::error::Result;
 
 /// How damage weighs bonds.
@@ -35,7 +35,7 @@ pub(super) struct Tally {
     /// Σ over directed bonds broken of V/2 times the energy dissipated, J.
     pub dissipated: f64,
     /// Directed bonds broken.
-    pub broken: u64,
+    pub broken: Counter,
     /// The entries broken in the last sweep, if they were asked for.
     pub events: Vec<BreakEvent>,
 }
@@ -61,7 +61,7 @@ impl BlockDamage {
     pub fn break_other_end(&mut self, group: usize, lane: usize, event: &BreakEvent) {
         if self.intact[group] >> lane & 1 == 1 {
             self.intact[group] &= !(1 << lane);
-            self.tally.broken += 1;
+            self.tally.broken.add(1);
             self.tally.dissipated += event.dissipated;
         }
     }
@@ -74,7 +74,8 @@ pub(super) fn dissipated(blocks: &[BlockDamage]) -> f64 {
 
 /// Bonds broken, each counted once.
 pub(super) fn broken_bonds(blocks: &[BlockDamage]) -> u64 {
-    blocks.iter().map(|block| block.tally.broken).sum::<u64>() / 2
+    let directed: Counter = blocks.iter().map(|block| block.tally.broken).sum();
+    directed.get() / 2
 }
 
 /// Bonds left, each counted twice.
@@ -86,7 +87,7 @@ pub(super) fn bonds_left(blocks: &[BlockDamage]) -> u64 {
 /// Writes the blocks under names that begin with `prefix`.
 pub(super) fn save(blocks: &[BlockDamage], prefix: &str, archive: &mut Archive) {
     let intact = blocks.iter().flat_map(|block| &block.intact).copied();
-    let broken = blocks.iter().map(|block| block.tally.broken);
+    let broken = blocks.iter().map(|block| block.tally.broken.get());
     let dissipated = blocks.iter().map(|block| block.tally.dissipated);
     archive.put(format!("{prefix}/intact"), Values::U8(intact.collect()));
     archive.put(format!("{prefix}/broken"), Values::U64(broken.collect()));
@@ -113,7 +114,7 @@ pub(super) fn restore(blocks: &mut [BlockDamage], prefix: &str, archive: &Archiv
         let (own, after) = rest.split_at(block.intact.len());
         block.intact.copy_from_slice(own);
         rest = after;
-        block.tally.broken = broken[k];
+        block.tally.broken = broken[k].into();
         block.tally.dissipated = dissipated[k];
     }
     Ok(())

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::runge_kutta::{Stages, StepForm, start};
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::{Archive, Counter, Saved, Values};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::On;
 use crate::parallel::BLOCK;
@@ -27,8 +27,8 @@ pub struct AdaptiveRungeKutta {
     next: [Vec<f64>; 2],
     /// The proposed sub-step, s; none before the first.
     proposed: Option<f64>,
-    accepted: u64,
-    rejected: u64,
+    accepted: Counter,
+    rejected: Counter,
 }
 
 /// What a step is multiplied with at least and at most, and the safety factor.
@@ -70,14 +70,14 @@ impl AdaptiveRungeKutta {
             a: (1..tableau.len()).map(|_| array()).collect(),
             next: [array(), array()],
             proposed: None,
-            accepted: 0,
-            rejected: 0,
+            accepted: Counter::default(),
+            rejected: Counter::default(),
         })
     }
 
     /// Sub-steps accepted and rejected so far.
     pub fn sub_steps(&self) -> (u64, u64) {
-        (self.accepted, self.rejected)
+        (self.accepted.get(), self.rejected.get())
     }
 
     /// Tries a sub-step: leaves its end in `next` and returns its error over the tolerance.
@@ -178,7 +178,7 @@ impl Integrator for AdaptiveRungeKutta {
             let error = self.attempt(system, state, try_h);
             let factor = (SAFETY * error.powf(-0.2)).clamp(SHRINK, GROW);
             if error.is_nan() || error > 1.0 {
-                self.rejected += 1;
+                self.rejected.add(1);
                 h = try_h * if error.is_finite() { factor } else { SHRINK };
                 if h < SMALLEST * whole {
                     return Err(PericlesError::StepTooSmall {
@@ -188,7 +188,7 @@ impl Integrator for AdaptiveRungeKutta {
                 }
                 continue;
             }
-            self.accepted += 1;
+            self.accepted.add(1);
             let t = if last { t_next } else { state.t + try_h };
             let [u_next, v_next] = &mut self.next;
             system.constrain(t, u_next, v_next);
@@ -214,7 +214,7 @@ impl Saved for AdaptiveRungeKutta {
     fn save(&self, archive: &mut Archive) {
         let proposed = self.proposed.unwrap_or(0.0);
         archive.put("scheme/proposed", Values::F64(vec![proposed]));
-        let counts = vec![self.accepted, self.rejected];
+        let counts = vec![self.accepted.get(), self.rejected.get()];
         archive.put("scheme/counts", Values::U64(counts));
     }
 
@@ -223,7 +223,7 @@ impl Saved for AdaptiveRungeKutta {
         archive.f64_into("scheme/proposed", &mut proposed)?;
         archive.u64_into("scheme/counts", &mut counts)?;
         self.proposed = (proposed[0] > 0.0).then_some(proposed[0]);
-        [self.accepted, self.rejected] = counts;
+        [self.accepted, self.rejected] = counts.map(Counter::from);
         Ok(())
     }
 }

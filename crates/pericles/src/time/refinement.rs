@@ -5,7 +5,7 @@ use super::fine_region::{Fine, Follow, check, mark_regions};
 use super::frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
-use crate::archive::{Archive, Values};
+use crate::archive::{Archive, Counter, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::ZonedForce;
 use crate::system::System;
@@ -28,13 +28,13 @@ pub(super) struct Refinement {
     follow: Option<Looking>,
     /// Zones belong to other marks than the present ones, which come from a checkpoint.
     stale: bool,
-    steps: u64,
-    starting_steps: u64,
+    steps: Counter,
+    starting_steps: Counter,
     /// Σ fine points over the steps.
-    fine_total: u64,
+    fine_total: Counter,
     fine_most: u64,
     /// Σ coarse points next to fine ones over the steps.
-    border_total: u64,
+    border_total: Counter,
 }
 
 /// The state of following.
@@ -99,11 +99,11 @@ impl Refinement {
             zones: Zones::new(force, is_fine),
             follow,
             stale: false,
-            steps: 0,
-            starting_steps: 0,
-            fine_total: 0,
+            steps: Counter::default(),
+            starting_steps: Counter::default(),
+            fine_total: Counter::default(),
             fine_most: 0,
-            border_total: 0,
+            border_total: Counter::default(),
         })
     }
 
@@ -140,14 +140,14 @@ impl Refinement {
     /// Counts a step.
     pub(super) fn count(&mut self, starting: bool) {
         if starting {
-            self.starting_steps += 1;
+            self.starting_steps.add(1);
             return;
         }
         let fine = self.zones.fine.len() as u64;
-        self.steps += 1;
-        self.fine_total += fine;
+        self.steps.add(1);
+        self.fine_total.add(fine);
         self.fine_most = self.fine_most.max(fine);
-        self.border_total += self.zones.coarse_border.len() as u64;
+        self.border_total.add(self.zones.coarse_border.len() as u64);
     }
 
     pub(super) fn report(&self) -> RefinementReport {
@@ -155,9 +155,10 @@ impl Refinement {
         let fraction = |fine: u64| fine as f64 / points as f64;
         let now = self.zones.fine.len() as u64;
         let border = self.zones.coarse_border.len() as u64;
-        let mean = |total: u64, now: u64| match self.steps {
+        let steps = self.steps.get();
+        let mean = |total: Counter, now: u64| match steps {
             0 => fraction(now),
-            steps => fraction(total) / steps as f64,
+            steps => fraction(total.get()) / steps as f64,
         };
         RefinementReport {
             ratio: self.ratio,
@@ -165,10 +166,10 @@ impl Refinement {
             points: points as u64,
             fine_points: now,
             border_points: border,
-            steps: self.steps,
-            starting_steps: self.starting_steps,
+            steps,
+            starting_steps: self.starting_steps.get(),
             mean_fraction: mean(self.fine_total, now),
-            largest_fraction: fraction(if self.steps == 0 { now } else { self.fine_most }),
+            largest_fraction: fraction(if steps == 0 { now } else { self.fine_most }),
             mean_shared: if self.cost.shares_border {
                 mean(self.border_total, border)
             } else {
@@ -204,11 +205,11 @@ impl Refinement {
 
     pub(super) fn save(&self, archive: &mut Archive) {
         let counts = [
-            self.steps,
-            self.starting_steps,
-            self.fine_total,
+            self.steps.get(),
+            self.starting_steps.get(),
+            self.fine_total.get(),
             self.fine_most,
-            self.border_total,
+            self.border_total.get(),
         ];
         archive.put("scheme/refinement", Values::U64(counts.to_vec()));
         if let Some(looking) = &self.follow {
@@ -222,13 +223,12 @@ impl Refinement {
     pub(super) fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut counts = [0; 5];
         archive.u64_into("scheme/refinement", &mut counts)?;
-        [
-            self.steps,
-            self.starting_steps,
-            self.fine_total,
-            self.fine_most,
-            self.border_total,
-        ] = counts;
+        let [steps, starting_steps, fine_total, fine_most, border_total] = counts;
+        self.steps = steps.into();
+        self.starting_steps = starting_steps.into();
+        self.fine_total = fine_total.into();
+        self.fine_most = fine_most;
+        self.border_total = border_total.into();
         if let Some(looking) = &mut self.follow {
             let mut marks = vec![0; self.zones.is_fine.len()];
             archive.u8_into("scheme/fine", &mut marks)?;

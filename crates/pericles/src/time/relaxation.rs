@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Integrator, State};
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::{Archive, Counter, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::{Accepted, On};
 use crate::parallel::{BLOCK, ordered_sum};
@@ -71,7 +71,7 @@ pub struct Relaxation {
     largest: f64,
     /// Energy given to the damping after bonds broke, J.
     damped: f64,
-    iterations: u64,
+    iterations: Counter,
 }
 
 impl Relaxation {
@@ -118,13 +118,13 @@ impl Relaxation {
             before: zeros(),
             largest: 0.0,
             damped: 0.0,
-            iterations: 0,
+            iterations: Counter::default(),
         })
     }
 
     /// Iterations of all equilibria so far.
     pub fn iterations(&self) -> u64 {
-        self.iterations
+        self.iterations.get()
     }
 
     /// Moves `u` to the equilibrium at time t with the bonds as they are.
@@ -169,7 +169,7 @@ impl Relaxation {
             if !ratio.is_finite() || iteration == iterations {
                 break;
             }
-            self.iterations += 1;
+            self.iterations.add(1);
             let c = match damping {
                 Damping::Viscous(c) => c,
                 Damping::Adaptive => self.critical_damping(system, u),
@@ -308,16 +308,19 @@ impl Saved for Relaxation {
     fn save(&self, archive: &mut Archive) {
         let account = vec![self.damped, self.largest];
         archive.put("relaxation/account", Values::F64(account));
-        archive.put("relaxation/iterations", Values::U64(vec![self.iterations]));
+        archive.put(
+            "relaxation/iterations",
+            Values::U64(vec![self.iterations.get()]),
+        );
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut account = [0.0; 2];
         archive.f64_into("relaxation/account", &mut account)?;
         [self.damped, self.largest] = account;
-        archive.u64_into(
-            "relaxation/iterations",
-            std::slice::from_mut(&mut self.iterations),
-        )
+        let mut iterations = [0];
+        archive.u64_into("relaxation/iterations", &mut iterations)?;
+        self.iterations = iterations[0].into();
+        Ok(())
     }
 }

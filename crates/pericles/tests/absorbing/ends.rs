@@ -14,6 +14,7 @@ use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{
     Archive, Control, PericlesError, PointScalar, Saved, Simulation, SimulationError, System,
+    Values,
 };
 
 use crate::bar::{BOTH, DX, add_ends, bar, blocked, difference, gaussian, pulse, run, weights};
@@ -172,6 +173,43 @@ fn stopped_and_resumed(history: fn(GhostKernels) -> Box<dyn History>) {
     whole.save(&mut all);
     second.save(&mut part);
     assert_eq!(all, part);
+}
+
+#[test]
+fn a_history_of_another_time_is_refused() {
+    let (dt, steps) = (0.1, 333);
+    let make = || {
+        let mut system = bar(60, 0.5);
+        let state = pulse(&system, 0.0);
+        add_ends(&mut system, &state, &BOTH, dt, steps, blocked);
+        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps)
+    };
+    let mut first = make();
+    first
+        .run(|s| match s.state().step {
+            150 => Control::Stop,
+            _ => Control::Continue,
+        })
+        .unwrap();
+    let mut archive = Archive::default();
+    first.save(&mut archive);
+    let histories: Vec<(String, Vec<f64>)> = archive
+        .arrays()
+        .iter()
+        .filter(|(name, _)| name.ends_with("/past"))
+        .map(|(name, _)| (name.clone(), archive.f64s(name).unwrap().to_vec()))
+        .collect();
+    assert_eq!(histories.len(), 2);
+    // As many steps as fit the run, but not this state: to go on would leave their room.
+    for (name, past) in histories {
+        let sites = past.len() / 151;
+        for known in [0, 149, 152, 334] {
+            let mut spoilt = archive.clone();
+            spoilt.put(name.clone(), Values::F64(vec![0.0; sites * known]));
+            let told = make().restore(&spoilt).unwrap_err().to_string();
+            assert!(told.contains("after step 150"), "{told}");
+        }
+    }
 }
 
 #[test]

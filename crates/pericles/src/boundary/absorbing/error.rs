@@ -254,6 +254,16 @@ pub enum AbsorbingError {
         /// Fits tried.
         fits: usize,
     },
+    /// More steps than a fit can tell apart.
+    #[error(
+        "a fit of exponentials is good for at most {most:e} steps, not {steps:e}: what it would have to tell apart is below rounding; a larger step or a shorter run"
+    )]
+    FitTooLong {
+        /// Steps of the run.
+        steps: f64,
+        /// Steps that are allowed.
+        most: f64,
+    },
     /// A tolerance out of range.
     #[error("the tolerance is {value}; allowed: above 1e-14 and below 1")]
     Tolerance {

@@ -40,6 +40,8 @@ const SHARES: [f64; 2] = [1e-3, 1e-5];
 const LEFT: f64 = 0.1;
 /// More rows and columns than this take minutes.
 const MOST_TANGENTS: usize = 6000;
+/// Samples lie as close to each other as a fifth of the reciprocal; the differences of values there have lost half their digits and more.
+const MOST_STEPS: usize = 1_000_000_000;
 /// A fit of more than this share of its rows is not supported by enough samples.
 const SUPPORTED: f64 = 0.36;
 /// Fits that miss the tolerance by more are not worth refining.
@@ -60,7 +62,7 @@ impl ExponentialKernels {
     /// Common poles of all K² functions (set-valued AAA) are as many, but the residues of those off the cuts have full rank: for K = 7 five to six times the work.
     ///
     /// # Errors
-    /// [`AbsorbingError::Fit`] if none does; a tolerance out of range.
+    /// [`AbsorbingError::Fit`] if none does; a tolerance out of range; more than 10⁹ steps ([`AbsorbingError::FitTooLong`]).
     pub fn fit(
         stencil: &LatticeStencil,
         step: LatticeStep,
@@ -69,6 +71,12 @@ impl ExponentialKernels {
     ) -> Result<Self, AbsorbingError> {
         if !(tolerance > 1e-14 && tolerance < 1.0) {
             return Err(AbsorbingError::Tolerance { value: tolerance });
+        }
+        if steps > MOST_STEPS {
+            return Err(AbsorbingError::FitTooLong {
+                steps: steps as f64,
+                most: MOST_STEPS as f64,
+            });
         }
         let reach = stencil.reach();
         let samples = Samples::new(stencil, step, steps);
@@ -266,6 +274,8 @@ fn least_squares(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> DMatrix<f
 
 /// Points of the upper half circle, graded towards the branch points: features on the circle are no finer than its distance from the unit circle.
 fn sample_points(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Vec<C> {
+    // A longer run has no fit: its cost is that of the longest.
+    let steps = steps.min(MOST_STEPS);
     let radius = (-2.0 / steps as f64).exp();
     let finest = 1.0 / steps as f64;
     let branches: Vec<f64> = stencil

@@ -117,7 +117,7 @@ impl Loewner {
         self.singular.iter().take_while(|s| **s > least).count()
     }
 
-    /// The decaying exponentials of the realisation of this order: eigenvalues 1/λ of M with Im λ ≥ 0, right and left eigenvectors.
+    /// The decaying exponentials of the realisation of this order: eigenvalues 1/λ of M with Im λ ≥ 0, right and left eigenvectors. None where they are not found.
     pub(super) fn exponentials(&self, order: usize) -> Vec<Exponential> {
         let root = |k: usize| self.singular[k].sqrt();
         let scaled = |matrix: &DMatrix<f64>| {
@@ -127,7 +127,9 @@ impl Loewner {
         let columns = scaled(&self.leaving.transpose()).transpose();
         let similar = |i, j| self.shifted[(i, j)] / root(i) * root(j);
         let matrix = DMatrix::from_fn(order, order, similar) + directions * &columns;
-        let (q, triangle) = complex_schur(matrix);
+        let Some((q, triangle)) = complex_schur(matrix) else {
+            return Vec::new();
+        };
         let complex = |matrix: DMatrix<f64>| matrix.map(|x| C::new(x, 0.0));
         let vectors = triangular_eigenvectors(&triangle);
         let give = complex(columns) * &q * &vectors;

@@ -98,7 +98,8 @@ impl EndPlan {
         });
         if form == HistoryForm::Exponentials {
             match self.exponentials(stencil, step, steps, cache) {
-                Err(AbsorbingError::Fit { .. }) if self.form.is_none() => {}
+                Err(AbsorbingError::Fit { .. } | AbsorbingError::FitTooLong { .. })
+                    if self.form.is_none() => {}
                 made => return made,
             }
         }

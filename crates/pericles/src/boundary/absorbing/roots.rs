@@ -1,8 +1,9 @@
 //! The factor of the symbol at complex frequencies, from its roots and along curves.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, Schur};
 
 use super::LatticeStencil;
+use super::schur::ITERATIONS;
 
 type C = Complex<f64>;
 
@@ -199,10 +200,13 @@ fn chebyshev_zeros(centre: C, a: &[f64]) -> Vec<C> {
     eigenvalues(colleague)
 }
 
-/// The eigenvalues of a complex matrix.
+/// The eigenvalues of a complex matrix; numbers that are none if the iterations for them do not end.
 pub(super) fn eigenvalues(matrix: DMatrix<C>) -> Vec<C> {
-    let (_, triangle) = matrix.schur().unpack();
-    triangle.diagonal().iter().copied().collect()
+    let count = matrix.nrows();
+    match Schur::try_new(matrix, f64::EPSILON, ITERATIONS * count) {
+        Some(schur) => schur.unpack().1.diagonal().iter().copied().collect(),
+        None => vec![C::new(f64::NAN, f64::NAN); count],
+    }
 }
 
 /// F_n^m from h: F_{n+1}^m = F_n^1 h_m + F_n^{m+1}; m runs faster.

@@ -1,12 +1,16 @@
 //! Eigenvalues and eigenvectors of real matrices by a real Schur form that is made complex.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, Schur};
 
 type C = Complex<f64>;
 
-/// M = Q T Qᴴ with T upper triangular: the real form of M, whose 2 × 2 blocks are then rotated to triangles; a quarter of the work of a complex form.
-pub(super) fn complex_schur(matrix: DMatrix<f64>) -> (DMatrix<C>, DMatrix<C>) {
-    let (q, t) = matrix.schur().unpack();
+/// Iterations per eigenvalue: two or three are usual. What is made of rounding errors may go on for ever.
+pub(super) const ITERATIONS: usize = 30;
+
+/// M = Q T Qᴴ with T upper triangular: the real form of M, whose 2 × 2 blocks are then rotated to triangles; a quarter of the work of a complex form. None if the iterations do not end.
+pub(super) fn complex_schur(matrix: DMatrix<f64>) -> Option<(DMatrix<C>, DMatrix<C>)> {
+    let most = ITERATIONS * matrix.nrows();
+    let (q, t) = Schur::try_new(matrix, f64::EPSILON, most)?.unpack();
     let complex = |x: f64| C::new(x, 0.0);
     let (mut q, mut t) = (q.map(complex), t.map(complex));
     let n = t.nrows();
@@ -39,7 +43,7 @@ pub(super) fn complex_schur(matrix: DMatrix<f64>) -> (DMatrix<C>, DMatrix<C>) {
         turn(&mut q, n);
         t[(k, k - 1)] = C::default();
     }
-    (q, t)
+    Some((q, t))
 }
 
 /// The eigenvectors of an upper triangular matrix, as columns of an upper triangular matrix with ones on the diagonal.
@@ -74,7 +78,7 @@ mod tests {
         let n = 23;
         let noise = crate::noise::noise(n * n, 5);
         let matrix = DMatrix::from_row_slice(n, n, &noise);
-        let (q, t) = complex_schur(matrix.clone());
+        let (q, t) = complex_schur(matrix.clone()).unwrap();
         let complex = matrix.map(|x| C::new(x, 0.0));
         assert!((&q * &t * q.adjoint() - &complex).norm() < 1e-12);
         assert!(t.lower_triangle().norm() - t.diagonal().norm() < 1e-13);
@@ -82,5 +86,11 @@ mod tests {
         let values = DMatrix::from_diagonal(&t.diagonal());
         assert!((complex * &vectors - &vectors * values).norm() < 1e-11 * vectors.norm());
         assert!(t.diagonal().iter().any(|x| x.im.abs() > 0.1));
+    }
+
+    #[test]
+    fn what_has_no_eigenvalues_is_given_up() {
+        let matrix = DMatrix::from_element(4, 4, f64::NAN);
+        assert!(complex_schur(matrix).is_none());
     }
 }

@@ -48,6 +48,10 @@ impl MatrixFunction for Lanczos {
         if norm == 0.0 {
             return Ok(());
         }
+        if !norm.is_finite() {
+            spoil(terms);
+            return Ok(());
+        }
         self.basis.clear();
         self.basis.push(x.iter().map(|x| x / norm).collect());
         let (mut diagonal, mut off) = (Vec::new(), Vec::<f64>::new());
@@ -66,6 +70,10 @@ impl MatrixFunction for Lanczos {
                 }
             }
             let size = self.inner(&next, &next).sqrt();
+            if !size.is_finite() {
+                spoil(terms);
+                return Ok(());
+            }
             let scale = diagonal.iter().fold(0.0f64, |m, d: &f64| m.max(d.abs()));
             let whole = size <= 1e-14 * scale || self.basis.len() == x.len();
             if whole || diagonal.len().is_multiple_of(LOOK_EVERY) {
@@ -97,6 +105,13 @@ impl MatrixFunction for Lanczos {
             }
         }
         Ok(())
+    }
+}
+
+/// Of what is no number no function is either: who watches the run sees it in the result. Eigenvalues of such a matrix would be sought for ever.
+fn spoil(terms: &mut [Term<'_>]) {
+    for term in terms {
+        term.out.fill(f64::NAN);
     }
 }
 
@@ -134,4 +149,25 @@ fn is_complete(weights: &[f64]) -> bool {
     let largest = weights.iter().fold(0.0f64, |m, w| m.max(w.abs()));
     let tail = &weights[weights.len().saturating_sub(2)..];
     weights.len() > 2 && tail.iter().all(|w| w.abs() <= ENOUGH * largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operator::function::WaveFunction;
+
+    #[test]
+    fn of_what_is_no_number_no_function_is() {
+        for x in [[1.0, f64::NAN, 0.0], [f64::INFINITY, 0.0, 0.0]] {
+            let mut out = [0.0; 3];
+            let mut terms = [Term::new(WaveFunction::Cosine, 1.0, &mut out)];
+            let mut double = |x: &[f64], y: &mut [f64]| {
+                y.iter_mut().zip(x).for_each(|(y, x)| *y = 2.0 * x);
+            };
+            Lanczos::new(vec![1.0; 3])
+                .add(&mut double, &x, &mut terms)
+                .unwrap();
+            assert!(out.iter().all(|x| x.is_nan()), "{out:?}");
+        }
+    }
 }

@@ -108,7 +108,7 @@ fn book<L: FastLaw, N: GridNumber, const D: usize>(
         }
         let dissipated = 0.5 * rule.volume * offset.stiffness.into() * energy;
         tally.dissipated += dissipated;
-        tally.broken += 1;
+        tally.broken.add(1);
         if rule.note_events {
             tally.events.push(BreakEvent {
                 point: chunk.point,

@@ -350,6 +350,30 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         }
     }
 
+    /// Wants every bond that is left to be one that the body has: others would lead beyond its points.
+    pub(super) fn check_bonds(&self) -> Result<()> {
+        let m = self.stencil.len();
+        let mut precut = self.precut.iter().peekable();
+        for (block, state) in self.blocks.iter().enumerate() {
+            let numbers = self.layout.chunks_of(block);
+            for (number, intact) in numbers.zip(state.intact.chunks(m)) {
+                let chunk = &self.layout.chunks()[number];
+                for (offset, &cell) in self.stencil.cells().iter().enumerate() {
+                    let group = (number * m + offset) as u64;
+                    let cut = precut.next_if(|&&(at, _)| at == group);
+                    let family = self.layout.neighbours(chunk, cell) & !cut.map_or(0, |cut| cut.1);
+                    if intact[offset] & !family != 0 {
+                        let point = self.cloud.user_number(chunk.point as usize);
+                        let reason =
+                            format!("it has bonds near point {point} that the body does not have");
+                        return Err(PericlesError::BadArchive { reason });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Calls `visit(point, offset, intact)` for all bonds of a chunk's geometric families that damage counts, point by point.
     pub(super) fn for_each_counted(
         &self,

@@ -270,6 +270,7 @@ impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        damage::restore(&mut self.blocks, "operator/grid", archive)
+        damage::restore(&mut self.blocks, "operator/grid", archive)?;
+        self.check_bonds()
     }
 }

@@ -85,7 +85,7 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
                 }
                 let dissipated = 0.5 * rule.volumes[i] * stiffness * energy;
                 tally.dissipated += dissipated;
-                tally.broken += 1;
+                tally.broken.add(1);
                 if rule.note_events {
                     tally.events.push(BreakEvent {
                         point: i as u32,

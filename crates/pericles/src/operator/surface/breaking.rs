@@ -137,7 +137,8 @@ impl Breaking {
             "operator/dissipated",
             std::slice::from_mut(&mut self.dissipated),
         )?;
-        for (entry, weight) in self.broken.drain(..) {
+        // Backwards: of an entry that is named twice the first weight is its own.
+        for (entry, weight) in self.broken.drain(..).rev() {
             bonds.weights_mut()[entry] = weight;
         }
         for &entry in entries {

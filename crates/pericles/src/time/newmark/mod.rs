@@ -185,7 +185,8 @@ impl InnerIterations {
         self.last = iterations;
         self.change = change;
         self.most = self.most.max(iterations);
-        self.total += iterations;
+        // A checkpoint may hold any number.
+        self.total = self.total.saturating_add(iterations);
     }
 
     fn save(&self, archive: &mut crate::Archive) {

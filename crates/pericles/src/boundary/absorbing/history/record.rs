@@ -36,16 +36,22 @@ impl Record {
         );
     }
 
-    /// The stored series, one after the other, and their length.
+    /// The stored series, one after the other, and their length: the steps of the archive's state, and for some ends the one at the start.
     pub(super) fn stored(&self, name: &str, archive: &Archive) -> Result<(Vec<f64>, usize)> {
         let past = archive.f64s(&format!("{name}/past"))?;
         let (sites, length) = (self.sites.len(), self.sites[0].len());
         let steps = past.len() / sites;
-        if past.len() != steps * sites || steps > length {
+        let mut taken = [0];
+        archive.u64_into("state/step", &mut taken)?;
+        let is_of_state = steps
+            .checked_sub(taken[0] as usize)
+            .is_some_and(|first| first <= 1);
+        if past.len() != steps * sites || steps > length || !is_of_state {
             return Err(PericlesError::BadArchive {
                 reason: format!(
-                    "the history \"{name}\" has {} numbers; this run needs {sites} for each of at most {length} steps",
-                    past.len()
+                    "the history \"{name}\" has {} numbers; after step {} this run needs {sites} for each, of at most {length} steps",
+                    past.len(),
+                    taken[0]
                 ),
             });
         }

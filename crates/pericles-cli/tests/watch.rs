@@ -1,0 +1,137 @@
+//! The physics watch: each of its warnings on a run that deserves it, and the same run done better without.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{report, run, succeed, text};
+
+/// Runs a deck; the warnings of the audit.
+fn warnings(place: &Path, deck: &str, more: &str) -> Vec<String> {
+    fs::write(place.join("deck.toml"), deck).unwrap();
+    let output = succeed(place, &format!("run deck.toml --out out --force {more}"));
+    let report = report(&place.join("out"));
+    let list = report["audit"]["warnings"].as_array().unwrap();
+    let list: Vec<String> = list
+        .iter()
+        .map(|warning| warning.as_str().unwrap().to_owned())
+        .collect();
+    // What is in the report is on the screen.
+    let shown = text(&output.stderr) + &text(&output.stdout);
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for warning in &list {
+        assert!(
+            words(&shown).contains(&words(warning)),
+            "{warning}\n{shown}"
+        );
+    }
+    list
+}
+
+/// Wants exactly one warning, which says this, of a run, and none with the changes.
+fn warned_of(deck: &str, says: &[&str], cure: &str) {
+    let place = tempfile::tempdir().unwrap();
+    let found = warnings(place.path(), deck, "");
+    assert_eq!(found.len(), 1, "{found:?}");
+    for part in says {
+        assert!(found[0].contains(part), "{found:?}");
+    }
+    let found = warnings(place.path(), deck, cure);
+    assert!(found.is_empty(), "{cure}: {found:?}");
+}
+
+#[test]
+fn energy_that_a_scheme_loses() {
+    // A fourth-order scheme damps short waves: by (ω dt)⁶/72 a step.
+    let deck = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+initial = [{ velocity = ["sin(2.5*x)"] }]
+time = { scheme = "rk4", end = 50, dt = 1 }
+output = { fields = "never", history = "never" }
+"#;
+    let says = [
+        "the energy account is off by up to",
+        "%",
+        "smaller time step",
+    ];
+    warned_of(deck, &says, "--set time.dt=0.1");
+}
+
+#[test]
+fn momentum_of_loads_between_steps() {
+    // The impulse of a load is booked at the ends of steps; one that swings within a step is not what the stages of the scheme see.
+    let deck = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+load = [{ set = "all", body_force = ["1e-3*(1 + sin(5*t))"] }]
+time = { scheme = "rk4", end = 50, dt = 0.5 }
+output = { fields = "never" }
+"#;
+    let says = [
+        "the momentum account is off by",
+        "what the energy could have made",
+    ];
+    warned_of(deck, &says, "--set load.0.body_force=[1e-3]");
+}
+
+#[test]
+fn a_static_state_that_is_none() {
+    let deck = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+sets.left = { layer = { side = "-x", cells = 3 } }
+sets.right = { layer = { side = "+x", cells = 3 } }
+prescribe = [{ set = "left", displacement = [0] }]
+load = [{ set = "right", traction = [1e-3] }]
+time = { scheme = "relaxation", tolerance = 0.1 }
+output = { fields = "never" }
+"#;
+    let says = ["loads and reactions differ by", "smaller tolerance"];
+    warned_of(deck, &says, "--set time.tolerance=1e-8");
+}
+
+#[test]
+fn bonds_about_to_break() {
+    // A uniform strain of 19/20 of what a bond stands.
+    let deck = r#"
+body = { shape = "plate", size = [20, 10], spacing = 1, plane = "stress" }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.01 }
+sets.left = { where = "x < 3" }
+sets.right = { where = "x > 17" }
+prescribe = [{ set = "left", displacement = ["-0.0095*10 + 0.0095*x", 0] }, { set = "right", displacement = ["-0.0095*10 + 0.0095*x", 0] }]
+time = { scheme = "relaxation" }
+output = { fields = "never" }
+"#;
+    let says = ["of the points have bonds beyond 90", "none broke"];
+    warned_of(deck, &says, "--set material.critical_stretch=0.02");
+}
+
+#[test]
+fn waves_that_the_grid_does_not_carry() {
+    // Two cells a wave, and twenty.
+    let deck = |waves: f64| {
+        format!(
+            r#"
+body = {{ shape = "bar", length = 200, spacing = 1 }}
+material = {{ model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }}
+initial = [{{ velocity = ["exp(-((x-100)/30)^2)*cos({waves}*x)"] }}]
+time = {{ end = 10, dt = 0.1 }}
+output = {{ fields = "never" }}
+"#
+        )
+    };
+    let place = tempfile::tempdir().unwrap();
+    for (waves, expected) in [(3.0, true), (0.05, false)] {
+        fs::write(place.path().join("deck.toml"), deck(waves)).unwrap();
+        let output = run(place.path(), "check deck.toml");
+        let told = text(&output.stdout) + &text(&output.stderr);
+        let told = told.contains("energy of this initial velocity is in waves shorter than");
+        assert_eq!(told, expected, "{waves}");
+        succeed(place.path(), "run deck.toml --quiet --out out --force");
+        let report = report(&place.path().join("out"));
+        let list = report["model"]["warnings"].to_string();
+        assert_eq!(list.contains("waves shorter than"), expected, "{list}");
+    }
+}
