@@ -4,11 +4,11 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pericles::bench::Case;
-use pericles::operator::BondForm;
 use pericles::observe::Observer;
+use pericles::operator::BondForm;
 use pericles::time::VelocityVerlet;
 use pericles::{Archive, Saved, Simulation};
-use pericles_io::FieldSeries;
+use pericles_io::observers::FieldSeries;
 
 fn output(criterion: &mut Criterion) {
     let case = Case::new("", vec![60; 3], BondForm::Grid);
@@ -16,13 +16,17 @@ fn output(criterion: &mut Criterion) {
     let points = system.points() as u64;
     let simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 1e-9, 1);
     let mut group = criterion.benchmark_group("output");
-    group.sample_size(10).throughput(Throughput::Elements(points));
+    group
+        .sample_size(10)
+        .throughput(Throughput::Elements(points));
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::create_dir(folder.path().join("fields")).expect("a folder");
     group.bench_function("fields", |b| {
         let mut series = FieldSeries::new(folder.path(), false);
         b.iter(|| {
-            series.observe(&simulation.snapshot()).expect("the disk has room");
+            series
+                .observe(&simulation.snapshot())
+                .expect("the disk has room");
             // The writer runs beside the simulation; its work is waited for here.
             series.settle().expect("the disk has room");
         });
