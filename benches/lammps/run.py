@@ -21,7 +21,7 @@ import venv
 HERE = pathlib.Path(__file__).resolve().parent
 TREE = HERE.parents[1]
 INPUTS = "block.common", "in.block", "in.forces", "in.fracture"
-CASES = "block-46", "block-46-avx2", "block-46-list", "block-46-list-avx2"
+CASES = "block-46", "block-46-avx2", "block-46-f32", "block-46-f32-avx2", "block-46-list", "block-46-list-avx2"
 
 
 def prepare(folder):

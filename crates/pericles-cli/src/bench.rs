@@ -65,7 +65,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
             let cases = Case::all();
             let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
             let all = format!(
-                "bar-N, plate-N or block-N with N cells an axis, then any of -list, -scalar, -avx2, -moved: {} …",
+                "bar-N, plate-N or block-N with N cells an axis, then any of -list, -f32, -scalar, -avx2, -moved: {} …",
                 names.join(", ")
             );
             CliError::unknown("case", name, names, &all)
@@ -76,7 +76,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     let table = args.json.as_deref() != Some(Path::new("-"));
     if table {
         console::print(format_args!(
-            "{machine}; {threads} threads\n{:<20} {:>6} {:>8} {:>10} {:>12} {:>8} {:>11} {:>6} {:>9} {:>8}",
+            "{machine}; {threads} threads\n{:<20} {:>8} {:>8} {:>10} {:>12} {:>8} {:>11} {:>6} {:>9} {:>8}",
             "case",
             "form",
             "isa",
@@ -94,7 +94,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
         let timing = bench::run(case, ROUNDS)?;
         if table {
             console::print(format_args!(
-                "{:<20} {:>6} {:>8} {:>10} {:>12} {:>8.3} {:>11.0} {:>6.1} {:>8.0}% {:>8.0}",
+                "{:<20} {:>8} {:>8} {:>10} {:>12} {:>8.3} {:>11.0} {:>6.1} {:>8.0}% {:>8.0}",
                 timing.case,
                 timing.form,
                 timing.instruction_set.name(),
