@@ -9,6 +9,7 @@ use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::given;
 use crate::prepare::{self, Facts, Means};
 use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
@@ -20,7 +21,7 @@ use crate::waves::WaveSpeeds;
 /// A deck that is refused.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
-    let deck = Deck::read(&args.deck, &args.overrides.set)?;
+    let deck = given::deck(&args.deck, &args.overrides.set)?;
     let model = prepare::model(
         &deck,
         &Means {

@@ -21,6 +21,17 @@ pub(crate) enum CliError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Deck(#[from] DeckError),
+    /// There is no deck to read.
+    #[error("cannot read the deck {}: {reason}", path.display())]
+    NoDeck {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+        /// What may have been meant.
+        #[help]
+        hint: Option<String>,
+    },
     /// A file is to blame.
     #[error(transparent)]
     Io(#[from] IoError),
@@ -55,10 +66,13 @@ pub(crate) enum CliError {
         reason: String,
     },
     /// There are no results.
-    #[error("{} is no output folder of a run: it has no run.json", path.display())]
+    #[error("{} is no output folder of a run: {reason}", path.display())]
+    #[diagnostic(help("give the folder that `pericles run` made, such as ./branching"))]
     NoResults {
         /// The folder.
         path: PathBuf,
+        /// What it lacks.
+        reason: &'static str,
     },
     /// There is nothing to resume.
     #[error("{} is no output folder of a run: it has no checkpoints", path.display())]
@@ -176,6 +190,7 @@ impl CliError {
         match self {
             Self::Deck(error) if error.is_too_large() => Exit::Memory,
             Self::Deck(_)
+            | Self::NoDeck { .. }
             | Self::Checkpoint { .. }
             | Self::NoRun { .. }
             | Self::NoResults { .. }

@@ -4,6 +4,7 @@
 //! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
 //! status ([`exit`]).
 
+mod animations;
 mod args;
 mod bench;
 #[cfg(test)]
@@ -20,6 +21,7 @@ mod dispersion;
 mod error;
 mod exit;
 mod geodesics;
+mod given;
 mod info;
 mod machine;
 mod manual;
@@ -44,12 +46,26 @@ mod waves;
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::error::ErrorKind;
 
 use args::{Cli, Command};
 
+/// The command line. Who gives a deck alone is told how to run it.
+fn parsed() -> Cli {
+    Cli::try_parse().unwrap_or_else(|error| {
+        let word = std::env::args().nth(1).unwrap_or_default();
+        // Nobody is left to hear that this could not be said.
+        let _ = error.print();
+        if error.kind() == ErrorKind::InvalidSubcommand && word.ends_with(".toml") {
+            console::note(format_args!("A deck is run by: pericles run {word}"));
+        }
+        std::process::exit(error.exit_code())
+    })
+}
+
 fn main() -> ExitCode {
     bug::end_at_panics();
-    let outcome = match Cli::parse().command {
+    let outcome = match parsed().command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args),

@@ -109,6 +109,12 @@ fn list() -> Result<Exit, CliError> {
     Ok(Exit::Done)
 }
 
+/// The example that a path may mean.
+pub(crate) fn id_of(path: &str) -> Option<String> {
+    let wanted = path.trim_start_matches("examples/");
+    find(wanted).ok().map(|example| example.id())
+}
+
 fn find(id: &str) -> Result<Example, CliError> {
     let wanted = id.trim_end_matches(".toml");
     // The name alone is enough where only one topic has it.

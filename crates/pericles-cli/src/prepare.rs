@@ -8,7 +8,7 @@ use pericles::boundary::absorbing::{EndReport, KernelMethod, Side};
 use pericles::cache::{Cache, NoCache};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources};
+use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources, Scheme};
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
     PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
@@ -199,7 +199,10 @@ pub(crate) fn simulation(
 
     let mut history = History::new(folder.file("history.csv"), dimension);
     if simulation.integrator().inner_iterations().is_some() {
-        history = history.with(InnerColumns);
+        history = history.with(match deck.time.scheme {
+            Scheme::Relaxation(_) => InnerColumns::Residual,
+            _ => InnerColumns::Velocity,
+        });
     }
     if let Some(ExactReference { solution, points }) = exact {
         history = history.with(ErrorColumns::new(solution, points));

@@ -40,9 +40,15 @@ impl Results {
     /// A folder without `run.json`, or with one that is none.
     pub(crate) fn open(folder: &Path) -> Result<Self, CliError> {
         let path = folder.join("run.json");
-        if folder.is_dir() && !path.exists() {
+        let reason = match (folder.is_dir(), folder.exists()) {
+            (true, _) => (!path.exists()).then_some("it has no run.json"),
+            (false, true) => Some("it is a file"),
+            (false, false) => Some("it is not there"),
+        };
+        if let Some(reason) = reason {
             return Err(CliError::NoResults {
                 path: folder.into(),
+                reason,
             });
         }
         let text =

@@ -7,12 +7,16 @@ use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
 use pericles_deck::{Deck, Model};
 use pericles_io::{IoError, OutputFolder};
 
+use crate::animations;
 use crate::args::{ResumeArgs, RunArgs};
+use crate::charts;
 use crate::checkpoint::{Checkpoints, DeckText, Stored};
 use crate::console;
 use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::given;
+use crate::plot::TextChart;
 use crate::prepare::{self, Facts, Means};
 use crate::progress::Progress;
 use crate::report::{Audit, Report, Status};
@@ -29,22 +33,19 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     if !args.sweep.is_empty() {
         return sweep::run(args);
     }
-    let deadline = Deadline::from_now(args.limits.wall_time);
-    args.execution.threads.start()?;
-    let deck = Deck::read(&args.deck, &args.overrides.set)?;
+    let deadline = Deadline::from_now(args.options.limits.wall_time);
+    args.options.execution.threads.start()?;
+    let deck = given::deck(&args.deck, &args.overrides.set)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
-    let quiet = args.execution.quiet;
+    let quiet = args.options.execution.quiet;
     if !quiet {
         console::note(format_args!("{}: building the model", text.file));
     }
     // The folder is made once nothing in the deck can be wrong any more.
-    let means = Means {
-        caching: &args.caching,
-        memory: args.limits.memory.bytes(),
-    };
-    let modelled = modelled(&deck, &means)?;
+    let modelled = modelled(&deck, &args.options.means())?;
     let folder = output_folder(args.out.as_deref(), args.force, &args.deck, "")?;
     let session = Session::begun(&deck, text, modelled, folder, quiet)?;
+    let session = session.with_chart(args.chart);
     session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?)
 }
 
@@ -56,15 +57,13 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
     if sweep::is_sweep(&args.dir) {
         return sweep::resume(args);
     }
-    let deadline = Deadline::from_now(args.limits.wall_time);
-    args.execution.threads.start()?;
-    let quiet = args.execution.quiet;
-    let means = Means {
-        caching: &args.caching,
-        memory: args.limits.memory.bytes(),
-    };
-    match Session::resumed(&args.dir, &means, quiet)? {
-        Some(session) => session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?),
+    let deadline = Deadline::from_now(args.options.limits.wall_time);
+    args.options.execution.threads.start()?;
+    let quiet = args.options.execution.quiet;
+    match Session::resumed(&args.dir, &args.options.means(), quiet)? {
+        Some(session) => session
+            .with_chart(args.chart)
+            .drive(deadline, &Signals::watch().map_err(CliError::Signals)?),
         None => {
             if !quiet {
                 let path = args.dir.display();
@@ -154,9 +153,16 @@ pub(crate) struct Session {
     report: Report,
     folder: OutputFolder,
     quiet: bool,
+    chart: bool,
 }
 
 impl Session {
+    /// The same, with its histories drawn at the end if so.
+    fn with_chart(mut self, chart: bool) -> Self {
+        self.chart = chart;
+        self
+    }
+
     /// A run at its start.
     ///
     /// # Errors
@@ -176,6 +182,7 @@ impl Session {
             report: Report::new(deck, text, facts, 0),
             folder,
             quiet,
+            chart: false,
         })
     }
 
@@ -228,6 +235,7 @@ impl Session {
             report: Report::new(&deck, text, facts, step),
             folder,
             quiet,
+            chart: false,
         }))
     }
 
@@ -324,12 +332,16 @@ impl Session {
 
     fn close(mut self, outcome: Outcome, signals: &Signals) -> Result<Exit, CliError> {
         let history = self.folder.file("history.csv");
-        self.report.audit = Some(Audit::of(
+        let mut audit = Audit::of(
             &self.simulation,
             self.momentum_at_start,
             &history,
             &self.report,
-        )?);
+        )?;
+        audit
+            .warnings
+            .extend(animations::gaps(&self.folder.file("pictures")));
+        self.report.audit = Some(audit);
         let exit = match outcome {
             Outcome::Finished => {
                 self.report.status = Status::Finished;
@@ -343,6 +355,12 @@ impl Session {
         self.report.write(&self.folder.file("run.json"))?;
         if !self.quiet {
             summary::closing(&self.report, self.folder.path())?;
+        }
+        if self.chart {
+            let charts = charts::of_table(&self.folder.file("history.csv"), |_| true)?;
+            for chart in &charts {
+                console::print(format_args!("{}", TextChart::of(chart)))?;
+            }
         }
         Ok(exit)
     }

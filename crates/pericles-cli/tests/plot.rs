@@ -79,6 +79,26 @@ fn the_schema_is_printed_for_editors_and_people() {
     assert!(page.starts_with("# Deck reference") && page.contains("### [[body.refine]]"));
 }
 
+#[test]
+fn a_run_draws_its_histories_when_it_ends() {
+    let place = with_plate();
+    let said = text(&succeed(place.path(), "run plate.toml --chart --out a").stdout);
+    let [before, after] =
+        ["results in a", "energy: * kinetic energy"].map(|words| said.find(words));
+    assert!(before.is_some() && before < after, "{said}");
+    let said = text(&succeed(place.path(), "run plate.toml --out b").stdout);
+    assert!(!said.contains("* kinetic energy"), "{said}");
+}
+
+#[test]
+fn a_field_that_was_left_out_is_told_from_an_unknown_one() {
+    let place = with_plate();
+    succeed(place.path(), "run plate.toml --quiet --out a");
+    let (status, message) = fail(place.path(), "plot a --field Strain_xx");
+    assert_eq!(status, 2);
+    assert!(message.contains("output.fields"), "{message}");
+}
+
 /// A bar in tension whose end moves by σ L/E, less what the surface effect adds.
 const BAR: &str = r#"
 [body]

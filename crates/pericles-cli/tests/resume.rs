@@ -187,4 +187,13 @@ fn a_relaxation_goes_on_to_the_same_bytes() {
     succeed(place.path(), "resume begun --quiet");
     assert_eq!(report(&begun)["progress"]["first_step"], 3);
     assert_same_results(&place.path().join("whole"), &begun);
+    let history = fs::read_to_string(begun.join("history.csv")).unwrap();
+    let mut rows = history.lines();
+    let header: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let (iterations, residual) = (column("inner_iterations"), column("residual [1]"));
+    for row in rows.skip(1) {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!(cells[iterations] > 0.0 && cells[residual] <= 1e-6, "{row}");
+    }
 }

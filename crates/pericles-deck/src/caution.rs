@@ -32,6 +32,22 @@ pub enum Caution {
         /// The critical stretch.
         stretch: f64,
     },
+    /// Waves that no solid carries.
+    #[error("waves run at {speed:.3e} m/s, faster than in any solid")]
+    FastWaves {
+        /// Of the pressure wave, m/s.
+        speed: f64,
+    },
+    /// Classes of bonds without stiffness at an absorbing end.
+    #[error(
+        "bonds over more than {reach} of {given} spacings have no stiffness: the exterior of the absorbing ends has none there either"
+    )]
+    IdleClasses {
+        /// Spacings within the horizon.
+        given: usize,
+        /// The longest bonds with a stiffness, in spacings.
+        reach: usize,
+    },
     /// A load that supports take.
     #[error("{} held along it: there it acts on the supports alone", share(*held, *points))]
     LoadOnHeld {
@@ -159,7 +175,12 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => {
                 "places are in m unless they carry a unit; `origin` moves a body"
             }
+            Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
+            Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
             Self::LoadOnHeld { .. } => "take other points, or leave the load out",
+            Self::Pieces { points: 1, .. } => {
+                "a crack that passes through points takes all their bonds: shift it by half a cell; else look at holes and the horizon, unless loose points are meant"
+            }
             Self::Pieces { .. } => {
                 "look at cracks, holes and the horizon, unless loose pieces are meant"
             }
@@ -193,6 +214,8 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "in pieces",
             Self::LargeStretch { .. } => "very strong",
+            Self::FastWaves { .. } => "very light",
+            Self::IdleClasses { .. } => "no stiffness",
             Self::LoadOnHeld { .. } => "held",
             Self::NoSupport { .. } => "loose parts",
             Self::Surface(_) => "unusual horizon",

@@ -25,6 +25,8 @@ pub enum Fault {
         table: String,
         /// The key that may have been meant.
         nearest: Option<String>,
+        /// The table that it belongs to.
+        home: Option<&'static str>,
         /// All keys that belong here.
         allowed: Vec<String>,
     },
@@ -83,6 +85,12 @@ pub enum Fault {
         value: String,
         /// What is needed.
         expected: String,
+    },
+    /// A number with a comma.
+    #[error("`{value}` has a comma")]
+    Comma {
+        /// The value as written.
+        value: String,
     },
     /// An expression that cannot be read.
     #[error("the expression `{text}` cannot be used: {reason}")]
@@ -245,8 +253,8 @@ pub enum Fault {
     },
     /// A body that would need more memory than there is.
     #[error(
-        "the body would have {points:.3e} points and need some {} of memory; {} may be taken",
-        bytes(*needed), bytes(*memory as f64)
+        "the body would have {} points and need some {} of memory; {} may be taken",
+        count(*points), bytes(*needed), bytes(*memory as f64)
     )]
     TooLarge {
         /// Its points, or how many there can be.
@@ -258,8 +266,8 @@ pub enum Fault {
     },
     /// A history of an absorbing end that would need more memory than there is.
     #[error(
-        "the history of {steps:.3e} steps would need some {} of memory; {} may be taken",
-        bytes(*needed), bytes(*memory as f64)
+        "the history of {} steps would need some {} of memory; {} may be taken",
+        count(*steps), bytes(*needed), bytes(*memory as f64)
     )]
     LongHistory {
         /// Steps of the run.
@@ -284,6 +292,7 @@ impl Subject for Fault {
         };
         Some(match self {
             Self::Syntax { .. } => "a deck is TOML: `key = value`, `[table]`, strings in quotes".into(),
+            Self::UnknownKey { home: Some(home), .. } => format!("it belongs in {home}"),
             Self::UnknownKey {
                 nearest, allowed, ..
             } => format!("{}allowed: {}", meant(nearest), names(allowed)),
@@ -295,6 +304,9 @@ impl Subject for Fault {
             | Self::OutOfRange { allowed, .. }
             | Self::BadOverride { allowed, .. } => allowed.clone(),
             Self::NotANumber { expected, .. } => format!("expected {expected}"),
+            Self::Comma { .. } => {
+                "fractions have a point, \"32.5 GPa\"; thousands have no mark; a list stands in brackets, [1, 2]".into()
+            }
             Self::UnknownUnit {
                 nearest, expected, ..
             } => format!("{}expected {expected}", meant(nearest)),
@@ -331,7 +343,9 @@ impl Subject for Fault {
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
             Self::OtherSpacing { .. } => "places in the file are in m and volumes in m³".into(),
-            Self::TooLarge { .. } => "a larger spacing or a shorter horizon needs less".into(),
+            Self::TooLarge { .. } => {
+                "a larger spacing or a shorter horizon needs less; lengths without a unit are in m".into()
+            }
             Self::LongHistory { .. } => {
                 "fewer or longer steps need less, as do exponentials (give a `tolerance`)".into()
             }
@@ -343,6 +357,7 @@ impl Subject for Fault {
     fn label(&self) -> &'static str {
         match self {
             Self::Syntax { .. } => "here",
+            Self::UnknownKey { home: Some(_), .. } => "not here",
             Self::UnknownKey {
                 nearest: Some(_), ..
             }
@@ -357,6 +372,7 @@ impl Subject for Fault {
             Self::Misplaced { .. } => "not here",
             Self::WrongKind { .. } => "wrong kind of value",
             Self::NotANumber { .. } => "no number",
+            Self::Comma { .. } => "a comma",
             Self::UnknownUnit { .. } => "unknown unit",
             Self::WrongUnit { .. } => "wrong unit",
             Self::OutOfRange { .. } => "out of range",
@@ -376,6 +392,22 @@ impl Subject for Fault {
             Self::Model(_) => "refused",
         }
     }
+}
+
+/// A number of things, in groups of three digits; rounded where it is an estimate that nobody would count.
+fn count(number: f64) -> String {
+    if number >= 1e9 {
+        return format!("{number:.1e}");
+    }
+    let digits = format!("{number:.0}");
+    let mut grouped = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            grouped.push(' ');
+        }
+        grouped.push(digit);
+    }
+    grouped
 }
 
 /// `a`, `b` and `c`

@@ -47,6 +47,8 @@ pub(crate) enum UnitError {
     },
     /// A unit that is not written as a product of powers.
     Malformed { unit: String },
+    /// A number with a comma in place of the point.
+    Comma,
 }
 
 /// A unit: its size is `factor · 10^exponent` in SI.
@@ -118,6 +120,9 @@ const MOST_FACTORS: usize = 16;
 pub(crate) fn parse(text: &str) -> Result<Measure, UnitError> {
     let text = text.trim();
     let (number, rest) = split_number(text).ok_or(UnitError::NoNumber)?;
+    if rest.starts_with(',') {
+        return Err(UnitError::Comma);
+    }
     let rest = rest.trim_start();
     if rest.is_empty() {
         return Ok(Measure {
@@ -267,9 +272,40 @@ fn lookup(symbol: &str) -> Result<(&'static Unit, i32), UnitError> {
         })
 }
 
+/// Names that people use for units, and what to write for them.
+const OTHER_NAMES: [(&str, &str); 22] = [
+    ("sec", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("usec", "us"),
+    ("µsec", "us"),
+    ("nsec", "ns"),
+    ("hour", "h"),
+    ("hours", "h"),
+    ("minutes", "min"),
+    ("meter", "m"),
+    ("metre", "m"),
+    ("micron", "um"),
+    ("microns", "um"),
+    ("gram", "g"),
+    ("tonne", "Mg"),
+    ("newton", "N"),
+    ("pascal", "Pa"),
+    ("joule", "J"),
+    ("percent", "%"),
+    ("inch", "25.4 mm"),
+    ("psi", "6.895 kPa"),
+];
+
 fn nearest_symbol(symbol: &str) -> Option<String> {
+    let lower = symbol.to_lowercase();
+    let known = OTHER_NAMES.iter().find(|(name, _)| *name == lower);
+    if let Some((_, unit)) = known {
+        return Some((*unit).into());
+    }
     // Prefixes that decks use come first, so that they win among equally near ones.
-    let names: Vec<String> = ["", "m", "k", "M", "G", "n", "u", "c"]
+    let names: Vec<String> = ["", "M", "m", "k", "G", "n", "u", "c"]
         .iter()
         .flat_map(|prefix| {
             UNITS
@@ -278,7 +314,14 @@ fn nearest_symbol(symbol: &str) -> Option<String> {
                 .map(move |unit| format!("{prefix}{}", unit.symbol))
         })
         .collect();
-    super::nearest::nearest(symbol, names.iter().map(String::as_str)).map(String::from)
+    // A capital M is a mega, whatever the rest is like.
+    let first = symbol.chars().next();
+    let alike = names
+        .iter()
+        .find(|name| name.to_lowercase() == lower && name.chars().next() == first);
+    alike.cloned().or_else(|| {
+        super::nearest::nearest(symbol, names.iter().map(String::as_str)).map(String::from)
+    })
 }
 
 #[cfg(test)]
@@ -349,6 +392,8 @@ mod tests {
         assert_eq!(parse("mm"), Err(UnitError::NoNumber));
         assert_eq!(parse("nan m"), Err(UnitError::NoNumber));
         assert_eq!(parse("inf"), Err(UnitError::NoNumber));
+        assert_eq!(parse("32,5 GPa"), Err(UnitError::Comma));
+        assert_eq!(parse("1,000"), Err(UnitError::Comma));
         assert_eq!(parse("1e999"), Err(UnitError::TooLarge));
         assert_eq!(parse("1e300 Tm3"), Err(UnitError::TooLarge));
         for text in [
@@ -361,20 +406,24 @@ mod tests {
         }
         for (text, symbol, near) in [
             ("1 GPA", "GPA", "GPa"),
-            ("1 mn", "mn", "m"),
+            ("1 mn", "mn", "mN"),
             ("1 kpa", "kpa", "kPa"),
-            ("1 sec", "sec", ""),
+            ("1 MPA", "MPA", "MPa"),
+            ("1 mPA", "mPA", "mPa"),
+            ("1 sec", "sec", "s"),
+            ("150 usec", "usec", "us"),
+            ("2 microns", "microns", "um"),
+            ("2 furlong", "furlong", ""),
         ] {
             let Err(UnitError::Unknown { symbol: s, nearest }) = parse(text) else {
                 panic!("{text}")
             };
             assert_eq!(s, symbol);
-            if !near.is_empty() {
-                assert!(nearest.is_some(), "{text}");
-                if near.len() > 1 {
-                    assert_eq!(nearest.as_deref(), Some(near));
-                }
-            }
+            assert_eq!(
+                nearest.as_deref(),
+                (!near.is_empty()).then_some(near),
+                "{text}"
+            );
         }
     }
 

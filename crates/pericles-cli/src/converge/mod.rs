@@ -78,23 +78,26 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<Exit, CliError> {
         args.out.as_deref(),
         "-converge",
     )?;
-    let settings = Settings::new(&args.execution, &args.caching, &args.limits);
+    let settings = Settings::new(&args.options);
     let exit = sweep.drive(&settings)?;
     if exit != Exit::Done {
         return Ok(exit);
     }
     let scalar = Scalar::named(&args.scalar);
     let mut points = Vec::new();
+    let mut unit = String::new();
     for results in sweep.results() {
+        let value;
+        (value, unit) = scalar.of(&results)?;
         points.push(Point {
             spacing: results.number("/model/spacing").unwrap_or(f64::NAN),
             horizon: results.number("/model/horizon").unwrap_or(f64::NAN),
-            value: scalar.of(&results)?,
+            value,
         });
     }
     let families = families(points, args.horizon.is_some());
     write_table(&sweep, &families, args)?;
-    chart(&families, args).write(sweep.folder().file("convergence.png"))?;
+    chart(&families, args, &unit).write(sweep.folder().file("convergence.png"))?;
     show(&families, args)?;
     console::print(format_args!(
         "convergence.csv and convergence.png in {}",
@@ -170,15 +173,15 @@ fn write_table(sweep: &Sweep, families: &[Family], args: &ConvergeArgs) -> Resul
 }
 
 /// The distance from the reference on logarithmic axes, or the number itself without one.
-fn chart(families: &[Family], args: &ConvergeArgs) -> LineChart {
+fn chart(families: &[Family], args: &ConvergeArgs, unit: &str) -> LineChart {
     let name = args.scalar.replace('_', " ");
     let x = ChartAxis::new("spacing", "m");
     let (x, y) = match args.reference {
         Some(_) => (
             x.logarithmic(),
-            ChartAxis::new(format!("|{name} − reference|"), "").logarithmic(),
+            ChartAxis::new(format!("|{name} − reference|"), unit).logarithmic(),
         ),
-        None => (x, ChartAxis::new(name, "")),
+        None => (x, ChartAxis::new(name, unit)),
     };
     let mut chart = LineChart::new(x, y);
     for family in families {

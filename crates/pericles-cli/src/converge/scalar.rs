@@ -34,11 +34,11 @@ impl Scalar {
         }
     }
 
-    /// The number of a run.
+    /// The number of a run, and its unit; empty for numbers of run.json.
     ///
     /// # Errors
     /// A run that has no such number, tables that are damaged.
-    pub(super) fn of(&self, results: &Results) -> Result<f64, CliError> {
+    pub(super) fn of(&self, results: &Results) -> Result<(f64, String), CliError> {
         let mut known = Vec::new();
         for path in results.tables() {
             let table = read_csv(path)?;
@@ -46,12 +46,17 @@ impl Scalar {
                 .column(&self.name)
                 .and_then(|values| self.picked(values))
             {
-                return Ok(number);
+                let mut columns = table.columns.iter();
+                let column = columns.find(|column| column.name() == self.name);
+                return Ok((number, column.map_or("", |column| column.unit()).to_owned()));
             }
             known.extend(table.columns.iter().map(|column| column.name().to_owned()));
         }
         let pointer = format!("/{}", self.name.replace('.', "/"));
-        results.number(&pointer).ok_or_else(|| {
+        let number = results
+            .number(&pointer)
+            .map(|number| (number, String::new()));
+        number.ok_or_else(|| {
             let listing = format!(
                 "the tables have {}; run.json has numbers such as audit.elastic_energy",
                 known.join(", ")

@@ -15,6 +15,7 @@ use crate::args::DispersionArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::given;
 use crate::run;
 use crate::units::{percent, quantity, significant};
 use curves::{Curves, STEPS, write_bonds, write_classes, write_polar};
@@ -26,7 +27,7 @@ use spectrum::write_spectrum;
 /// A deck that is refused, output that cannot be written, a spectrum of an unstable lattice.
 pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
-    let deck = Deck::read(&args.deck, &args.overrides.set)?;
+    let deck = given::deck(&args.deck, &args.overrides.set)?;
     let model = deck.build()?;
     let lattice = deck.bond_lattice(&model)?;
     let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-dispersion")?;

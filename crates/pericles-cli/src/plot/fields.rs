@@ -134,7 +134,17 @@ fn wanted(
         let what = found.ok_or_else(|| {
             let names: Vec<String> = written.iter().map(|what| what.name(dimension)).collect();
             let listing = format!("the run wrote {}", names.join(", "));
-            CliError::unknown("field", name, &names, &listing)
+            let Some(left_out) = all.iter().find(|what| what.name(dimension) == *name) else {
+                return CliError::unknown("field", name, &names, &listing);
+            };
+            let field = left_out.field.name();
+            CliError::Unknown {
+                kind: "field",
+                name: name.clone(),
+                hint: format!(
+                    "{listing}; with \"{field}\" among names of output.fields another run writes it"
+                ),
+            }
         })?;
         // A deck's own picture of the field says how it is best seen.
         let own = deck

@@ -19,16 +19,16 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use pericles_deck::Deck;
 use pericles_io::{IoError, OutputFolder, write_atomically};
 use serde::{Deserialize, Serialize};
 
-use crate::args::{Caching, Execution, Limits, ResumeArgs, RunArgs};
+use crate::args::{Caching, ResumeArgs, RunArgs, RunOptions};
 use crate::checkpoint::DeckText;
 use crate::console;
 use crate::deadline::Deadline;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::given;
 use crate::prepare::Means;
 use crate::results::Results;
 use crate::run::{self, Session};
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         args.out.as_deref(),
         "-sweep",
     )?;
-    sweep.drive(&Settings::new(&args.execution, &args.caching, &args.limits))
+    sweep.drive(&Settings::new(&args.options))
 }
 
 /// Goes on with a sweep: runs that have finished stay, others go on from their checkpoint or begin.
@@ -91,7 +91,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         record,
         folder,
     };
-    sweep.drive(&Settings::new(&args.execution, &args.caching, &args.limits))
+    sweep.drive(&Settings::new(&args.options))
 }
 
 /// A sweep in its folder.
@@ -113,7 +113,7 @@ impl Sweep {
         out: Option<&Path>,
         suffix: &str,
     ) -> Result<Self, CliError> {
-        let read = Deck::read(deck, overrides)?;
+        let read = given::deck(deck, overrides)?;
         let record = Record {
             deck: DeckText::of(&read, deck.display().to_string()),
             axes,
@@ -169,13 +169,14 @@ pub(crate) struct Settings<'a> {
 
 impl<'a> Settings<'a> {
     /// What the command line says; one thread a run unless it says otherwise.
-    pub(crate) fn new(execution: &Execution, caching: &'a Caching, limits: &Limits) -> Self {
+    pub(crate) fn new(options: &'a RunOptions) -> Self {
+        let Means { caching, memory } = options.means();
         Self {
-            threads: execution.threads.count_or(1),
+            threads: options.execution.threads.count_or(1),
             caching,
-            memory: limits.memory.bytes(),
-            deadline: Deadline::from_now(limits.wall_time),
-            quiet: execution.quiet,
+            memory,
+            deadline: Deadline::from_now(options.limits.wall_time),
+            quiet: options.execution.quiet,
         }
     }
 }

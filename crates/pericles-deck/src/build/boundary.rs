@@ -1,11 +1,10 @@
-//! Absorbing ends and damping layers of a model.
+//! Absorbing ends of a model.
 
 use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStep,
-    MidpointEnd, OuterLayer, Side,
+    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
+    LatticeStep, MidpointEnd, OuterLayer, Side,
 };
-use pericles::boundary::{DampingLayer, DampingProfile};
-use pericles::material::BondConstants;
+use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
 use pericles::{PericlesError, System};
@@ -141,6 +140,7 @@ impl Deck {
                 dt: steps.dt,
             };
             step.check(&stencil).map_err(refuse)?;
+            warnings.extend(self.judge_reach(&stencil, system.cloud()));
             let count = steps.count as usize;
             if !end.plan.forgets() {
                 sites += stencil.reach() * if end.beyond.is_some() { 3 } else { 1 };
@@ -178,38 +178,16 @@ impl Deck {
         Ok(reports)
     }
 
-    /// Makes the damping layers.
-    pub(super) fn add_damping_layers(
-        &self,
-        system: &mut System,
-        constants: &BondConstants,
-        steps: &Steps,
-    ) -> Result<(), DeckError> {
-        for (k, boundary) in self.boundaries.iter().enumerate() {
-            let BoundaryCondition::DampingLayer {
-                face,
-                thickness,
-                reflection,
-                power,
-            } = *boundary
-            else {
-                continue;
-            };
-            let path = Path::from("boundary").index(k);
-            let refuse = |error: PericlesError| self.at_path(&path, error.into());
-            if self.surface.is_some() {
-                let reason = "a closed surface has no sides".into();
-                return Err(refuse(PericlesError::BadDampingLayer { reason }));
-            }
-            // Of the first material, where there are several.
-            let modulus = self.body.state.longitudinal_modulus(constants.young);
-            let speed = (modulus / system.density().at(0)).sqrt();
-            let profile = DampingProfile::of_reflection(thickness, reflection, power, speed);
-            let frequency = steps.frequency.map(|frequency| frequency.estimate);
-            let layer = DampingLayer::new(system, face, profile, steps.dt, frequency);
-            system.add_boundary(Box::new(layer.map_err(refuse)?));
+    /// Warns where the longest bonds of a table of classes have no stiffness: the exterior, read off the bonds, does not know of them.
+    fn judge_reach(&self, stencil: &LatticeStencil, cloud: &PointCloud) -> Option<Warning> {
+        let material = &self.material.bonds;
+        if !matches!(material.influence.function, InfluenceFunction::Classes(_)) {
+            return None;
         }
-        Ok(())
+        let given = (material.horizon / cloud.spacing() + 1e-9).floor() as usize;
+        let reach = stencil.reach();
+        let caution = Caution::IdleClasses { given, reach };
+        (reach < given).then(|| self.finding(&"material.influence".into(), caution))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Bonds of a body with cells of several sizes.
 
 use pericles::PericlesError;
+use pericles::material::PairLaw;
 use pericles::operator::{AssembledBonds, BondForm, CompositeBody, GradedBody};
 
 use crate::deck::Deck;
@@ -34,6 +35,16 @@ impl Deck {
                 reason: "its bonds have the laws of two grids already; parts of other stiffness are possible ([[material.inclusion]])",
             };
             return Err(self.at("material", error));
+        }
+        if !matches!(
+            composite.body.material.law,
+            PairLaw::Linear | PairLaw::BondStretch
+        ) {
+            let error = PericlesError::Graded {
+                what: "this model",
+                reason: "bonds between cells of two sizes are \"linear\" or \"bond-stretch\"",
+            };
+            return Err(self.at("material.model", error));
         }
         let body = &composite.body;
         let graded = GradedBody {

@@ -43,13 +43,12 @@ impl Deck {
     ) -> Result<(), DeckError> {
         let dimension = grid.grid.dimension();
         let each = points_per_cell * self.bytes_of_point(dimension, self.neighbours(dimension));
-        let memory = resources.memory as f64;
         let cells = match (&self.body.rectangular, &grid.grid.shape) {
             (Some(spacing), Shape::Box { size, .. }) => {
                 let counts = size.iter().zip(spacing).map(|(side, dx)| side / dx);
                 counts.product()
             }
-            _ => match grid.count(memory / each) {
+            _ => match grid.count(resources.memory as f64 / each) {
                 Ok(cells) => cells,
                 // A grid that cannot be is refused where its points are made.
                 Err(_) => return Ok(()),
@@ -59,7 +58,7 @@ impl Deck {
             &"body.spacing".into(),
             points_per_cell * cells,
             cells * each,
-            memory,
+            resources,
         )
     }
 
@@ -72,12 +71,7 @@ impl Deck {
         let (points, dimension) = (cloud.len() as f64, cloud.dimension());
         let neighbours = self.neighbours(dimension).min(points);
         let needed = points * self.bytes_of_point(dimension, neighbours);
-        self.refuse_if_more(
-            &self.horizon_key().into(),
-            points,
-            needed,
-            resources.memory as f64,
-        )
+        self.refuse_if_more(&self.horizon_key().into(), points, needed, resources)
     }
 
     /// Refuses a surface whose vertices alone do not fit.
@@ -87,12 +81,7 @@ impl Deck {
         resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
         let needed = vertices * (self.bytes_of_state(3) + VERTEX);
-        self.refuse_if_more(
-            &"body.shape".into(),
-            vertices,
-            needed,
-            resources.memory as f64,
-        )
+        self.refuse_if_more(&"body.shape".into(), vertices, needed, resources)
     }
 
     /// Refuses a surface whose bonds do not fit; `area` is that of all its points, m².
@@ -106,12 +95,7 @@ impl Deck {
         let points = points as f64;
         let neighbours = (std::f64::consts::PI * horizon * horizon / area * points).min(points);
         let needed = points * (self.bytes_of_state(3) + VERTEX + GEODESIC * neighbours);
-        self.refuse_if_more(
-            &"material.horizon".into(),
-            points,
-            needed,
-            resources.memory as f64,
-        )
+        self.refuse_if_more(&"material.horizon".into(), points, needed, resources)
     }
 
     /// Refuses an absorbing end whose histories do not fit with those of the ends before; `sites` of all of them for so many steps.
@@ -141,8 +125,7 @@ impl Deck {
         sites: f64,
         resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
-        let memory = resources.memory as f64;
-        self.refuse_if_more(path, sites, 2.0 * NUMBER * sites, memory)
+        self.refuse_if_more(path, sites, 2.0 * NUMBER * sites, resources)
     }
 
     fn refuse_if_more(
@@ -150,15 +133,15 @@ impl Deck {
         path: &Path,
         points: f64,
         needed: f64,
-        memory: f64,
+        resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
-        if needed <= memory {
+        if needed <= resources.memory as f64 {
             return Ok(());
         }
         let fault = Fault::TooLarge {
             points,
             needed,
-            memory: memory as u64,
+            memory: resources.memory,
         };
         Err(self.at_path(path, fault))
     }

@@ -1,9 +1,11 @@
 //! From a deck to a model that can be run.
 
 mod area;
+mod assemble;
 mod boundary;
 mod conditions;
 mod content;
+mod damping;
 mod exact;
 mod fields;
 mod graded;
@@ -26,23 +28,18 @@ use std::sync::Arc;
 use pericles::boundary::absorbing::{EndReport, Side};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody};
+use pericles::operator::BondForm;
 use pericles::space::surface::Surface;
-use pericles::space::{GradedCloud, PointCloud, PointSet};
+use pericles::space::{PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
-use pericles::{PericlesError, PointScalar, Simulation, System};
+use pericles::{PericlesError, Simulation, System};
 
-use self::graded::Grids;
-use self::parts::Composition;
-use crate::caution::Caution;
+use self::assemble::Assembled;
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
 use crate::finding::{Finding, Subject, Warning};
-use crate::material::Inclusion;
 use crate::reader::Path;
-use crate::set::ALL;
-use crate::surface::SurfaceDeck;
 
 /// Sets of points by name.
 pub type Sets = Vec<(String, PointSet)>;
@@ -85,25 +82,16 @@ pub struct Model {
     pub exact: Option<ExactReference>,
     /// What is odd.
     pub warnings: Vec<Warning>,
-}
-
-/// What differs between bodies on a grid and surfaces.
-struct Assembled {
-    cloud: Arc<PointCloud>,
-    surface: Option<Arc<Surface>>,
-    sets: Sets,
-    constants: BondConstants,
-    parts: Vec<BondConstants>,
-    bonds: AssembledBonds,
-    cracks: Vec<TrackedCrack>,
-    density: PointScalar,
+    /// The strongest damping of layers, 1/s.
+    damping: f64,
 }
 
 impl Model {
     /// The largest stable step of the scheme, without a safety factor, s.
     pub fn stable_step(&self) -> Option<f64> {
         let limit = self.integrator.stability_limit()?;
-        Some(self.frequency?.stable_step(limit, 1.0))
+        let undamped = self.frequency?.stable_step(limit, 1.0);
+        Some(damping::stable_step(undamped, self.damping))
     }
 
     /// The run; observers are still to be added.
@@ -165,10 +153,20 @@ impl Deck {
         let integrator = self.integrator(&system, &sets)?;
         let ends = self.ends(&system, &state, &sets, &*integrator, &resources)?;
         let exterior = boundary::exterior_frequency(&ends);
-        let steps = self.steps(&system, &state, &*integrator, exterior, &mut warnings)?;
+        let layers = self.damping_layers(&system, &constants)?;
+        let damping = damping::strongest(&layers, &cloud);
+        let integrated = &*integrator;
+        let steps = self.steps(
+            &system,
+            &state,
+            integrated,
+            exterior,
+            damping,
+            &mut warnings,
+        )?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
         let ends = self.add_ends(&mut system, ends, &steps, &resources, &mut warnings)?;
-        self.add_damping_layers(&mut system, &constants, &steps)?;
+        self.add_damping_layers(&mut system, layers, &steps)?;
         Ok(Model {
             cloud,
             surface,
@@ -188,6 +186,7 @@ impl Deck {
             ends,
             exact,
             warnings,
+            damping,
         })
     }
 
@@ -206,223 +205,6 @@ impl Deck {
             }
             None => Ok((self.points(&resources)?.cloud, None)),
         }
-    }
-
-    fn assemble_grid(
-        &self,
-        resources: &Resources<'_>,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<Assembled, DeckError> {
-        let GradedCloud {
-            cloud,
-            ratios,
-            grid_of_point,
-        } = self.points(resources)?;
-        let cloud = Arc::new(cloud);
-        let sets = self.select(&cloud)?;
-        let material = &self.material.bonds;
-        let constants = material
-            .constants(&cloud, self.body.state)
-            .map_err(|error| self.at_material(error))?;
-        let no_fail = self.union_of(&sets, &self.material.no_fail)?;
-        let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
-        let Composition {
-            classes,
-            density,
-            parts,
-        } = self.parts(&cloud, &sets, &constants, warnings)?;
-        let body = BondBody {
-            cloud: &cloud,
-            material,
-            constants: &constants,
-            cracks: &[],
-            no_fail: &no_fail,
-            stiffness: &stiffness,
-            damage: self.material.damage,
-        };
-        let grids = Grids {
-            ratios: &ratios,
-            of_point: &grid_of_point,
-        };
-        let composite = CompositeBody {
-            body,
-            classes: classes.as_ref(),
-            correction: self.material.surface_correction,
-        };
-        let (bonds, cracks) = self.bonds(composite, grids, warnings)?;
-        if self.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
-            let error = PericlesError::FormNotUsable {
-                form: bonds.form.name(),
-                reason: "stress and strain are made of listed bonds: \"list\", or leave these fields out",
-            };
-            return Err(self.at("output", error));
-        }
-        Ok(Assembled {
-            surface: None,
-            sets,
-            bonds,
-            cracks,
-            density,
-            constants,
-            parts,
-            cloud,
-        })
-    }
-
-    fn assemble_surface(
-        &self,
-        deck: &SurfaceDeck,
-        resources: &Resources<'_>,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<Assembled, DeckError> {
-        let (surface, cloud) = self.surface_points(deck, resources)?;
-        let cloud = Arc::new(cloud);
-        let sets = self.select(&cloud)?;
-        self.refuse_body_forces()?;
-        let operator = self.surface_operator(deck, &surface, &cloud, &sets, resources.cache)?;
-        let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
-        for caution in surface.cautions(deck.material.horizon, neighbours) {
-            warnings.push(self.finding(&"material.horizon".into(), Caution::Surface(caution)));
-        }
-        Ok(Assembled {
-            surface: Some(Arc::new(surface)),
-            sets,
-            bonds: AssembledBonds {
-                operator,
-                cuts: Vec::new(),
-                form: BondForm::List,
-            },
-            cracks: Vec::new(),
-            density: PointScalar::Uniform(deck.material.density),
-            constants: BondConstants {
-                young: f64::NAN,
-                micromodulus: f64::NAN,
-                critical_stretch: deck.material.critical_stretch,
-                fracture_energy: f64::NAN,
-                stiffness_error: f64::NAN,
-            },
-            parts: Vec::new(),
-            cloud,
-        })
-    }
-
-    fn select(&self, cloud: &PointCloud) -> Result<Sets, DeckError> {
-        let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
-        let mut problems = Vec::new();
-        for set in &self.sets {
-            let points = set.members.of(cloud);
-            if points.is_empty() {
-                let fault = Fault::EmptySet {
-                    set: set.name.clone(),
-                };
-                problems.push(self.finding(&Path::from("sets").key(&set.name), fault));
-            }
-            sets.push((set.name.clone(), points));
-        }
-        if problems.is_empty() {
-            Ok(sets)
-        } else {
-            Err(DeckError::refused(problems))
-        }
-    }
-
-    /// The points of the sets whose bonds never break.
-    fn union_of(&self, sets: &Sets, names: &[String]) -> Result<PointSet, DeckError> {
-        let mut points = PointSet::new();
-        for name in names {
-            points.extend(self.members(sets, name, &"material.no_fail".into())?);
-        }
-        points.sort_unstable();
-        points.dedup();
-        Ok(points)
-    }
-
-    /// Stiffness of each point over the material's; empty without inclusions.
-    fn stiffness_of(
-        &self,
-        inclusions: &[Inclusion],
-        cloud: &PointCloud,
-        sets: &Sets,
-    ) -> Result<Vec<f64>, DeckError> {
-        let mut stiffness = vec![
-            1.0;
-            if inclusions.is_empty() {
-                0
-            } else {
-                cloud.len()
-            }
-        ];
-        for (k, inclusion) in inclusions.iter().enumerate() {
-            let path = Path::from("material.inclusion").index(k);
-            for &i in self.members(sets, &inclusion.set, &path)? {
-                stiffness[i as usize] = inclusion.stiffness;
-            }
-        }
-        Ok(stiffness)
-    }
-
-    /// The operator, and what the pre-cracks took from it.
-    fn bonds(
-        &self,
-        composite: CompositeBody<'_>,
-        grids: Grids<'_>,
-        warnings: &mut Vec<Warning>,
-    ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
-        let crack = |k| Path::from("crack").index(k);
-        for (k, pre_crack) in self.cracks.iter().enumerate() {
-            // The library tells what is wrong with a crack, not with which.
-            pre_crack
-                .surface
-                .cutter(pre_crack.ends, 0.0)
-                .map_err(|error| self.at_path(&crack(k), error.into()))?;
-        }
-        let cloud = composite.body.cloud;
-        let surfaces: Vec<_> = self
-            .cracks
-            .iter()
-            .map(|crack| (crack.surface.clone(), crack.ends))
-            .collect();
-        let composite = CompositeBody {
-            body: BondBody {
-                cracks: &surfaces,
-                ..composite.body
-            },
-            ..composite
-        };
-        let assembled = if grids.ratios.len() > 1 {
-            self.graded_bonds(&composite, grids)?
-        } else {
-            let form = match self.material.form {
-                BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
-                    composite.fastest_bonds()
-                }
-                BondForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
-                    BondForm::List
-                }
-                BondForm::FloatGrid if !self.time.scheme.bears_rounding() => {
-                    return Err(self.at_material(PericlesError::FormNotUsable {
-                        form: BondForm::FloatGrid.name(),
-                        reason: "this scheme needs forces in double precision; use \"grid\", or a Verlet or Runge–Kutta scheme with one step",
-                    }));
-                }
-                form => form,
-            };
-            composite
-                .operator(form)
-                .map_err(|error| self.at_material(error))?
-        };
-        let mut tracked = Vec::new();
-        for (k, ((surface, _), cut)) in surfaces.iter().zip(&assembled.cuts).enumerate() {
-            if cut.bonds == 0 {
-                let caution = Self::useless_crack(surface, cloud);
-                warnings.push(self.finding(&crack(k), caution));
-            }
-            tracked.push(TrackedCrack {
-                crack: surface.clone(),
-                points: cut.points.clone(),
-            });
-        }
-        Ok((assembled, tracked))
     }
 
     /// The points of a set. A deck read from a text names only sets it defines; one changed by a program may not.

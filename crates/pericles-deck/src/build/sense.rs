@@ -2,6 +2,7 @@
 
 use pericles::System;
 use pericles::family::{BondList, Crack};
+use pericles::material::BondConstants;
 use pericles::space::{Point, PointCloud};
 
 use crate::caution::Caution;
@@ -23,6 +24,17 @@ impl Deck {
         } else {
             self.judge_pieces(system, warnings);
         }
+    }
+
+    /// Warns of waves faster than any solid carries them.
+    pub(super) fn judge_speed(&self, constants: &BondConstants) -> Option<Warning> {
+        /// m/s. Diamond has 18 000.
+        const FASTEST: f64 = 3e4;
+        let modulus = self.body.state.longitudinal_modulus(constants.young);
+        let density = self.material.bonds.density;
+        let speed = (modulus / density).sqrt();
+        let caution = Caution::FastWaves { speed };
+        (speed > FASTEST).then(|| self.finding(&"material.density".into(), caution))
     }
 
     /// What is odd about a pre-crack that cuts no bond.

@@ -4,6 +4,7 @@ use pericles::PericlesError;
 use pericles::System;
 use pericles::time::{HighestFrequency, Integrator, State};
 
+use super::damping;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -20,13 +21,14 @@ pub(super) struct Steps {
 }
 
 impl Deck {
-    /// Finds the step, or judges the one that is given; `exterior` is the highest frequency of what lies beyond the body, 1/s.
+    /// Finds the step, or judges the one that is given; `exterior` is the highest frequency of what lies beyond the body, `damped` the strongest damping of its layers, 1/s.
     pub(super) fn steps(
         &self,
         system: &System,
         state: &State,
         integrator: &dyn Integrator,
         exterior: f64,
+        damped: f64,
         warnings: &mut Vec<Warning>,
     ) -> Result<Steps, DeckError> {
         let end = self.time.end;
@@ -56,7 +58,8 @@ impl Deck {
                         reason: "it has no stable step of its own; give dt",
                     })
                     .map_err(refuse)?;
-                let stable = frequency.stable_step(limit, safety);
+                let stable =
+                    safety * damping::stable_step(frequency.stable_step(limit, 1.0), damped);
                 let count = self.count(end, stable)?;
                 Ok(Steps {
                     dt: end / count as f64,
@@ -67,6 +70,7 @@ impl Deck {
             TimeStep::Fixed(dt) => {
                 if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
                     self.judge(dt, limit, frequency, integrator.name(), warnings)?;
+                    self.check_damped(dt, frequency.stable_step(limit, 1.0), damped)?;
                 }
                 if let (Scheme::Trigonometric(_), Ok(frequency)) = (&self.time.scheme, &frequency) {
                     self.check_angle(dt, frequency)?;

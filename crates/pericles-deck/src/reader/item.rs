@@ -195,6 +195,7 @@ impl<'a> Item<'a> {
                     nearest: None,
                     expected: expected(),
                 }),
+                Err(UnitError::Comma) => report(&|value| Fault::Comma { value }),
                 Err(UnitError::NoNumber | UnitError::TooLarge) => not_a_number(),
             },
             _ => {

@@ -138,7 +138,6 @@ impl Survey {
     }
 
     /// All tables with their places.
-    #[cfg(test)]
     pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, &TableSurvey)> {
         self.tables
             .iter()

@@ -296,6 +296,10 @@ impl<'a> Table<'a> {
                     key: entry.key.clone(),
                     table: self.path.to_string(),
                     nearest: nearest.map(String::from),
+                    home: nearest
+                        .is_none()
+                        .then(|| self.ledger.home_of(&entry.key))
+                        .flatten(),
                     allowed: owned(&allowed),
                 },
             );

@@ -7,7 +7,7 @@ use crate::quantity::Quantity;
 use crate::reader::{Form, POSITIVE, below};
 
 /// A decimal number without its sign, and a unit or none.
-const DIGITS: &str = r"(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(\s*[^\s\d].*)?\s*$";
+const DIGITS: &str = r"(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(\s*[^\s\d,].*)?\s*$";
 
 pub(super) fn document(schema: &Schema) -> Json {
     let mut root = schema.table("");

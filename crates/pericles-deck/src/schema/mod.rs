@@ -10,6 +10,10 @@ mod json;
 mod markdown;
 mod specimens;
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::sync::OnceLock;
+
 use serde_json::Value as Json;
 
 use self::descriptions::Descriptions;
@@ -25,6 +29,48 @@ pub fn json_schema() -> Json {
 /// The reference of all keys, as Markdown: a section for every table.
 pub fn reference() -> String {
     markdown::document(&Schema::new())
+}
+
+/// The table that a key belongs to, as it is written in a deck: `[body]`, `[[output.picture]]`. None if there is no such key, or if several tables as near to the root have it.
+pub(crate) fn home_of(key: &str) -> Option<&'static str> {
+    static HOMES: OnceLock<BTreeMap<&'static str, Option<String>>> = OnceLock::new();
+    HOMES
+        .get_or_init(|| homes(&Schema::new()))
+        .get(key)?
+        .as_deref()
+}
+
+fn homes(schema: &Schema) -> BTreeMap<&'static str, Option<String>> {
+    let definitions = schema.survey.definitions();
+    let mut found: BTreeMap<&'static str, (usize, Option<String>)> = BTreeMap::new();
+    for (place, table) in schema.survey.tables() {
+        let first = place.split(['.', '[']).next().unwrap_or_default();
+        // What several tables share has no place of its own.
+        if place.is_empty() || definitions.contains(&first) {
+            continue;
+        }
+        let depth = place.split('.').count();
+        let written = match place.strip_suffix("[]") {
+            Some(list) => format!("[[{list}]]"),
+            None => format!("[{place}]"),
+        };
+        for key in table.keys().flat_map(names) {
+            match found.entry(key) {
+                Entry::Vacant(entry) => {
+                    entry.insert((depth, Some(written.clone())));
+                }
+                Entry::Occupied(mut entry) if entry.get().0 > depth => {
+                    entry.insert((depth, Some(written.clone())));
+                }
+                Entry::Occupied(mut entry) if entry.get().0 == depth => {
+                    entry.insert((depth, None));
+                }
+                Entry::Occupied(_) => {}
+            }
+        }
+    }
+    let homes = found.into_iter();
+    homes.map(|(key, (_, home))| (key, home)).collect()
 }
 
 /// All that is known of decks.
@@ -116,6 +162,24 @@ mod tests {
             })
             .collect();
         assert!(refusals.is_empty(), "{refusals:#?}");
+    }
+
+    #[test]
+    fn keys_have_homes_where_only_one_table_has_them() {
+        for (key, home) in [
+            ("shape", Some("[body]")),
+            ("E", Some("[material]")),
+            ("youngs_modulus", Some("[material]")),
+            ("density", Some("[material]")),
+            ("segment", Some("[[crack]]")),
+            ("scheme", Some("[time]")),
+            ("animation", Some("[[output.picture]]")),
+            ("set", None),
+            ("radius", Some("[body]")),
+            ("unheard_of", None),
+        ] {
+            assert_eq!(home_of(key), home, "{key}");
+        }
     }
 
     #[test]

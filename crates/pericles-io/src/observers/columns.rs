@@ -17,15 +17,22 @@ pub trait HistoryColumns: Saved {
     fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell>;
 }
 
-/// Of schemes with inner iterations: the iterations of the last step, and the last change of the velocity.
-pub struct InnerColumns;
+/// Of schemes with inner iterations: the iterations of the last step, and what was left at its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InnerColumns {
+    /// Implicit steps: the last change of the velocity.
+    Velocity,
+    /// Relaxation: the forces out of balance over those that act.
+    Residual,
+}
 
 impl HistoryColumns for InnerColumns {
     fn columns(&self) -> Vec<Column> {
-        vec![
-            Column::integer("inner_iterations"),
-            Column::real("inner_change", "m/s"),
-        ]
+        let left = match self {
+            Self::Velocity => Column::real("inner_change", "m/s"),
+            Self::Residual => Column::real("residual", "1"),
+        };
+        vec![Column::integer("inner_iterations"), left]
     }
 
     fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {

@@ -29,6 +29,8 @@ pub struct FieldSeries {
     outputs: usize,
     surface: Option<Arc<Surface>>,
     wanted: Vec<Field>,
+    /// Made at the first output.
+    body: Option<Arc<FixedPart>>,
     background: Background,
 }
 
@@ -42,6 +44,7 @@ impl FieldSeries {
             outputs: 0,
             surface: None,
             wanted: Field::USUAL.to_vec(),
+            body: None,
             background: Background::default(),
         }
     }
@@ -79,9 +82,13 @@ impl FieldSeries {
         Ok(())
     }
 
-    fn output(&self, snapshot: &Snapshot<'_>) -> Output {
+    fn output(&mut self, snapshot: &Snapshot<'_>) -> Output {
         let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
-        let numbering = Numbering::of(cloud);
+        let surface = self.surface.as_deref();
+        let body = self
+            .body
+            .get_or_insert_with(|| Arc::new(FixedPart::of(cloud, surface)));
+        let numbering = &body.numbering;
         let mut columns: Vec<Column> = self
             .wanted
             .iter()
@@ -92,11 +99,7 @@ impl FieldSeries {
                 values: numbering.apply(array).into_owned(),
             })
             .collect();
-        let mut triangles = None;
-        if let Some(surface) = &self.surface {
-            let number = |vertex: u32| surface.user_number(vertex as usize) as u32;
-            let numbered = surface.triangles().iter();
-            triangles = Some(numbered.map(|triangle| triangle.map(number)).collect());
+        if self.surface.is_some() {
             let kinetic = snapshot.kinetic_energy_density();
             columns.push(Column {
                 name: "Kinetic_Energy_Density".into(),
@@ -105,11 +108,9 @@ impl FieldSeries {
             });
         }
         Output {
-            dimension: cloud.dimension(),
-            positions: numbering.apply(cloud.positions()).into_owned(),
+            body: Arc::clone(body),
             time: state.t,
             columns,
-            triangles,
             single_precision: self.single_precision,
         }
     }
@@ -122,20 +123,44 @@ struct Column {
     values: Vec<f64>,
 }
 
-/// What a file holds, taken from a snapshot that will not wait.
-struct Output {
+/// What all files of a run share, in the user's order of points.
+struct FixedPart {
     dimension: usize,
     positions: Vec<f64>,
+    triangles: Option<Vec<[u32; 3]>>,
+    numbering: Numbering,
+}
+
+impl FixedPart {
+    fn of(cloud: &PointCloud, surface: Option<&Surface>) -> Self {
+        let numbering = Numbering::of(cloud);
+        let numbered = |surface: &Surface| {
+            let number = |vertex: u32| surface.user_number(vertex as usize) as u32;
+            let triangles = surface.triangles().iter();
+            triangles.map(|triangle| triangle.map(number)).collect()
+        };
+        Self {
+            dimension: cloud.dimension(),
+            positions: numbering.apply(cloud.positions()).into_owned(),
+            triangles: surface.map(numbered),
+            numbering,
+        }
+    }
+}
+
+/// What a file holds, taken from a snapshot that will not wait.
+struct Output {
+    body: Arc<FixedPart>,
     time: f64,
     columns: Vec<Column>,
-    triangles: Option<Vec<[u32; 3]>>,
     single_precision: bool,
 }
 
 impl Output {
     fn write(&self, path: &Path) -> std::result::Result<(), IoError> {
-        let mut file = VtuFile::new(self.dimension, &self.positions).time(self.time);
-        if let Some(triangles) = &self.triangles {
+        let body = &*self.body;
+        let mut file = VtuFile::new(body.dimension, &body.positions).time(self.time);
+        if let Some(triangles) = &body.triangles {
             file = file.triangles(triangles);
         }
         for column in &self.columns {

@@ -179,7 +179,7 @@ fn surroundings(cloud: &PointCloud) -> ([f64; 3], [f64; 3]) {
     (low.map(|x| x - around), high.map(|x| x + around))
 }
 
-/// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder, and at the end of the run `<stem>.apng` with all of them if asked for.
+/// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder, and at the end of the run `<stem>.apng` with all of them that are still there if asked for.
 pub struct Pictures {
     folder: PathBuf,
     stem: String,
@@ -227,7 +227,14 @@ impl Observer for Pictures {
         if !self.animated {
             return Ok(());
         }
-        let stills: Vec<PathBuf> = (0..self.drawn).map(|number| self.still(number)).collect();
+        // A long run's user may have taken some away: the others still make an animation.
+        let stills: Vec<PathBuf> = (0..self.drawn)
+            .map(|number| self.still(number))
+            .filter(|still| still.exists())
+            .collect();
+        if stills.is_empty() {
+            return Ok(());
+        }
         let path = self.folder.join(format!("{}.apng", self.stem));
         Ok(write_animation(&stills, path)?)
     }

@@ -45,6 +45,7 @@ pub struct FieldPicture<'a> {
     displacement: Option<(&'a [f64], f64)>,
     name: String,
     unit: String,
+    length_unit: &'static str,
     title: String,
     time: Option<f64>,
     colours: ColourMap,
@@ -96,6 +97,8 @@ pub(super) struct Scene {
     pub(super) window: bool,
     pub(super) bar: ColourBar,
     pub(super) header: Header,
+    /// The unit of lengths; empty for pure numbers.
+    pub(super) length_unit: &'static str,
     pub(super) view: [f64; 3],
 }
 
@@ -116,6 +119,7 @@ impl<'a> FieldPicture<'a> {
             displacement: None,
             name: String::new(),
             unit: String::new(),
+            length_unit: "m",
             title: String::new(),
             time: None,
             colours: ColourMap::default(),
@@ -137,6 +141,12 @@ impl<'a> FieldPicture<'a> {
     pub fn label(mut self, name: impl Into<String>, unit: impl Into<String>) -> Self {
         self.name = name.into();
         self.unit = unit.into();
+        self
+    }
+
+    /// Lengths are pure numbers, as in problems without units; they are in metres otherwise.
+    pub fn without_units(mut self) -> Self {
+        self.length_unit = "";
         self
     }
 
@@ -342,6 +352,7 @@ impl<'a> FieldPicture<'a> {
         let header = Header {
             title: self.title.clone(),
             stamp: self.stamp(),
+            note: self.note(),
             bar_label: bar.shown.label(&self.name),
         };
         Scene {
@@ -353,6 +364,7 @@ impl<'a> FieldPicture<'a> {
             window: self.window.is_some(),
             bar,
             header,
+            length_unit: self.length_unit,
             view: self.view,
         }
     }
@@ -394,13 +406,28 @@ impl<'a> FieldPicture<'a> {
             .unwrap_or_default()
     }
 
+    /// Charts have no second line.
+    fn stamp_of_bar(&self) -> String {
+        let mut said = vec![self.stamp(), self.note()];
+        said.retain(|words| !words.is_empty());
+        said.join(", ")
+    }
+
+    /// What is said of displacements that are drawn larger than they are: places along the axes would else be read as those of the body.
+    fn note(&self) -> String {
+        let enlarged = self.displacement.filter(|(_, scale)| *scale != 1.0);
+        enlarged
+            .map(|(_, scale)| format!("displacement × {scale}"))
+            .unwrap_or_default()
+    }
+
     /// The field of a bar as a curve.
     fn along_the_bar(&self) -> LineChart {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
         order.sort_by(|&a, &b| self.positions[a].total_cmp(&self.positions[b]));
         let x: Vec<f64> = order.iter().map(|&point| self.place(point)[0]).collect();
         let y: Vec<f64> = order.iter().map(|&point| self.values[point]).collect();
-        let mut along = Axis::new("x", "m");
+        let mut along = Axis::new("x", self.length_unit);
         if let Some((low, high)) = self.window {
             along = along.range(low[0], high[0]);
         }
@@ -410,7 +437,7 @@ impl<'a> FieldPicture<'a> {
         }
         LineChart::new(along, across)
             .title(&self.title)
-            .stamp(self.stamp())
+            .stamp(self.stamp_of_bar())
             .width(self.width)
             .curve(Curve::line("", &x, &y))
     }

@@ -189,6 +189,8 @@ impl Frame {
 pub(super) struct Header {
     pub(super) title: String,
     pub(super) stamp: String,
+    /// Below the title.
+    pub(super) note: String,
     pub(super) bar_label: String,
 }
 
@@ -206,7 +208,7 @@ impl Header {
     }
 
     fn second_line(&self, sizes: &Sizes) -> f64 {
-        if self.bar_label.is_empty() {
+        if self.bar_label.is_empty() && self.note.is_empty() {
             0.0
         } else {
             1.5 * sizes.label_text
@@ -226,7 +228,13 @@ impl Header {
         drawing.text(&self.title, (left, middle), style);
 
         let middle = sizes.gap + self.first_line(sizes) + 0.5 * self.second_line(sizes);
-        let style = Style::new(sizes.label_text, Align::End).fitted(&self.bar_label, right - left);
+        let style = Style::new(sizes.label_text, Align::Start);
+        drawing.text(&self.note, (left, middle), style);
+        let mut room = right - left;
+        if !self.note.is_empty() {
+            room -= text::width(&self.note, sizes.label_text) + sizes.label_text;
+        }
+        let style = Style::new(sizes.label_text, Align::End).fitted(&self.bar_label, room);
         drawing.text(&self.bar_label, (right, middle), style);
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let width = scene.width as f64;
     let (bw, bh) = (scene.high[0] - scene.low[0], scene.high[1] - scene.low[1]);
     let largest = bw.max(bh).max(f64::MIN_POSITIVE);
-    let shown = Shown::for_size(largest, "m");
+    let shown = Shown::for_size(largest, scene.length_unit);
     let margin = MARGIN * largest;
     let (ew, eh) = (bw + 2.0 * margin, bh + 2.0 * margin);
 

@@ -195,7 +195,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let mut drawing = Drawing::new(scene.width, (area.bottom + below).ceil() as usize);
     drawing.cells(raster, left as usize, top as usize);
     draw_directions(&mut drawing, &view, area, arm, &sizes);
-    draw_length(&mut drawing, area, per_metre, &sizes);
+    draw_length(&mut drawing, area, (per_metre, scene.length_unit), &sizes);
     scene.bar.draw(&mut drawing, area, &bar_ticks, &sizes);
     scene
         .header
@@ -230,7 +230,7 @@ fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, siz
 }
 
 /// A bar of a round length, below the middle; in parallel projection it holds for every line across the view.
-fn draw_length(drawing: &mut Drawing, area: Area, per_metre: f64, sizes: &Sizes) {
+fn draw_length(drawing: &mut Drawing, area: Area, (per_metre, unit): (f64, &str), sizes: &Sizes) {
     let length = round_below(0.25 * area.width() / per_metre);
     let half = 0.5 * length * per_metre;
     let x = 0.5 * (area.left + area.right);
@@ -242,12 +242,12 @@ fn draw_length(drawing: &mut Drawing, area: Area, per_metre: f64, sizes: &Sizes)
     }
     let style = Style::new(sizes.tick_text, Align::Middle);
     let place = (x, y + sizes.tick + 0.8 * sizes.tick_text);
-    drawing.text(&round_quantity(length), place, style);
+    drawing.text(&round_quantity(length, unit), place, style);
 }
 
 /// A round number with its unit and without noughts at its end: `20 mm`.
-fn round_quantity(length: f64) -> String {
-    let text = quantity(length, "m");
+fn round_quantity(length: f64, unit: &str) -> String {
+    let text = quantity(length, unit);
     match text.split_once(' ') {
         Some((number, unit)) if number.contains('.') => {
             let number = number.trim_end_matches('0').trim_end_matches('.');
@@ -310,7 +310,7 @@ mod tests {
             (2.0, "2 m"),
             (1e-4, "100 µm"),
         ] {
-            assert_eq!(round_quantity(length), text);
+            assert_eq!(round_quantity(length, "m"), text);
         }
     }
 }

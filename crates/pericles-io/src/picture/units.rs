@@ -68,6 +68,10 @@ pub fn quantity(value: f64, unit: &str) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     let shown = Shown::for_size(rounded.abs(), unit);
     let scaled = rounded / shown.factor;
+    // Beyond the prefixes.
+    if scaled != 0.0 && !(1e-3..1e6).contains(&scaled.abs()) && scaled.is_finite() {
+        return format!("{rounded:.2e} {unit}").trim_end().to_owned();
+    }
     let digits = if scaled == 0.0 || !scaled.is_finite() {
         0
     } else {
@@ -143,6 +147,9 @@ mod tests {
             (12.345, "12.3 s"),
             (86_400.0, "86400 s"),
             (-2e-3, "-2.00 ms"),
+            (1.06e-15, "0.00106 ps"),
+            (-3.456e-20, "-3.46e-20 s"),
+            (2e6, "2.00e6 s"),
         ] {
             assert_eq!(quantity(value, "s"), text);
         }

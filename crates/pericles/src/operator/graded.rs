@@ -92,6 +92,10 @@ impl GradedBody<'_> {
             (PairLaw::BondStretch, 1) => self.list::<BondStretch, 1>(),
             (PairLaw::BondStretch, 2) => self.list::<BondStretch, 2>(),
             (PairLaw::BondStretch, 3) => self.list::<BondStretch, 3>(),
+            (_, 1..=3) => Err(PericlesError::Graded {
+                what: "this law of bonds",
+                reason: "bonds between cells of two sizes are linear or follow the bond's stretch",
+            }),
             (_, dimension) => Err(PericlesError::WrongDimension {
                 what: "a bond-based material",
                 needed: "1, 2 or 3",

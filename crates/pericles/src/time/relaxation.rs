@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::{Integrator, State};
-use crate::archive::{Archive, Counter, Saved, Values};
+use super::{InnerIterations, Integrator, State};
+use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::{Accepted, On};
 use crate::parallel::{BLOCK, ordered_sum};
@@ -71,7 +71,9 @@ pub struct Relaxation {
     largest: f64,
     /// Energy given to the damping after bonds broke, J.
     damped: f64,
-    iterations: Counter,
+    inner: InnerIterations,
+    /// Iterations of the present step.
+    iterations: u64,
 }
 
 impl Relaxation {
@@ -118,17 +120,18 @@ impl Relaxation {
             before: zeros(),
             largest: 0.0,
             damped: 0.0,
-            iterations: Counter::default(),
+            inner: InnerIterations::default(),
+            iterations: 0,
         })
     }
 
     /// Iterations of all equilibria so far.
     pub fn iterations(&self) -> u64 {
-        self.iterations.get()
+        self.inner.total
     }
 
-    /// Moves `u` to the equilibrium at time t with the bonds as they are.
-    fn relax(&mut self, system: &System, t: f64, u: &mut [f64]) -> Result<()> {
+    /// Moves `u` to the equilibrium at time t with the bonds as they are; what is out of balance there, over what acts.
+    fn relax(&mut self, system: &System, t: f64, u: &mut [f64]) -> Result<f64> {
         let RelaxationOptions {
             damping,
             tolerance,
@@ -164,7 +167,7 @@ impl Relaxation {
             };
             if ratio <= tolerance {
                 self.largest = self.largest.max(load).max(support);
-                return Ok(());
+                return Ok(ratio);
             }
             if !ratio.is_finite() || iteration == iterations {
                 break;
@@ -234,8 +237,14 @@ impl Relaxation {
             });
     }
 
-    /// Breaks over-stretched bonds and relaxes again until none is left.
-    fn settle(&mut self, system: &mut System, state: &mut State, t: f64) -> Result<()> {
+    /// Breaks over-stretched bonds and relaxes again until none is left; what is out of balance in the end, of a state that is as given.
+    fn settle(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t: f64,
+        mut residual: f64,
+    ) -> Result<f64> {
         self.velocity.fill(0.0);
         loop {
             let broken = system.operator().broken_bonds();
@@ -247,11 +256,11 @@ impl Relaxation {
             };
             system.accept_on(accepted, &On::All, &mut state.a);
             if system.operator().broken_bonds() == broken {
-                return Ok(());
+                return Ok(residual);
             }
             self.before.copy_from_slice(&state.u);
             let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
-            self.relax(system, t, &mut state.u)?;
+            residual = self.relax(system, t, &mut state.u)?;
             system.book_equilibrium(t, 0.0, [&self.before, &state.u], &mut state.a);
             self.damped +=
                 elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
@@ -280,6 +289,10 @@ impl Integrator for Relaxation {
         self.damped
     }
 
+    fn inner_iterations(&self) -> Option<InnerIterations> {
+        Some(self.inner)
+    }
+
     fn start(&mut self, system: &mut System, state: &mut State) {
         system.place_on(state.t, &On::All, &mut state.u);
         state.v.fill(0.0);
@@ -291,11 +304,13 @@ impl Integrator for Relaxation {
     fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
         let dt = t_next - state.t;
         let before = state.u.clone();
-        self.relax(system, t_next, &mut state.u)?;
+        self.iterations = 0;
+        let mut residual = self.relax(system, t_next, &mut state.u)?;
         system.book_equilibrium(t_next, dt, [&before, &state.u], &mut state.a);
         if system.operator().can_break() {
-            self.settle(system, state, t_next)?;
+            residual = self.settle(system, state, t_next, residual)?;
         }
+        self.inner.count(self.iterations, residual);
         state.v.fill(0.0);
         state.a.fill(0.0);
         state.t = t_next;
@@ -308,19 +323,13 @@ impl Saved for Relaxation {
     fn save(&self, archive: &mut Archive) {
         let account = vec![self.damped, self.largest];
         archive.put("relaxation/account", Values::F64(account));
-        archive.put(
-            "relaxation/iterations",
-            Values::U64(vec![self.iterations.get()]),
-        );
+        self.inner.save(archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut account = [0.0; 2];
         archive.f64_into("relaxation/account", &mut account)?;
         [self.damped, self.largest] = account;
-        let mut iterations = [0];
-        archive.u64_into("relaxation/iterations", &mut iterations)?;
-        self.iterations = iterations[0].into();
-        Ok(())
+        self.inner.restore(archive)
     }
 }

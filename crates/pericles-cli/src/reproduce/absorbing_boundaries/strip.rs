@@ -184,6 +184,7 @@ fn draw(
         let state = &states[k].0;
         FieldPicture::new(2, &positions, &state.u[..n], CellSize::Uniform(1.0))
             .label("u_x", "")
+            .without_units()
             .colours(ColourMap::Diverging)
             .range(-0.3, 0.3)
             .title(format!(

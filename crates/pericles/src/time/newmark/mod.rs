@@ -172,7 +172,7 @@ impl NewmarkOptions {
 pub struct InnerIterations {
     /// Iterations of the last step.
     pub last: u64,
-    /// The last change of the velocity, m/s in the scheme's norm.
+    /// The last change of the velocity, m/s in the scheme's norm; of relaxation the forces out of balance over those that act.
     pub change: f64,
     /// The most iterations a step took.
     pub most: u64,
@@ -181,7 +181,7 @@ pub struct InnerIterations {
 }
 
 impl InnerIterations {
-    fn count(&mut self, iterations: u64, change: f64) {
+    pub(in crate::time) fn count(&mut self, iterations: u64, change: f64) {
         self.last = iterations;
         self.change = change;
         self.most = self.most.max(iterations);
@@ -189,7 +189,7 @@ impl InnerIterations {
         self.total = self.total.saturating_add(iterations);
     }
 
-    fn save(&self, archive: &mut crate::Archive) {
+    pub(in crate::time) fn save(&self, archive: &mut crate::Archive) {
         use crate::Values;
         archive.put(
             "inner/iterations",
@@ -198,7 +198,7 @@ impl InnerIterations {
         archive.put("inner/change", Values::F64(vec![self.change]));
     }
 
-    fn restore(&mut self, archive: &crate::Archive) -> Result<()> {
+    pub(in crate::time) fn restore(&mut self, archive: &crate::Archive) -> Result<()> {
         let mut counts = [0; 3];
         archive.u64_into("inner/iterations", &mut counts)?;
         archive.f64_into("inner/change", std::slice::from_mut(&mut self.change))?;

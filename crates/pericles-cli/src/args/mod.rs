@@ -1,17 +1,21 @@
 //! The command line.
 
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
-use std::time::Duration;
+mod shared;
+mod values;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
 use pericles::family::geodesic::GeodesicMethod;
-use pericles_io::DiskCache;
 
 use crate::exit::Exit;
-use crate::machine;
 use crate::plot::Frames;
 use crate::sweep::Axis;
+
+pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
+pub(crate) use values::{Direction, Format, Length, Range};
+
+use values::{direction, length, range, ratio, tolerance};
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
 
@@ -180,12 +184,11 @@ pub(crate) struct RunArgs {
     /// Results go to a folder each, with a table of them, in ./<deck's name>-sweep or --out; `resume` goes on
     #[arg(long, value_name = "KEY=VALUES", conflicts_with = "force")]
     pub(crate) sweep: Vec<Axis>,
+    /// Draw the histories in letters once the run has ended
+    #[arg(long, conflicts_with_all = ["sweep", "quiet"])]
+    pub(crate) chart: bool,
     #[command(flatten)]
-    pub(crate) caching: Caching,
-    #[command(flatten)]
-    pub(crate) limits: Limits,
-    #[command(flatten)]
-    pub(crate) execution: Execution,
+    pub(crate) options: RunOptions,
 }
 
 #[derive(Debug, Args)]
@@ -219,28 +222,6 @@ pub(crate) struct DispersionArgs {
     pub(crate) overrides: Overrides,
     #[command(flatten)]
     pub(crate) execution: Execution,
-}
-
-/// A direction; missing components are zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Direction(pub(crate) [f64; 3]);
-
-fn direction(text: &str) -> Result<Direction, String> {
-    let mut vector = [0.0; 3];
-    let numbers: Vec<&str> = text.split(',').collect();
-    let allowed = "one to three numbers with commas between them, not all zero";
-    if numbers.len() > 3 {
-        return Err(allowed.into());
-    }
-    for (component, number) in vector.iter_mut().zip(numbers) {
-        *component = number.trim().parse().map_err(|_| allowed.to_owned())?;
-    }
-    let length: f64 = vector.iter().map(|x| x * x).sum();
-    if length > 0.0 && length.is_finite() {
-        Ok(Direction(vector))
-    } else {
-        Err(allowed.into())
-    }
 }
 
 #[derive(Debug, Args)]
@@ -278,12 +259,11 @@ pub(crate) struct GeodesicsArgs {
 pub(crate) struct ResumeArgs {
     /// The folder of the run
     pub(crate) dir: PathBuf,
+    /// Draw the histories in letters once the run has ended
+    #[arg(long, conflicts_with = "quiet")]
+    pub(crate) chart: bool,
     #[command(flatten)]
-    pub(crate) caching: Caching,
-    #[command(flatten)]
-    pub(crate) limits: Limits,
-    #[command(flatten)]
-    pub(crate) execution: Execution,
+    pub(crate) options: RunOptions,
 }
 
 #[derive(Debug, Args)]
@@ -340,38 +320,6 @@ pub(crate) struct PlotArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// Kinds of picture files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// Pixels
-    Png,
-    /// Shapes and text
-    Svg,
-}
-
-impl Format {
-    /// What its files end in.
-    pub(crate) fn ending(self) -> &'static str {
-        match self {
-            Self::Png => "png",
-            Self::Svg => "svg",
-        }
-    }
-}
-
-/// Two numbers, the first smaller.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Range(pub(crate) [f64; 2]);
-
-fn range(text: &str) -> Result<Range, String> {
-    let ends = text.split_once(':').and_then(|(low, high)| {
-        let number = |text: &str| text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-        Some([number(low)?, number(high)?])
-    });
-    let range = ends.filter(|[low, high]| low < high).map(Range);
-    range.ok_or_else(|| "two numbers LOW:HIGH, the first smaller".to_owned())
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct DiffArgs {
     /// The folder of a run
@@ -384,11 +332,6 @@ pub(crate) struct DiffArgs {
     /// Write the results as JSON to a file; `-` is the standard output, which then holds nothing else
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number: &f64| *number >= 0.0);
-    number.ok_or_else(|| "a number of zero or more".to_owned())
 }
 
 #[derive(Debug, Args)]
@@ -427,32 +370,7 @@ pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]
-    pub(crate) caching: Caching,
-    #[command(flatten)]
-    pub(crate) limits: Limits,
-    #[command(flatten)]
-    pub(crate) execution: Execution,
-}
-
-/// A length above zero, as it was written and in metres.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Length {
-    pub(crate) text: String,
-    pub(crate) metres: f64,
-}
-
-fn length(text: &str) -> Result<Length, String> {
-    let metres = pericles_deck::metres(text).filter(|metres| *metres > 0.0);
-    let metres =
-        metres.ok_or_else(|| "a length above zero such as \"0.5 mm\" or 5e-4".to_owned())?;
-    let text = text.trim().to_owned();
-    Ok(Length { text, metres })
-}
-
-fn ratio(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok();
-    let number = number.filter(|number: &f64| *number >= 1.0 && number.is_finite());
-    number.ok_or_else(|| "a number of at least 1".to_owned())
+    pub(crate) options: RunOptions,
 }
 
 #[derive(Debug, Args)]
@@ -474,103 +392,6 @@ pub(crate) struct ReproduceArgs {
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) execution: Execution,
-}
-
-/// Changes to the deck.
-#[derive(Debug, Args)]
-pub(crate) struct Overrides {
-    /// Change the deck, such as time.dt=auto or crack.0.ends=open; may be given several times
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
-}
-
-/// Where results that are dear to compute are kept from run to run.
-#[derive(Debug, Args)]
-pub(crate) struct Caching {
-    /// Keep kernels and distances that take long to compute in DIR [default: $XDG_CACHE_HOME/pericles or ~/.cache/pericles]
-    #[arg(long = "cache", value_name = "DIR")]
-    folder: Option<PathBuf>,
-    /// Compute everything anew and keep nothing
-    #[arg(long, conflicts_with = "folder")]
-    no_cache: bool,
-}
-
-impl Caching {
-    /// The cache; none if it is not wanted or the user has no place for one.
-    pub(crate) fn cache(&self) -> Option<DiskCache> {
-        match &self.folder {
-            Some(folder) => Some(DiskCache::new(folder)),
-            None if self.no_cache => None,
-            None => DiskCache::of_user(),
-        }
-    }
-}
-
-/// What a run may use up.
-#[derive(Debug, Args)]
-pub(crate) struct Limits {
-    /// Stop in time, with a checkpoint, before so much time on the clock has passed, such as 2h, "90 min" or seconds; the exit status is then 7
-    #[arg(long, value_name = "TIME", value_parser = wall_time)]
-    pub(crate) wall_time: Option<Duration>,
-    #[command(flatten)]
-    pub(crate) memory: Memory,
-}
-
-/// Memory.
-#[derive(Debug, Args)]
-pub(crate) struct Memory {
-    /// Refuse what is estimated to need more memory, such as 8GB, 512MiB or bytes; the exit status is then 8 [default: what the machine has free]
-    #[arg(long = "max-memory", value_name = "SIZE", value_parser = machine::size)]
-    most: Option<u64>,
-}
-
-impl Memory {
-    /// Bytes that a run may take; without a limit from the user those that are free, where the system tells.
-    pub(crate) fn bytes(&self) -> u64 {
-        self.most.or_else(machine::free_memory).unwrap_or(u64::MAX)
-    }
-}
-
-fn wall_time(text: &str) -> Result<Duration, String> {
-    let allowed = "a time above zero such as 2h, \"90 min\" or 5400 (seconds)";
-    pericles_deck::seconds(text)
-        .filter(|&seconds| seconds > 0.0)
-        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .ok_or_else(|| allowed.to_owned())
-}
-
-/// How to compute and how much to say.
-#[derive(Debug, Args)]
-pub(crate) struct Execution {
-    #[command(flatten)]
-    pub(crate) threads: Threads,
-    /// Say nothing but errors
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-}
-
-/// Threads.
-#[derive(Debug, Args)]
-pub(crate) struct Threads {
-    /// Threads [default: one per core]; results do not depend on it
-    #[arg(long = "threads", value_name = "N")]
-    count: Option<NonZeroUsize>,
-}
-
-impl Threads {
-    /// The number given, or another.
-    pub(crate) fn count_or(&self, other: usize) -> usize {
-        self.count.map_or(other, NonZeroUsize::get)
-    }
-
-    /// Starts the threads; without a number one per core.
-    pub(crate) fn start(&self) -> Result<usize, rayon::ThreadPoolBuildError> {
-        let count = self.count.map_or(0, NonZeroUsize::get);
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(count)
-            .build_global()?;
-        Ok(rayon::current_num_threads())
-    }
 }
 
 #[cfg(test)]
@@ -601,6 +422,8 @@ mod tests {
         }
         assert!(parse("pericles check a.toml --max-memory 8GB").is_ok());
         assert!(parse("pericles resume a --max-memory much").is_err());
+        assert!(parse("pericles run a.toml --chart").is_ok());
+        assert!(parse("pericles run a.toml --chart --quiet").is_err());
         assert!(parse("pericles dispersion a.toml --direction 2,1").is_ok());
         for wrong in ["0,0", "1,x", "1,2,3,4"] {
             assert!(parse(&format!("pericles dispersion a.toml --direction {wrong}")).is_err());
@@ -610,6 +433,6 @@ mod tests {
             panic!("not a run");
         };
         assert_eq!(run.overrides.set, ["a=1", "b=2"]);
-        assert!(run.execution.quiet);
+        assert!(run.options.execution.quiet);
     }
 }

@@ -1,0 +1,99 @@
+//! Values of options.
+
+use std::time::Duration;
+
+use clap::ValueEnum;
+
+/// A direction; missing components are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Direction(pub(crate) [f64; 3]);
+
+/// One to three numbers, such as `2,1` or `1,1,0`.
+pub(super) fn direction(text: &str) -> Result<Direction, String> {
+    let mut vector = [0.0; 3];
+    let numbers: Vec<&str> = text.split(',').collect();
+    let allowed = "one to three numbers with commas between them, not all zero";
+    if numbers.len() > 3 {
+        return Err(allowed.into());
+    }
+    for (component, number) in vector.iter_mut().zip(numbers) {
+        *component = number.trim().parse().map_err(|_| allowed.to_owned())?;
+    }
+    let length: f64 = vector.iter().map(|x| x * x).sum();
+    if length > 0.0 && length.is_finite() {
+        Ok(Direction(vector))
+    } else {
+        Err(allowed.into())
+    }
+}
+
+/// Kinds of picture files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Pixels
+    Png,
+    /// Shapes and text
+    Svg,
+}
+
+impl Format {
+    /// What its files end in.
+    pub(crate) fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+        }
+    }
+}
+
+/// Two numbers, the first smaller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Range(pub(crate) [f64; 2]);
+
+/// Two numbers, such as `0:1`.
+pub(super) fn range(text: &str) -> Result<Range, String> {
+    let ends = text.split_once(':').and_then(|(low, high)| {
+        let number = |text: &str| text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+        Some([number(low)?, number(high)?])
+    });
+    let range = ends.filter(|[low, high]| low < high).map(Range);
+    range.ok_or_else(|| "two numbers LOW:HIGH, the first smaller".to_owned())
+}
+
+/// A number of zero or more.
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number >= 0.0);
+    number.ok_or_else(|| "a number of zero or more".to_owned())
+}
+
+/// A length above zero, as it was written and in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Length {
+    pub(crate) text: String,
+    pub(crate) metres: f64,
+}
+
+/// A length, such as `0.5 mm`.
+pub(super) fn length(text: &str) -> Result<Length, String> {
+    let metres = pericles_deck::metres(text).filter(|metres| *metres > 0.0);
+    let metres =
+        metres.ok_or_else(|| "a length above zero such as \"0.5 mm\" or 5e-4".to_owned())?;
+    let text = text.trim().to_owned();
+    Ok(Length { text, metres })
+}
+
+/// A number of at least one.
+pub(super) fn ratio(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok();
+    let number = number.filter(|number: &f64| *number >= 1.0 && number.is_finite());
+    number.ok_or_else(|| "a number of at least 1".to_owned())
+}
+
+/// A time on the clock, such as `2h`.
+pub(super) fn wall_time(text: &str) -> Result<Duration, String> {
+    let allowed = "a time above zero such as 2h, \"90 min\" or 5400 (seconds)";
+    pericles_deck::seconds(text)
+        .filter(|&seconds| seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| allowed.to_owned())
+}

@@ -1,0 +1,117 @@
+//! Damping layers of a model, and the steps that are stable with them.
+
+use pericles::boundary::{DampingLayer, DampingProfile};
+use pericles::material::BondConstants;
+use pericles::space::{Face, PointCloud};
+use pericles::{PericlesError, System};
+
+use super::step::Steps;
+use crate::boundary::BoundaryCondition;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::reader::Path;
+
+impl Deck {
+    /// The damping layers with their numbers in the deck.
+    ///
+    /// # Errors
+    /// Layers of a surface.
+    pub(super) fn damping_layers(
+        &self,
+        system: &System,
+        constants: &BondConstants,
+    ) -> Result<Vec<(usize, Face, DampingProfile)>, DeckError> {
+        // Of the first material, where there are several.
+        let modulus = self.body.state.longitudinal_modulus(constants.young);
+        let speed = (modulus / system.density().at(0)).sqrt();
+        let layer = |(k, boundary): (usize, &BoundaryCondition)| {
+            let BoundaryCondition::DampingLayer {
+                face,
+                thickness,
+                reflection,
+                power,
+            } = *boundary
+            else {
+                return None;
+            };
+            let profile = DampingProfile::of_reflection(thickness, reflection, power, speed);
+            Some((k, face, profile))
+        };
+        let boundaries = self.boundaries.iter().enumerate();
+        let layers: Vec<_> = boundaries.filter_map(layer).collect();
+        match (&self.surface, layers.first()) {
+            (Some(_), Some((k, ..))) => {
+                let reason = "a closed surface has no sides".into();
+                let error = PericlesError::BadDampingLayer { reason };
+                Err(self.at_path(&Path::from("boundary").index(*k), error.into()))
+            }
+            _ => Ok(layers),
+        }
+    }
+
+    /// Adds the damping layers.
+    pub(super) fn add_damping_layers(
+        &self,
+        system: &mut System,
+        layers: Vec<(usize, Face, DampingProfile)>,
+        steps: &Steps,
+    ) -> Result<(), DeckError> {
+        let frequency = steps.frequency.map(|frequency| frequency.estimate);
+        for (k, face, profile) in layers {
+            let path = Path::from("boundary").index(k);
+            let refuse = |error: PericlesError| self.at_path(&path, error.into());
+            let layer = DampingLayer::new(system, face, profile, steps.dt, frequency);
+            system.add_boundary(Box::new(layer.map_err(refuse)?));
+        }
+        Ok(())
+    }
+
+    /// Refuses a given step that is stable without damping layers only.
+    pub(super) fn check_damped(
+        &self,
+        dt: f64,
+        undamped: f64,
+        damping: f64,
+    ) -> Result<(), DeckError> {
+        let stable = stable_step(undamped, damping);
+        if dt <= stable || dt > undamped {
+            return Ok(());
+        }
+        let reason = format!(
+            "with damping of up to {damping:.4e} 1/s the step {dt:e} s is unstable, with less than {stable:.4e} s it is stable; make dt smaller or \"auto\", the layers thicker, or what they \
+             reflect larger"
+        );
+        Err(self.at("boundary", PericlesError::BadDampingLayer { reason }))
+    }
+}
+
+/// The strongest damping that points may have, 1/s: in corners that of several layers adds up, and of opposite ones where both reach across the middle.
+pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointCloud) -> f64 {
+    let along = |axis: usize| {
+        let depth_of = |upper: bool| {
+            let layers = layers
+                .iter()
+                .filter(move |(_, face, _)| face.axis == axis && face.upper == upper);
+            layers.fold(
+                (0.0, 0.0),
+                |(depth, strength): (f64, f64), (.., profile)| {
+                    (depth.max(profile.thickness), strength + profile.strength)
+                },
+            )
+        };
+        let [(low, a), (high, b)] = [false, true].map(depth_of);
+        let axis = cloud.axis(axis).iter();
+        let ends = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(*x), high.max(*x))
+        });
+        let length = ends.1 - ends.0 + cloud.spacing();
+        if low + high > length { a + b } else { a.max(b) }
+    };
+    (0..cloud.dimension()).map(along).sum()
+}
+
+/// The largest stable step of velocity Verlet with a damping σ (1/s) of the step before, from the one without, 2/ω: (ω dt)² = 4 − 2 σ dt.
+pub(super) fn stable_step(undamped: f64, damping: f64) -> f64 {
+    let damped = 0.25 * damping * undamped;
+    undamped / (damped + damped.hypot(1.0))
+}

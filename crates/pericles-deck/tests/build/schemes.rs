@@ -1,0 +1,125 @@
+//! Schemes in time and their steps.
+
+use super::{PLATE, build, plate_with_time, refusal};
+
+#[test]
+fn automatic_steps_are_stable_and_end_on_time() {
+    let model = build(PLATE);
+    let stable = model.stable_step().unwrap();
+    assert!((model.dt * model.steps as f64 / 2e-6 - 1.0).abs() < 1e-12);
+    assert!(model.dt <= 0.95 * stable * (1.0 + 1e-8));
+    // One step fewer would not do.
+    assert!(2e-6 / (model.steps - 1) as f64 > 0.95 * stable);
+    let fixed = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"30 ns\""));
+    assert_eq!((fixed.dt, fixed.steps), (30e-9, 67));
+    let whole = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"40 ns\""));
+    assert_eq!(whole.steps, 50);
+}
+
+#[test]
+fn a_body_without_stiffness_needs_a_given_step() {
+    let lone = "[body]\nshape='bar'\nlength=2\nspacing=1\n[[crack]]\nsection=1\n\
+                [material]\ndensity=1\nE=1\nm=1\n[time]\nend=1\n";
+    let error = refusal(lone);
+    assert!(error.to_string().contains("give dt"), "{error}");
+    let model = build(&format!("{lone}dt=0.1\n"));
+    assert_eq!(model.steps, 10);
+    assert!(model.frequency.is_none() && model.stable_step().is_none());
+}
+
+#[test]
+fn schemes() {
+    for (time, name, order) in [
+        ("scheme = \"rk3\"", "rk3", 3),
+        ("scheme = \"rk4\"", "rk4", 4),
+        (
+            "scheme = \"dormand-prince\"\ndt = \"0.1 us\"",
+            "dormand-prince",
+            5,
+        ),
+        (
+            "scheme = \"rk3-mts\"\nratio = 4\nfine = \"middle\"",
+            "rk3-mts",
+            3,
+        ),
+        (
+            "scheme = \"rk4-mts\"\nratio = 4\nadaptive = {}",
+            "rk4-mts",
+            4,
+        ),
+        (
+            "scheme = \"respa\"\nratio = 4\nfine = [\"middle\", \"left\"]",
+            "respa",
+            2,
+        ),
+    ] {
+        let model = build(&plate_with_time(time));
+        assert_eq!(
+            (model.integrator.name(), model.integrator.order()),
+            (name, order)
+        );
+        assert!(model.warnings.is_empty(), "{name}");
+        let two = model.integrator.refinement();
+        assert_eq!(two.is_some(), time.contains("ratio"));
+        // They run.
+        let mut simulation = model.simulation();
+        simulation.run(|_| pericles::Control::Continue).unwrap();
+    }
+    let limit = |time: &str| build(&plate_with_time(time)).stable_step().unwrap();
+    let verlet = limit("");
+    assert!((limit("scheme = \"rk4\"") / verlet / 2f64.sqrt() - 1.0).abs() < 1e-6);
+    assert!((limit("scheme = \"rk3\"") / verlet / 0.75f64.sqrt() - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn schemes_that_do_not_fit_are_refused() {
+    for (time, line, words) in [
+        ("scheme = \"dormand-prince\"", 55, "give dt"),
+        (
+            "scheme = \"respa\"\nratio = 4\nfine = [\"middle\", \"thin\"]",
+            59,
+            "overlap",
+        ),
+        (
+            "scheme = \"respa\"\nratio = 4\nfine = \"thin\"",
+            59,
+            "at least a horizon",
+        ),
+        (
+            "scheme = \"rk4-mts\"\nratio = 4\nfine = \"middle\"\ndt = \"1 us\"",
+            60,
+            "rk4-mts needs dt",
+        ),
+    ] {
+        let error = refusal(&plate_with_time(time));
+        let message = error.to_string();
+        assert!(message.contains(words), "{message}");
+        assert_eq!(error.problems()[0].location().line(), line, "{message}");
+    }
+    let unbreakable = plate_with_time("scheme = \"respa\"\nratio = 4\nadaptive = {}")
+        .replace("fracture_energy = \"135 J/m2\"\n", "");
+    let error = refusal(&unbreakable);
+    assert!(error.to_string().contains("never break"), "{error}");
+}
+
+#[test]
+fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
+    let inclusion = |text: &str| {
+        text.replace(
+            "[sets]",
+            "[[material.inclusion]]\nset = \"core\"\nstiffness = 16\n[sets]\n\
+             core = { box = { min = [\"9 mm\", \"open\"], max = [\"11 mm\", \"open\"] } }",
+        )
+    };
+    let limit = |text: &str| build(text).stable_step().unwrap();
+    let mts = "scheme = \"respa\"\nratio = 4\nfine = \"middle\"";
+    let plain = limit(&plate_with_time(""));
+    let stiff = limit(&inclusion(&plate_with_time("")));
+    let two = limit(&inclusion(&plate_with_time(mts)));
+    // Bonds within the core are 16 times stiffer, those that leave it 8.5 times.
+    assert!(
+        stiff < 0.4 * plain && stiff > 0.25 * plain,
+        "{stiff} {plain}"
+    );
+    assert!(two > 0.98 * plain, "{two} {plain}");
+}
