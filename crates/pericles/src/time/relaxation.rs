@@ -172,7 +172,7 @@ impl Relaxation {
             if !ratio.is_finite() || iteration == iterations {
                 break;
             }
-            self.iterations.add(1);
+            self.iterations += 1;
             let c = match damping {
                 Damping::Viscous(c) => c,
                 Damping::Adaptive => self.critical_damping(system, u),
