@@ -14,7 +14,9 @@ picture() {
     cp "$out/pictures/$2" "$target"
     if [ "$(stat -c %s "$target")" -gt 200000 ]; then
         python3 -c 'import sys; from PIL import Image; picture = Image.open(sys.argv[1]).convert("RGB")
-picture.resize([3 * n // 4 for n in picture.size], Image.LANCZOS).quantize(255).save(sys.argv[1], optimize=True)' "$target"
+small = picture.resize([3 * n // 4 for n in picture.size], Image.LANCZOS)
+palette = small.quantize(255, method=Image.Quantize.MAXCOVERAGE)
+small.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG).save(sys.argv[1], optimize=True)' "$target"
     fi
 }
 

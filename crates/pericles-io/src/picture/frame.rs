@@ -280,7 +280,9 @@ impl ColourBar {
             let fraction = 1.0 - (row as f64 + 0.5) / height;
             let j = top + row as f64;
             let colour = self.map.colour(fraction);
-            drawing.fill_rectangle((left, j), (right, j + 1.0), colour, 1.0);
+            // Down to the row below, which is drawn over it: readers of SVG leave seams between neighbours.
+            let end = (j + 2.0).min(bottom);
+            drawing.fill_rectangle((left, j), (right, end), colour, 1.0);
         }
         drawing.outline((left, top), (right, bottom), sizes.line, INK);
         let scale = Scale {
