@@ -193,8 +193,9 @@ impl Audit {
             .map(|i| system.density().at(i) * volumes[i])
             .sum();
         let damage = snapshot.field(Field::Damage);
-        let table = read_csv(history)?;
-        let rows = table.column("balance").unwrap_or_default();
+        // A run may keep no history.
+        let table = history.exists().then(|| read_csv(history)).transpose()?;
+        let rows = table.as_ref().and_then(|table| table.column("balance"));
         let audit = Self {
             kinetic_energy: energies.kinetic,
             elastic_energy: energies.elastic,
@@ -205,8 +206,8 @@ impl Audit {
             balance,
             balance_over_work: balance / energies.work.abs(),
             balance_over_dissipated: balance / energies.dissipated,
-            // A run may keep no history.
             largest_balance: rows
+                .unwrap_or_default()
                 .iter()
                 .fold(balance.abs(), |most: f64, b| most.max(b.abs())),
             momentum,

@@ -164,7 +164,8 @@ impl BandedCholesky {
             if solved.residual <= tolerance {
                 return Ok(solved);
             }
-            if found > 0.5 * before {
+            // What is no number would be refined for ever.
+            if found.is_nan() || found > 0.5 * before {
                 return Err(PericlesError::NotConverged {
                     solver: "Cholesky's factor",
                     iterations: solved.iterations,
@@ -252,5 +253,25 @@ mod tests {
             error.to_string().contains("not positive definite"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn what_is_no_number_is_given_up() {
+        let (n, reach) = (12, 2);
+        let mut apply = |x: &[f64], out: &mut [f64]| product(x, out, reach, 4.0);
+        let factor = BandedCholesky::new(&mut apply, n, reach).unwrap();
+        for wrong in [f64::NAN, f64::INFINITY] {
+            let mut right = vec![1.0; n];
+            right[3] = wrong;
+            let mut x = right.clone();
+            factor.solve(&mut x);
+            let limits = SolveLimits::default();
+            let refined = factor.refine(&mut apply, &right, &mut x, &limits, &mut Work::new(n));
+            let error = refined.unwrap_err();
+            assert!(
+                matches!(error, PericlesError::NotConverged { .. }),
+                "{error}"
+            );
+        }
     }
 }
