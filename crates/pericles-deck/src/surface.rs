@@ -123,7 +123,7 @@ impl SurfaceFormula {
     pub(crate) fn vertices(&self) -> f64 {
         match *self {
             Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } => {
-                10.0 * 4f64.powi(level.min(i32::MAX as u32) as i32)
+                10.0 * 4f64.powi(level.min(i32::MAX as u32) as i32) + 2.0
             }
             Self::UvSphere {
                 segments, rings, ..

@@ -296,10 +296,12 @@ impl<'a> Table<'a> {
                     key: entry.key.clone(),
                     table: self.path.to_string(),
                     nearest: nearest.map(String::from),
+                    // Of a body without it, a key of other bodies is not at home either.
                     home: nearest
                         .is_none()
                         .then(|| self.ledger.home_of(&entry.key))
-                        .flatten(),
+                        .flatten()
+                        .filter(|home| *home != self.path.to_string()),
                     allowed: owned(&allowed),
                 },
             );
