@@ -1,7 +1,7 @@
 //! Our side of the comparison in `benches/lammps`, run by its script.
 //!
-//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|list]` prints cells and force
-//! densities of a deformed block, `i j k fx fy fz` a line; `fracture CELLS STEPS [grid|list]` one line of JSON on a block torn in two.
+//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|grid-f32|list]` prints cells and force
+//! densities of a deformed block, `i j k fx fy fz` a line; `fracture CELLS STEPS [grid|grid-f32|list]` one line of JSON on a block torn in two.
 
 mod clock;
 
@@ -142,6 +142,7 @@ fn main() -> pericles::Result<()> {
     };
     let form = |k: usize| match words.get(k).map(String::as_str) {
         Some("list") => BondForm::List,
+        Some("grid-f32") => BondForm::FloatGrid,
         _ => BondForm::Grid,
     };
     match words.first().map(String::as_str) {
