@@ -7,7 +7,7 @@ use gauss_quad::GaussLegendre;
 use pericles::boundary::{TimeCourse, TimeFunction, TimeTable};
 
 use crate::component;
-use crate::expression::Expression;
+use crate::expression::{Expression, Rates};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
@@ -76,18 +76,14 @@ fn rows(item: &Item<'_>) -> Option<TimeFunction> {
 #[derive(Debug)]
 pub(crate) struct Course {
     value: Expression,
-    /// First and second derivative, as far as there are any.
-    rates: [Option<Expression>; 2],
+    /// As far as there are any.
+    rates: Option<Rates>,
 }
 
 impl Course {
     pub(crate) fn new(value: Expression) -> Self {
-        let rate = value.rate().ok();
-        let second = rate.as_ref().and_then(|rate| rate.rate().ok());
-        Self {
-            value,
-            rates: [rate, second],
-        }
+        let rates = value.rates();
+        Self { value, rates }
     }
 
     /// The function (order 0), its integral from t = 0 (−1) or one of its first two derivatives (1, 2) at a place. NaN for a derivative that does not exist.
@@ -95,16 +91,16 @@ impl Course {
         match order {
             -1 => integral(|t| self.value.value(place, t), t),
             0 => self.value.value(place, t),
-            _ => match &self.rates[(order - 1).min(1) as usize] {
-                Some(rate) => rate.value(place, t),
+            _ => match &self.rates {
+                Some(rates) => rates.values(place, t)[(order - 1).min(1) as usize],
                 None => f64::NAN,
             },
         }
     }
 
-    /// Whether it has as many derivatives.
-    pub(crate) fn has_rates(&self, count: usize) -> bool {
-        self.rates[..count].iter().all(Option::is_some)
+    /// Whether it has derivatives.
+    pub(crate) fn has_rates(&self) -> bool {
+        self.rates.is_some()
     }
 }
 
@@ -172,7 +168,7 @@ mod tests {
     fn integrals_and_derivatives_belong_to_the_expression() {
         let course = |text| Course::new(Expression::parse(text, &["t"]).unwrap());
         let wave = course("sin(200*t)*exp(-t)");
-        assert!(wave.has_rates(2));
+        assert!(wave.has_rates());
         // ∫ e^{-t} sin(a t) = (a − e^{-t}(sin(a t) + a cos(a t)))/(1 + a²)
         let (a, t) = (200.0f64, 3.0f64);
         let exact = (a - (-t).exp() * ((a * t).sin() + a * (a * t).cos())) / (1.0 + a * a);
@@ -180,6 +176,6 @@ mod tests {
         let square = course("t^2");
         assert!((TimeCourse::integral(&square, -3.0) + 9.0).abs() < 1e-13);
         assert!((TimeCourse::second_derivative(&square, 1.0) - 2.0).abs() < 1e-13);
-        assert!(!course("floor(t)").has_rates(1));
+        assert!(!course("floor(t)").has_rates());
     }
 }

@@ -121,12 +121,12 @@ impl Deck {
         kind: MotionKind,
         expression: &Expression,
     ) -> Result<Motion, DeckError> {
-        let (ahead, needed) = match kind {
-            MotionKind::Displacement => (0, 2),
-            MotionKind::Velocity => (1, 1),
+        let ahead = match kind {
+            MotionKind::Displacement => 0,
+            MotionKind::Velocity => 1,
         };
         let course = Course::new(expression.clone());
-        if course.has_rates(needed) {
+        if course.has_rates() {
             return Ok(Motion { course, ahead });
         }
         let fault = Fault::BadExpression {

@@ -3,17 +3,19 @@
 //! The grammar is the one of school: `+ - * /` and `^` with `-x^2 = -(x^2)` and `2^3^2 = 2^(3^2)`, parentheses, numbers, the variables `x y z t` (m and s; those the
 //! body has), the constants `pi` and `e`, and the functions of [`FUNCTIONS`]. Values are in SI units.
 //!
-//! Parsing, evaluation and derivatives are those of exmex. It binds a sign tighter than a power (`-x^2 = x^2` there) and powers from left to right; what it
+//! Parsing and evaluation are those of exmex, on numbers or, for derivatives in time, on [jets](jet). It binds a sign tighter than a power (`-x^2 = x^2` there) and powers from left to right; what it
 //! is given has therefore every power in parentheses ([`grammar`]).
 
 mod condition;
 mod grammar;
+mod jet;
 
 use std::fmt;
 use std::sync::Arc;
 
 pub use condition::Condition;
-use exmex::{Differentiate, Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
+use exmex::{Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
+use jet::{Jet, JetOperators, Variation};
 
 /// Functions of one argument that expressions may use. `step` is 0 below zero and 1 from zero on.
 pub(crate) const FUNCTIONS: [&str; 20] = [
@@ -36,14 +38,20 @@ impl MakeOperators<f64> for Operators {
         let mut operators = FloatOpsFactory::<f64>::make();
         operators.push(Operator::make_constant("pi", std::f64::consts::PI));
         operators.push(Operator::make_unary("round", f64::round));
-        operators.push(Operator::make_unary("sign", |x| {
-            if x == 0.0 { 0.0 } else { x.signum() }
-        }));
-        operators.push(Operator::make_unary("step", |x| {
-            if x >= 0.0 { 1.0 } else { 0.0 }
-        }));
+        operators.push(Operator::make_unary("sign", sign));
+        operators.push(Operator::make_unary("step", step));
         operators
     }
+}
+
+/// −1, 0 or 1.
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
+}
+
+/// 0 below zero, 1 from zero on.
+fn step(x: f64) -> f64 {
+    if x >= 0.0 { 1.0 } else { 0.0 }
 }
 
 type Compiled = FlatEx<f64, Operators>;
@@ -114,16 +122,38 @@ impl Expression {
         self.compiled.eval(given).unwrap_or(f64::NAN)
     }
 
-    /// The derivative in time.
-    pub(crate) fn rate(&self) -> Result<Self, Malformed> {
-        let Some(index) = self.variables.iter().position(|&v| v == 3) else {
-            return Self::parse("0", &[]);
+    /// Its derivatives in time, unless it has jumps or kinks.
+    pub(crate) fn rates(&self) -> Option<Rates> {
+        let grouped = grammar::group_powers(&self.text, &VARIABLES).ok()?;
+        let rates = Rates {
+            compiled: FlatEx::parse(&grouped).ok()?,
+            variables: self.variables.clone(),
         };
-        let compiled = Compiled::clone(&self.compiled);
-        let derivative = compiled.partial(index).map_err(|error| Malformed {
-            reason: format!("it cannot be differentiated in time: {error}"),
-        })?;
-        Ok(Self::new(&format!("d/dt ({})", self.text), derivative))
+        (rates.at([0.0; 3], 0.0).variation != Variation::Rough).then_some(rates)
+    }
+}
+
+/// The derivatives of an [`Expression`] in time.
+#[derive(Debug)]
+pub(crate) struct Rates {
+    compiled: FlatEx<Jet, JetOperators>,
+    /// As those of the expression.
+    variables: Arc<[usize]>,
+}
+
+impl Rates {
+    /// The first and the second derivative at a place (m) and time (s).
+    pub(crate) fn values(&self, place: [f64; 3], t: f64) -> [f64; 2] {
+        let jet = self.at(place, t);
+        [jet.rate, jet.second]
+    }
+
+    fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Jet {
+        let [x, y, z, none] = [x, y, z, f64::NAN].map(Jet::constant);
+        let all = [x, y, z, Jet::time(t), none];
+        let given: Vec<Jet> = self.variables.iter().map(|&v| all[v]).collect();
+        // As many values as variables: there is no other error.
+        self.compiled.eval(&given).unwrap_or(none)
     }
 }
 
@@ -224,22 +254,66 @@ mod tests {
             "x",
             "-t^2",
             "sqrt(1+t)*cos(t)",
+            "t^t - (x+t)^(y*t)",
+            "2^t/(3-t)",
+            "acos(t)*asin(t) + atan(3*t)",
+            "cbrt(t)*cosh(t) - sinh(2*t)",
+            "ln(t)*log10(1+t)",
+            "tan(t) + tanh(t)^2",
+            "step(x-3)*abs(y)*t",
         ] {
             let f = Expression::parse(text, &VARIABLES).unwrap();
-            let rate = f.rate().unwrap();
-            let at = |t: f64| f.value([2.0, 3.0, 5.0], t);
-            let (t, h) = (0.4, 1e-5);
-            let slope = (at(t + h) - at(t - h)) / (2.0 * h);
-            let found = rate.value([2.0, 3.0, 5.0], t);
-            assert!((found - slope).abs() < 1e-8, "{text}: {found}, {slope}");
-            assert!(rate.rate().is_ok());
+            let rates = f.rates().unwrap();
+            let place = [2.0, 3.0, 5.0];
+            let at = |t: f64| f.value(place, t);
+            let (t, h) = (0.4, 1e-3);
+            // Differences of fourth order.
+            let slope =
+                (8.0 * (at(t + h) - at(t - h)) - (at(t + 2.0 * h) - at(t - 2.0 * h))) / (12.0 * h);
+            let curvature = (16.0 * (at(t + h) + at(t - h))
+                - (at(t + 2.0 * h) + at(t - 2.0 * h))
+                - 30.0 * at(t))
+                / (12.0 * h * h);
+            let [rate, second] = rates.values(place, t);
+            let size = 1.0 + slope.abs() + curvature.abs();
+            assert!(
+                (rate - slope).abs() < 1e-8 * size,
+                "{text}: {rate}, {slope}"
+            );
+            assert!(
+                (second - curvature).abs() < 1e-7 * size,
+                "{text}: {second}, {curvature}"
+            );
         }
-        assert!(
-            Expression::parse("step(t)", &["t"])
-                .unwrap()
-                .rate()
-                .is_err()
-        );
+        let rough = ["step(t)", "x*abs(t)", "sin(floor(t))", "t^sign(t)"];
+        for text in rough {
+            let f = Expression::parse(text, &VARIABLES).unwrap();
+            assert!(f.rates().is_none(), "{text}");
+        }
+    }
+
+    #[test]
+    fn powers_have_derivatives_at_zero() {
+        for (text, expected) in [
+            ("t", [1.0, 0.0]),
+            ("t^1", [1.0, 0.0]),
+            ("3*t^2", [0.0, 6.0]),
+            ("t^0", [0.0, 0.0]),
+        ] {
+            let f = Expression::parse(text, &["t"]).unwrap();
+            assert_eq!(f.rates().unwrap().values([0.0; 3], 0.0), expected, "{text}");
+        }
+    }
+
+    /// As long as a text may be: derivatives written as expressions overflow the stack here.
+    #[test]
+    fn long_sums_have_derivatives() {
+        let sum = "+t^t".repeat(LONGEST / 4);
+        let deep = "sin(".repeat(29) + "t" + &")".repeat(29);
+        for text in [sum, deep] {
+            let rates = Expression::parse(&text, &["t"]).unwrap().rates().unwrap();
+            assert!(rates.values([0.0; 3], 0.5).iter().all(|v| v.is_finite()));
+        }
     }
 
     proptest! {

@@ -161,11 +161,11 @@ impl BandedCholesky {
                 x.copy_from_slice(trial);
                 solved.residual = found;
             }
-            if solved.residual <= tolerance {
+            if found.is_finite() && solved.residual <= tolerance {
                 return Ok(solved);
             }
-            // What is no number would be refined for ever.
-            if found.is_nan() || found > 0.5 * before {
+            // What is no number would be refined for ever, or taken for solved: an infinite right side has an infinite tolerance.
+            if !found.is_finite() || found > 0.5 * before {
                 return Err(PericlesError::NotConverged {
                     solver: "Cholesky's factor",
                     iterations: solved.iterations,
