@@ -71,7 +71,7 @@
 //! [output]
 //! fields = { count = 20 }
 //! ```
-//! All keys with their units, ranges and defaults are in [`reference`], which the reader writes itself (`pericles schema --markdown`, the page "Deck" of the book), and in [`json_schema`].
+//! All keys with their units, ranges and defaults are in [`reference()`], which the reader writes itself (`pericles schema --markdown`, the page "Deck" of the book), and in [`json_schema`].
 //!
 #![doc = include_str!("language.md")]
 
