@@ -25,6 +25,7 @@ mod given;
 mod info;
 mod machine;
 mod manual;
+mod mirror;
 mod new;
 mod page;
 mod plot;

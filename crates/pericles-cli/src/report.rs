@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::checkpoint::DeckText;
 use crate::error::CliError;
 use crate::machine;
+use crate::mirror::{MirrorError, Symmetries};
 use crate::prepare::Facts;
 use crate::refinement::RefinementAudit;
 use crate::watch;
@@ -73,6 +74,22 @@ struct DeckRecord {
     values: serde_json::Value,
 }
 
+/// What the audit compares the end with: the state before the first step of the whole run.
+pub(crate) struct Start {
+    momentum: [f64; 3],
+    symmetries: Symmetries,
+}
+
+impl Start {
+    /// Of a simulation that has made no step yet.
+    pub(crate) fn of(simulation: &Simulation) -> Self {
+        Self {
+            momentum: simulation.system().momentum(&simulation.state().v),
+            symmetries: Symmetries::of(simulation),
+        }
+    }
+}
+
 /// The account of energy and momentum at the end.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Audit {
@@ -106,6 +123,9 @@ pub(crate) struct Audit {
     /// Error of the last force for being computed in floats, over the largest force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) force_rounding: Option<f64>,
+    /// How far the displacements are from their mirror images, where a run begins as its own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) mirror_errors: Vec<MirrorError>,
     /// None for schemes with one time step.
     pub(crate) refinement: Option<RefinementAudit>,
     /// What is odd about the results.
@@ -168,13 +188,13 @@ impl Report {
 }
 
 impl Audit {
-    /// The account of the present state; `momentum_at_start` is that before the first step of the whole run.
+    /// The account of the present state.
     ///
     /// # Errors
     /// A history that cannot be read.
     pub(crate) fn of(
         simulation: &Simulation,
-        momentum_at_start: [f64; 3],
+        start: &Start,
         history: &Path,
         report: &Report,
     ) -> Result<Self, IoError> {
@@ -185,7 +205,7 @@ impl Audit {
         let momentum = system.momentum(&state.v);
         let impulse = system.ledger().impulse;
         let error = (0..3)
-            .map(|c| (momentum[c] - momentum_at_start[c] - impulse[c]).powi(2))
+            .map(|c| (momentum[c] - start.momentum[c] - impulse[c]).powi(2))
             .sum::<f64>()
             .sqrt();
         let volumes = system.cloud().volumes();
@@ -223,6 +243,7 @@ impl Audit {
                 .map(|omega| omega * report.model.dt),
             evaluated_points: system.evaluated_points(),
             force_rounding: system.operator().rounding(&simulation.state().u),
+            mirror_errors: start.symmetries.errors(simulation),
             refinement: simulation
                 .integrator()
                 .refinement()

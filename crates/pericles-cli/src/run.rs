@@ -19,7 +19,7 @@ use crate::given;
 use crate::plot::TextChart;
 use crate::prepare::{self, Facts, Means};
 use crate::progress::Progress;
-use crate::report::{Audit, Report, Status};
+use crate::report::{Audit, Report, Start, Status};
 use crate::signals::Signals;
 use crate::summary;
 use crate::sweep;
@@ -107,10 +107,6 @@ pub(crate) fn output_folder(
     })
 }
 
-fn momentum(simulation: &Simulation) -> [f64; 3] {
-    simulation.system().momentum(&simulation.state().v)
-}
-
 /// Whether `run.json` says so. A report that cannot be read says nothing: the checkpoints decide.
 fn is_finished(folder: &OutputFolder) -> bool {
     let status = || -> Option<String> {
@@ -148,7 +144,7 @@ fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
 /// A run in its folder.
 pub(crate) struct Session {
     simulation: Simulation,
-    momentum_at_start: [f64; 3],
+    start: Start,
     checkpoints: Checkpoints,
     report: Report,
     folder: OutputFolder,
@@ -177,7 +173,7 @@ impl Session {
         let simulation = prepare::simulation(deck, model, &folder)?;
         Ok(Self {
             checkpoints: Checkpoints::new(&folder, deck.checkpoint, text.clone()),
-            momentum_at_start: momentum(&simulation),
+            start: Start::of(&simulation),
             simulation,
             report: Report::new(deck, text, facts, 0),
             folder,
@@ -208,7 +204,7 @@ impl Session {
         facts.warnings.extend(doubts(&stored, &facts));
         let mut simulation = prepare::simulation(&deck, model, &folder)?;
         // The state is still that of the start.
-        let momentum_at_start = momentum(&simulation);
+        let start = Start::of(&simulation);
         simulation
             .restore(&stored.archive)
             .map_err(|error| CliError::Checkpoint {
@@ -230,7 +226,7 @@ impl Session {
         checkpoints.forget_failed();
         Ok(Some(Self {
             checkpoints,
-            momentum_at_start,
+            start,
             simulation,
             report: Report::new(&deck, text, facts, step),
             folder,
@@ -332,12 +328,7 @@ impl Session {
 
     fn close(mut self, outcome: Outcome, signals: &Signals) -> Result<Exit, CliError> {
         let history = self.folder.file("history.csv");
-        let mut audit = Audit::of(
-            &self.simulation,
-            self.momentum_at_start,
-            &history,
-            &self.report,
-        )?;
+        let mut audit = Audit::of(&self.simulation, &self.start, &history, &self.report)?;
         audit
             .warnings
             .extend(animations::gaps(&self.folder.file("pictures")));

@@ -50,6 +50,9 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
                 significant(error, 2)
             ))?;
         }
+        for mirror in &audit.mirror_errors {
+            console::print(format_args!("{mirror}"))?;
+        }
         for warning in &audit.warnings {
             console::note(format_args!("warning: {warning}"));
         }
