@@ -182,6 +182,22 @@ fn lanczos_finds_the_exact_frequency_of_a_chain() {
 }
 
 #[test]
+fn the_frequency_of_a_large_body_is_found_by_a_hundred_products() {
+    // The same chain, long: the upper end of its spectrum is dense, and its highest mode hard to tell from the next.
+    let n = 100_000;
+    let cloud = grid(&[n as f64 * 0.01], 0.01);
+    let mut steel = material(0.01, Fracture::Unbreakable);
+    steel.volume_correction = VolumeCorrection::None;
+    let chain = operator::<LinearBond, 1>(&cloud, &steel, StressState::Uniaxial, None);
+    let constants = steel.constants(&cloud, StressState::Uniaxial).unwrap();
+    let exact = 2.0 * (constants.micromodulus / DENSITY).sqrt();
+    let found = highest_frequency(&system(&cloud, chain), &vec![0.0; n]).unwrap();
+    assert!(found.converged && found.applications <= 120, "{found:?}");
+    let error = found.estimate / exact - 1.0;
+    assert!(-1e-2 < error && error < 1e-12, "{error:e} of {found:?}");
+}
+
+#[test]
 fn a_free_linear_body_keeps_its_discrete_energy_and_momentum() {
     let cloud = grid(&[0.1, 0.06], 0.01);
     let plate = operator::<LinearBond, 2>(

@@ -60,7 +60,7 @@ impl Real for f64 {
 /// Numbers side by side, in whole registers of an instruction set.
 pub trait Vector: Real {
     /// One bit per lane.
-    type Mask: Copy;
+    type Mask: Copy + Default + PartialEq;
     /// Relative rounding error of one number.
     const EPSILON: f64;
     /// self · factor + addend, rounded once where the set has such an instruction.

@@ -10,7 +10,7 @@ use crate::system::System;
 pub struct HighestFrequency {
     /// Estimate from below, 1/s: the largest Ritz value.
     pub estimate: f64,
-    /// Whether the residual shows the estimate to be within 0.1 %.
+    /// Whether the estimate can be relied on: its residual is below 0.1 %, or it rests after so many applications that it is expected to be within 1 %.
     pub converged: bool,
     /// A bound that is never exceeded at rest, 1/s (Gershgorin).
     pub bound: f64,
@@ -54,6 +54,12 @@ impl HighestFrequency {
 const TOLERANCE: f64 = 1e-3;
 const MOST_APPLICATIONS: usize = 300;
 const CHECK_EVERY: usize = 10;
+/// Applications from which on a value that rests is taken. The upper end of the spectrum of a large body is dense: the value is found long before its vector. From a random start
+/// its relative error (that of ω²) is expected to be at most 0.103 (ln(n (k − 1)⁴)/(k − 1))² after k applications to n unknowns, whatever the spectrum (Kuczyński & Woźniakowski 1992): 0.6 %
+/// in ω for a million points; measured ones are a tenth of that.
+const ENOUGH: usize = 100;
+/// Relative growth between checks below which a value rests.
+const AT_REST: f64 = 1e-4;
 
 /// Lanczos iteration on M⁻¹K at displacement `u`, in the inner product of the masses, from a fixed start vector.
 ///
@@ -129,8 +135,9 @@ fn iterate(
         let exhausted = beta <= 1e-12 * (alpha.abs() + before);
         if exhausted || diagonal.len() % CHECK_EVERY == 0 || diagonal.len() == most {
             let (value, last) = largest_eigenpair(&diagonal, &off);
+            let rests = diagonal.len() >= ENOUGH && value - estimate <= AT_REST * value;
             estimate = value;
-            converged = exhausted || beta * last.abs() <= TOLERANCE * value;
+            converged = exhausted || rests || beta * last.abs() <= TOLERANCE * value;
         }
         if exhausted {
             break;

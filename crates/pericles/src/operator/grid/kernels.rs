@@ -301,9 +301,9 @@ fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
             let d = direction.eta(place, offset.shift, &direction_here);
-            let force = L::tangent(xi::<T, D>(offset), eta, d);
+            let force = L::tangent_force(&offset.lanes::<T>(), eta, d);
             for c in 0..D {
-                sum[c] = sum[c] + (T::splat(offset.stiffness) * force[c]).masked(mask);
+                sum[c] = sum[c] + force[c].masked(mask);
             }
         }
         for c in 0..D {
