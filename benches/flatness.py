@@ -29,7 +29,8 @@ def measure(program, case, threads):
 def picture(lines):
     """An SVG of (label, colour, [(points, ns)]) over a logarithmic axis."""
     most = max(ns for _, _, points in lines for _, ns in points)
-    top = math.ceil(most * 5 + 0.5) / 5
+    # Room for the legend above the lines.
+    top = math.ceil(1.25 * most * 5) / 5
     x = lambda n: LEFT + (math.log10(n) - 4.9) / (7.1 - 4.9) * (WIDTH - LEFT - RIGHT)
     y = lambda ns: HEIGHT - BOTTOM - ns / top * (HEIGHT - TOP - BOTTOM)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="13">', f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>']
@@ -44,8 +45,8 @@ def picture(lines):
         path = " ".join(f"{x(n):.1f},{y(ns):.1f}" for n, ns in points)
         out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
         out += [f'<circle cx="{x(n):.1f}" cy="{y(ns):.1f}" r="3.5" fill="{colour}"/>' for n, ns in points]
-        row = HEIGHT - BOTTOM - 14 - 18 * (len(lines) - 1 - k)
-        out.append(f'<line x1="{LEFT + 14}" x2="{LEFT + 40}" y1="{row - 4}" y2="{row - 4}" stroke="{colour}" stroke-width="2"/><text x="{LEFT + 48}" y="{row}">{label}</text>')
+        left, row = LEFT + 14 + 180 * (k // 2), TOP + 18 + 18 * (k % 2)
+        out.append(f'<line x1="{left}" x2="{left + 26}" y1="{row - 4}" y2="{row - 4}" stroke="{colour}" stroke-width="2"/><text x="{left + 34}" y="{row}">{label}</text>')
     return "\n".join(out + ["</svg>", ""])
 
 

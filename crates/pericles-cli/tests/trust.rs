@@ -1,6 +1,6 @@
 //! The promises of the README over the examples: the same bytes on any number of threads, after a resume, after a death at any time.
 //!
-//! Long; run with `cargo test --release -p pericles-cli --test trust -- --ignored --nocapture`, which prints a table. The quick twins in `resume.rs` always run.
+//! Long; run with `cargo test --release --workspace --test trust -- --ignored --nocapture`, which prints a table. The quick twins in `resume.rs` always run.
 
 mod common;
 
@@ -162,12 +162,12 @@ fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
     ];
     let mut dice = Dice(2026);
     for (number, case) in cases.iter().enumerate() {
-        let began = std::time::Instant::now();
         let whole = format!("whole-{number}");
-        succeed(
-            place.path(),
-            &format!("run {case} --quiet --threads 1 --out {whole}"),
-        );
+        let run = format!("run {case} --quiet --threads 1 --force --out {whole}");
+        // The first run fills the cache; the second takes as long as those that are killed would.
+        succeed(place.path(), &run);
+        let began = std::time::Instant::now();
+        succeed(place.path(), &run);
         let seconds = began.elapsed().as_secs_f64();
         let (mut done, mut runs, mut lives) = (0, 0, 0);
         while done < kills / 3 {
