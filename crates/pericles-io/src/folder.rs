@@ -203,7 +203,20 @@ fn check_ours(path: &Path) -> Result<(), IoError> {
     let empty = all
         .iter()
         .all(|entry| entry.name == LOCK || is_unfinished(&entry.name));
-    if ours || empty {
+    // A run that died before its first report leaves the lock, sub-folders and tables behind.
+    let begun = all.iter().any(|entry| entry.name == LOCK)
+        && all.iter().all(|entry| {
+            let name = &entry.name;
+            let subfolder = SUBFOLDERS.iter().any(|(folder, _)| name == folder);
+            name == LOCK
+                || is_unfinished(name)
+                || if entry.is_file {
+                    is_result(name)
+                } else {
+                    subfolder
+                }
+        });
+    if ours || empty || begun {
         Ok(())
     } else {
         Err(IoError::FolderNotOurs {
@@ -309,6 +322,12 @@ mod tests {
         drop(OutputFolder::create(place.path(), true).unwrap());
         assert!(place.path().join(LOCK).exists());
         OutputFolder::create(place.path(), true).unwrap();
+        populate(place.path(), &["history.csv"]);
+        fs::create_dir(place.path().join("pictures")).unwrap();
+        OutputFolder::create(place.path(), true).unwrap();
+        assert!(!place.path().join("history.csv").exists());
+        fs::write(place.path().join("notes.txt"), "mine").unwrap();
+        assert!(OutputFolder::create(place.path(), true).is_err());
     }
 
     #[test]
