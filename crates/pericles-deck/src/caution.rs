@@ -146,6 +146,26 @@ pub enum Caution {
         /// The error of the Green functions.
         growth: f64,
     },
+    /// Exponentials that miss their tolerance.
+    #[error(
+        "no sum of exponentials meets the tolerance {tolerance:.0e} (the best has the error {residual:.1e}): the exact blocked history is used"
+    )]
+    ExactHistory {
+        /// What was asked for.
+        tolerance: f64,
+        /// What the best fit has.
+        residual: f64,
+    },
+    /// An initial field that is not zero at an absorbing end.
+    #[error(
+        "the initial field at the absorbing end {side} is {share:.1e} of its largest value; it counts as zero beyond, which is an error of that size"
+    )]
+    FieldAtEnd {
+        /// The side.
+        side: &'static str,
+        /// The largest value in the outer layer over that of the body.
+        share: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -200,6 +220,12 @@ impl Subject for Caution {
             Self::HistoricalKernels { .. } => {
                 "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
             }
+            Self::ExactHistory { .. } => {
+                "it costs memory that grows with the number of steps; history = \"blocked\" avoids the attempt, a larger tolerance may be met"
+            }
+            Self::FieldAtEnd { .. } => {
+                "`exterior_data` continues the field beyond the end; or move the end outwards"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -224,6 +250,8 @@ impl Subject for Caution {
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
             Self::HistoricalKernels { .. } => "historical",
+            Self::ExactHistory { .. } => "exact history",
+            Self::FieldAtEnd { .. } => "field at the end",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }

@@ -251,6 +251,28 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
+    /// A window of comparison without points.
+    #[error(
+        "the window of {window:.4e} m around x = {centre:.4e} m contains no point: the nearest one is {nearest:.4e} m away"
+    )]
+    EmptyWindow {
+        /// Half its width, m.
+        window: f64,
+        /// Its middle, m.
+        centre: f64,
+        /// Distance of the nearest point, m.
+        nearest: f64,
+    },
+    /// An exact solution that is too expensive.
+    #[error(
+        "the exact solution would need a sum of {terms:.1e} terms for each point at the end of the run; at most {most:.0e} are allowed"
+    )]
+    LongSum {
+        /// Terms.
+        terms: f64,
+        /// Terms that are allowed.
+        most: f64,
+    },
     /// A body that would need more memory than there is.
     #[error(
         "the body would have {} points and need some {} of memory; {} may be taken",
@@ -333,6 +355,12 @@ impl Subject for Fault {
             }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
+            Self::EmptyWindow { .. } => {
+                "give a larger window, or move the centre of the exact solution into the body".into()
+            }
+            Self::LongSum { .. } => {
+                "the number of terms is 2 (distance from the centre + 6 c end)/width: move exact.centre into the body, give a larger width, or shorten the run".into()
+            }
             Self::BadCondition { .. } => {
                 "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m".into()
             }
@@ -388,6 +416,8 @@ impl Subject for Fault {
             Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
             Self::UnknownArea { .. } => "which area?",
             Self::NoExactSolution { .. } => "of another problem",
+            Self::EmptyWindow { .. } => "no point",
+            Self::LongSum { .. } => "too many terms",
             Self::TooLarge { .. } | Self::LongHistory { .. } => "too large",
             Self::Model(_) => "refused",
         }

@@ -240,6 +240,9 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("[time]", "[output]\nenergy_bound = 3\n[[prescribe]]\nset = \"all\"\nvelocity = 1\n[time]", (23, 1), "energy_bound", &["supports that move"]),
     wrong("periodic = true", "quadrature = \"gauss\"\nrefine = [{ all = true, ratio = 2 }]", (6, 1), "quadrature", &["`quadrature` has no place in [body]"]),
     wrong("window = 3", "window = 0", (20, 10), "0", &["a positive number"]),
+    wrong("window = 3", "window = 0.01", (20, 10), "0.01", &["contains no point: the nearest one is 5.0000e-2 m away"]),
+    wrong("window = 3", "window = 3\ncentre = 1e18", (17, 12), "\"nonlocal-pulse\"", &["a sum of 4.0e18 terms", "at most 1e5"]),
+    wrong("width = 1", "width = 1e-9", (17, 12), "\"nonlocal-pulse\"", &["move exact.centre into the body"]),
     wrong("solution = \"nonlocal-pulse\"", "solution = \"pulse\"", (17, 12), "\"pulse\"", &["unknown exact solution `pulse`", "\"local-pulse\""]),
 ];
 

@@ -140,7 +140,7 @@ impl Deck {
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
         let mut state = self.initial_state(&cloud, &sets)?;
-        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
+        let exact = self.exact_reference(&cloud, constants.young, &mut warnings)?;
         if let (Some(exact), Some(true)) = (&exact, self.exact.map(|exact| exact.start)) {
             exact
                 .solution
@@ -165,7 +165,7 @@ impl Deck {
             &mut warnings,
         )?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
-        let ends = self.add_ends(&mut system, ends, &steps, &resources, &mut warnings)?;
+        let ends = self.add_ends(&mut system, ends, &state, &steps, &resources, &mut warnings)?;
         self.add_damping_layers(&mut system, layers, &steps)?;
         Ok(Model {
             cloud,
