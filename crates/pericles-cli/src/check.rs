@@ -1,7 +1,7 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
 use pericles::family::geodesic::Ball;
-use pericles::material::{BondConstants, SurfaceBond};
+use pericles::material::{BondConstants, Calibration, SurfaceBond};
 use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
 
@@ -41,6 +41,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     lines.extend(time(&facts));
     for end in &facts.ends {
         lines.push(("absorbing end", end.line()));
+    }
+    for changed in &facts.changed_defaults {
+        lines.push(("changed default", changed.clone()));
     }
     if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
         // A step goes from static state to static state: one would be the whole run.
@@ -143,13 +146,13 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
                 facts.micromodulus
             ),
         ),
-        (
-            "stiffness error",
-            format!("{} of the grid's interior", percent(facts.stiffness_error)),
-        ),
+        ("stiffness error", stiffness_error(deck, facts)),
     ];
     let strength = facts.critical_stretch.zip(facts.fracture_energy);
     lines.push(("breaking", breaking(strength)));
+    if !facts.crack_planes.is_empty() {
+        lines.push(("crack planes", crack_planes(facts)));
+    }
     for (part, constants) in deck.material.parts.iter().zip(parts) {
         let strength = (constants.critical_stretch, constants.fracture_energy);
         lines.push((
@@ -174,6 +177,44 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     }
     lines.push(("waves", waves));
     lines
+}
+
+/// How far the grid's interior is from the stiffness asked for, and what can be done about it.
+fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
+    /// Worth a word.
+    const NOTICED: f64 = 0.01;
+    let mut line = format!("{} in bulk", percent(facts.stiffness_error));
+    if facts.dimension > 1 {
+        line += &format!(", {} in shear along the axes", percent(facts.shear_error));
+    }
+    line += ", of the grid's interior";
+    let calibration = deck.material.bonds.modulus.calibration;
+    if facts.stiffness_error.abs() > NOTICED && calibration != Calibration::Lattice {
+        line += "; modulus = \"lattice\" makes it 0 in bulk";
+    }
+    line
+}
+
+/// What cracks along the planes of the lattice cost.
+fn crack_planes(facts: &Facts) -> String {
+    let planes: Vec<String> = facts
+        .crack_planes
+        .iter()
+        .map(|plane| {
+            let sign = if plane.deviation > 0.0 { "+" } else { "" };
+            // What rounding leaves is nothing.
+            let deviation = (plane.deviation * 1e6).round() * 1e-6;
+            format!("{} {sign}{}", plane.plane, percent(deviation))
+        })
+        .collect();
+    let calibration = match facts.fracture_calibration {
+        Some(calibration) => format!(" (fracture_calibration = \"{calibration}\")"),
+        None => String::new(),
+    };
+    format!(
+        "energy per area over the fracture energy: {}{calibration}",
+        planes.join(", ")
+    )
 }
 
 /// From critical stretch and fracture energy (J/m²).

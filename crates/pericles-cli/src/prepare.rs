@@ -6,6 +6,7 @@ use std::sync::Arc;
 use pericles::Simulation;
 use pericles::boundary::absorbing::{EndReport, KernelMethod, Side};
 use pericles::cache::{Cache, NoCache};
+use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
 use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources, Scheme};
@@ -20,7 +21,7 @@ use crate::args::Caching;
 use crate::console;
 use crate::error::CliError;
 use crate::refinement::RefinementFacts;
-use crate::units::bytes;
+use crate::units::{bytes, significant};
 
 /// What is known about a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -40,8 +41,16 @@ pub(crate) struct Facts {
     /// None if bonds never break.
     pub(crate) critical_stretch: Option<f64>,
     pub(crate) fracture_energy: Option<f64>,
+    /// How the critical stretch follows from the fracture energy; none if the deck gives no fracture energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fracture_calibration: Option<&'static str>,
+    /// Cracks along the planes of the lattice, if bonds break and there is a lattice.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) crack_planes: Vec<PlaneFacts>,
     /// Bulk stiffness of the grid's interior over the continuum's, less one.
     pub(crate) stiffness_error: f64,
+    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one.
+    pub(crate) shear_error: f64,
     pub(crate) dt: f64,
     pub(crate) steps: u64,
     /// None if nothing resists motion.
@@ -58,6 +67,18 @@ pub(crate) struct Facts {
     pub(crate) ends: Vec<EndFacts>,
     pub(crate) instruction_set: &'static str,
     pub(crate) warnings: Vec<String>,
+    /// Defaults that this deck relies on and that have changed since the last release.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) changed_defaults: Vec<String>,
+}
+
+/// What a crack along a plane of the lattice costs.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct PlaneFacts {
+    /// Miller indices, such as (110).
+    pub(crate) plane: String,
+    /// Energy per area over the fracture energy, less one.
+    pub(crate) deviation: f64,
 }
 
 /// How an absorbing end is made.
@@ -133,7 +154,17 @@ impl Facts {
             micromodulus: constants.micromodulus,
             critical_stretch: finite(constants.critical_stretch),
             fracture_energy: finite(constants.fracture_energy),
+            fracture_calibration: constants.fracture_calibration.map(|given| given.name()),
+            crack_planes: constants
+                .crack_planes
+                .iter()
+                .map(|plane| PlaneFacts {
+                    plane: plane.to_string(),
+                    deviation: plane.energy() / constants.fracture_energy - 1.0,
+                })
+                .collect(),
             stiffness_error: constants.stiffness_error,
+            shear_error: constants.shear_error,
             dt: model.dt,
             steps: model.steps,
             highest_frequency: model.frequency.map(|f| f.estimate),
@@ -150,8 +181,39 @@ impl Facts {
                 .chain(&deck.judge_waves(model))
                 .map(|w| w.line())
                 .collect(),
+            changed_defaults: changed_defaults(deck, model),
         }
     }
+}
+
+/// What this deck leaves to defaults that differ from those of the last release.
+fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
+    let mut changed = Vec::new();
+    let (material, constants) = (&deck.material.bonds, &model.constants);
+    let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
+    if lattice && !deck.gives("material.fracture_calibration") {
+        let continuum = BondMaterial {
+            fracture: Fracture::Energy {
+                energy: constants.fracture_energy,
+                calibration: FractureCalibration::Continuum,
+            },
+            ..material.clone()
+        };
+        let before = continuum.constants(&model.cloud, deck.body.state);
+        let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
+        changed.push(format!(
+            "fracture_calibration = \"lattice\" gives the critical stretch {}; \"continuum\", the former default, gives {}",
+            significant(constants.critical_stretch, 4),
+            significant(before, 4)
+        ));
+    }
+    if deck.material.surface_correction == SurfaceCorrection::Energy {
+        changed.push(
+            "surface_correction = \"energy\" has a factor for each coordinate direction; formerly it had one for all directions"
+                .into(),
+        );
+    }
+    changed
 }
 
 /// What a model may be made with.

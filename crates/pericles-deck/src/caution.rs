@@ -32,6 +32,24 @@ pub enum Caution {
         /// The critical stretch.
         stretch: f64,
     },
+    /// A body whose bonds are far from the modulus asked for.
+    #[error(
+        "inside the body the bonds have {} of the bulk stiffness asked for",
+        percent(1.0 + error)
+    )]
+    StiffnessError {
+        /// Bulk stiffness over the one asked for, less one.
+        error: f64,
+    },
+    /// A body that resists shear along its grid far less than its material.
+    #[error(
+        "inside the body the bonds have {} of the material's shear stiffness along the grid's axes",
+        percent(1.0 + error)
+    )]
+    ShearStiffness {
+        /// Shear stiffness over the continuum's, less one.
+        error: f64,
+    },
     /// Waves that no solid carries.
     #[error("waves run at {speed:.3e} m/s, faster than in any solid")]
     FastWaves {
@@ -195,6 +213,12 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => {
                 "places are in m unless they carry a unit; `origin` moves a body"
             }
+            Self::StiffnessError { .. } => {
+                "modulus = \"lattice\" gives the modulus on this grid; or take a horizon of three spacings and more"
+            }
+            Self::ShearStiffness { .. } => {
+                "a horizon of one spacing joins a point to few neighbours off the axes; take three spacings"
+            }
             Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
             Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
             Self::LoadOnHeld { .. } => "take other points, or leave the load out",
@@ -240,6 +264,8 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "in pieces",
             Self::LargeStretch { .. } => "very strong",
+            Self::StiffnessError { .. } => "another stiffness",
+            Self::ShearStiffness { .. } => "little shear stiffness",
             Self::FastWaves { .. } => "very light",
             Self::IdleClasses { .. } => "no stiffness",
             Self::LoadOnHeld { .. } => "held",
@@ -256,6 +282,13 @@ impl Subject for Caution {
             Self::GrowingPredictor { .. } => "growing waves",
         }
     }
+}
+
+/// 12.3 %
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let rounded: f64 = format!("{percent:.2e}").parse().unwrap_or(percent);
+    format!("{rounded} %")
 }
 
 /// (1e-3, 2e-3)

@@ -109,6 +109,11 @@ impl Deck {
         &self.record.json
     }
 
+    /// Whether the deck, or an override, gives the value of a key such as `material.modulus`, instead of leaving it to its default.
+    pub fn gives(&self, key: &str) -> bool {
+        self.record.is_given(&key.into())
+    }
+
     /// The text it was read from, without overrides.
     pub fn source(&self) -> &str {
         self.record.sources.text(0)

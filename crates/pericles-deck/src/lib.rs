@@ -81,6 +81,7 @@ mod build;
 mod caution;
 mod component;
 mod conditions;
+mod constants;
 mod course;
 mod crack;
 mod deck;

@@ -180,6 +180,11 @@ impl Record {
         }
     }
 
+    /// Whether the deck gives a value, instead of leaving it to its default.
+    pub(crate) fn is_given(&self, path: &Path) -> bool {
+        self.places.contains_key(path)
+    }
+
     /// What a value became.
     pub(crate) fn value(&self, path: &Path) -> Option<&Json> {
         path.steps()

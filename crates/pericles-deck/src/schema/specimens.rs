@@ -61,6 +61,7 @@ volume_correction = "linear"
 surface_correction = "volume"
 influence = { function = "constant", acts_on = "displacement" }
 fracture_energy = 1
+fracture_calibration = "lattice"
 no_fail = "top"
 bonds = "list"
 damage = { measure = "count", count_precut = true }
