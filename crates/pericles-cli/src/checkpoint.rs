@@ -1,7 +1,7 @@
 //! Checkpoints of a run: when they are due, and what they hold besides the state.
 //!
 //! One is written before the first step, so that a run that dies at any time can be resumed, then at the deck's schedule (by default every ten minutes
-//! of wall time), and when Ctrl-C or SIGTERM stops the run. A run that becomes unstable leaves its failing state as `failed.chk`, which is for looking
+//! of wall time; static runs also between load steps, as far as that takes no more than a twentieth of the time), and when a signal stops the run. A run that becomes unstable leaves its failing state as `failed.chk`, which is for looking
 //! at only: `resume` goes on from the last regular one.
 
 use std::path::PathBuf;
@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::CliError;
 
 const FAILED: &str = "failed.chk";
+/// Between load steps checkpoints are as many times rarer than they take to write.
+const SHARE: u32 = 20;
 
 /// What a checkpoint says besides the state: enough to build the same run again.
 #[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
@@ -95,7 +97,11 @@ impl Checkpoints {
             Checkpoint::Wall(seconds) => {
                 // A deck may ask for more seconds than a clock can count.
                 let wait = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-                self.last.elapsed() >= wait
+                // A load step may take as long as a whole dynamic run, and the next one may have no static state.
+                let affordable = SHARE * self.cost;
+                let is_static = simulation.integrator().is_static();
+                let elapsed = self.last.elapsed();
+                elapsed >= wait || is_static && elapsed >= affordable
             }
             Checkpoint::Every(steps) => due(Schedule::Every(steps)),
             Checkpoint::Interval(time) => due(Schedule::Interval(time)),

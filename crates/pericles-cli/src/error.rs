@@ -177,7 +177,9 @@ impl CliError {
                 Ok(error) => Self::Io(*error),
                 Err(source) => Self::Simulation(SimulationError::Observe(source)),
             },
-            SimulationError::Unstable { .. } | SimulationError::Stuck { .. } => Self::Unstable {
+            SimulationError::Unstable { .. }
+            | SimulationError::Stuck { .. }
+            | SimulationError::NoStaticState { .. } => Self::Unstable {
                 source: error,
                 left: left(),
             },

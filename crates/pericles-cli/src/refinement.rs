@@ -10,7 +10,7 @@ use pericles::time::{
     HighestFrequency, Integrator, RefinementReport, RungeKutta, State, Tableau, VelocityVerlet,
     highest_frequency,
 };
-use pericles::{PericlesError, System};
+use pericles::{Interrupt, PericlesError, System};
 use pericles_deck::{Deck, FineRegion, Model, Scheme};
 use serde::Serialize;
 
@@ -210,7 +210,7 @@ pub(crate) fn seconds_per_step(
 ) -> Result<f64, PericlesError> {
     let mut step = || {
         let t_next = state.t + dt;
-        integrator.step(system, state, t_next)
+        integrator.step(system, state, t_next, Interrupt::never())
     };
     let mut most = most.min(MOST);
     // The first step finds cold caches and sleeping threads.

@@ -1,9 +1,10 @@
 //! `run` and `resume`: a simulation in its folder, from a first step to its end or to a signal.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
+use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
 use pericles_deck::{Deck, Model};
 use pericles_io::{IoError, OutputFolder};
 
@@ -283,7 +284,15 @@ impl Session {
             deadline.begin();
         }
         let mut trouble = None;
-        let outcome = self.simulation.run(|simulation| {
+        let cost = Cell::new(checkpoints.cost());
+        let end = deadline.as_ref().map(Deadline::end);
+        // Asked within steps that iterate, which may take longer than any other part of a run.
+        let is_over = || {
+            let late = |end: Instant| Instant::now() + 2 * cost.get() >= end;
+            signals.asked().is_some() || end.is_some_and(late)
+        };
+        let interrupt = Interrupt::when(&is_over);
+        let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
             let state = simulation.state();
             progress.step(state.step, state.t);
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
@@ -296,6 +305,7 @@ impl Session {
                 trouble = Some(error);
                 return Control::Stop;
             }
+            cost.set(checkpoints.cost());
             Control::Continue
         });
         progress.finish();
@@ -333,6 +343,7 @@ impl Session {
             .warnings
             .extend(animations::gaps(&self.folder.file("pictures")));
         self.report.audit = Some(audit);
+        self.report.stop_reason = self.simulation.stop_reason().map(ToString::to_string);
         let exit = match outcome {
             Outcome::Finished => {
                 self.report.status = Status::Finished;
