@@ -14,6 +14,7 @@ use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
 use crate::error::CliError;
+use crate::inputs::Inputs;
 
 const FAILED: &str = "failed.chk";
 /// Between load steps checkpoints are as many times rarer than they take to write.
@@ -41,24 +42,31 @@ pub(crate) struct DeckText {
     pub(crate) source: String,
     /// The overrides from the command line.
     pub(crate) overrides: Vec<String>,
+    /// The files that the deck names.
+    #[serde(default, skip_serializing_if = "Inputs::is_empty")]
+    pub(crate) inputs: Inputs,
 }
 
 impl DeckText {
     /// The text of a deck that was read from `file`.
     pub(crate) fn of(deck: &Deck, file: String) -> Self {
         Self {
+            inputs: Inputs::of(deck, &file),
             file,
             source: deck.source().to_owned(),
             overrides: deck.overrides().map(str::to_owned).collect(),
         }
     }
 
-    /// Reads the deck again.
+    /// Reads the deck again, from whatever folder.
     ///
     /// # Errors
-    /// What this version no longer accepts.
+    /// What this version no longer accepts; a file that the deck names and that is no longer what it was.
     pub(crate) fn read(&self) -> Result<Deck, CliError> {
-        Ok(Deck::parse(&self.source, &self.file, &self.overrides)?)
+        let file = self.inputs.located(&self.file);
+        let deck = Deck::parse(&self.source, &file, &self.overrides)?;
+        self.inputs.check(&deck)?;
+        Ok(deck)
     }
 }
 
@@ -175,12 +183,12 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// The newest usable checkpoint of a run.
+    /// The newest usable checkpoint of a run; its content may take so many bytes of memory.
     ///
     /// # Errors
-    /// No checkpoint that is whole, or one of another program.
-    pub(crate) fn latest(folder: &OutputFolder) -> Result<Self, CliError> {
-        let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid()?;
+    /// No checkpoint that is whole, one of another program, one that needs more memory.
+    pub(crate) fn latest(folder: &OutputFolder, memory: u64) -> Result<Self, CliError> {
+        let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid(memory)?;
         let unusable = |reason: String| CliError::Checkpoint {
             path: latest.path.clone(),
             reason,

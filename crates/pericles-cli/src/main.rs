@@ -23,6 +23,8 @@ mod exit;
 mod geodesics;
 mod given;
 mod info;
+mod inputs;
+mod line;
 mod machine;
 mod manual;
 mod mirror;

@@ -9,12 +9,17 @@ use pericles::cache::{Cache, NoCache};
 use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources, Scheme};
+use pericles_deck::{
+    Deck, ExactReference, FileError, Model, Picture, Precision, Resources, Scheme,
+};
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
     PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
-use pericles_io::{DiskCache, OutputFolder, read_points, read_surface};
+use pericles_io::{
+    DiskCache, IoError, MeshError, OutputFolder, PointsError, RowsError, read_points, read_rows,
+    read_surface,
+};
 use serde::Serialize;
 
 use crate::args::Caching;
@@ -229,6 +234,7 @@ pub(crate) struct Means<'a> {
 /// A deck that is refused.
 pub(crate) fn model(deck: &Deck, means: &Means<'_>) -> Result<Model, CliError> {
     let cache = means.caching.cache();
+    let cache = cache.map(|cache| cache.within(means.memory));
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
         memory: means.memory,
@@ -329,9 +335,23 @@ pub(crate) fn picture_of(
 pub(crate) fn readers() -> Resources<'static> {
     Resources {
         cache: &NoCache,
-        read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
-        read_points: &|path, dimension| {
-            read_points(path, dimension).map_err(|error| error.to_string())
+        read_surface: &|path, memory| {
+            read_surface(path, memory).map_err(|error| match &error {
+                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_points: &|path, dimension, memory| {
+            read_points(path, dimension, memory).map_err(|error| match &error {
+                PointsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_table: &|path, rows, columns, memory| {
+            read_rows(path, rows, columns, memory).map_err(|error| match &error {
+                RowsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
         },
         ..Resources::default()
     }

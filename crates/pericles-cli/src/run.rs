@@ -119,7 +119,7 @@ fn is_finished(folder: &OutputFolder) -> bool {
 }
 
 /// What may make a resumed run differ from an uninterrupted one.
-fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
+fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
     let mut doubts: Vec<String> = stored
         .refused
         .iter()
@@ -137,6 +137,13 @@ fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
         doubts.push(format!(
             "the run was begun with instruction set {} and goes on with {}: it may not be the same bit for bit",
             metadata.instruction_set, facts.instruction_set
+        ));
+    }
+    let files = deck.files();
+    if let (Some(file), true) = (files.first(), metadata.deck.inputs.is_empty()) {
+        let file = file.display();
+        doubts.push(format!(
+            "the version that began the run did not record the content of {file}: whether it has changed since is not known"
         ));
     }
     doubts
@@ -199,10 +206,10 @@ impl Session {
         if is_finished(&folder) {
             return Ok(None);
         }
-        let stored = Stored::latest(&folder)?;
+        let stored = Stored::latest(&folder, means.memory)?;
         let deck = stored.metadata.deck.read()?;
         let (model, mut facts) = modelled(&deck, means)?;
-        facts.warnings.extend(doubts(&stored, &facts));
+        facts.warnings.extend(doubts(&stored, &deck, &facts));
         let mut simulation = prepare::simulation(&deck, model, &folder)?;
         // The state is still that of the start.
         let start = Start::of(&simulation);

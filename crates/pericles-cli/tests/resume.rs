@@ -3,6 +3,7 @@
 mod common;
 
 use std::fs;
+use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -353,4 +354,100 @@ fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
     assert_same_results(&place.path().join("whole"), &begun);
     let again = succeed(place.path(), "resume begun");
     assert!(text(&again.stdout).contains("has finished"));
+}
+
+/// A ring of listed points that starts with the velocities of a file, stopped between its checkpoint and its end: the last status is taken back.
+fn stopped_ring(place: &Path, out: &str) {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/points");
+    for file in ["ring.toml", "ring.txt"] {
+        fs::copy(examples.join(file), place.join(file)).unwrap();
+    }
+    let deck = fs::read_to_string(place.join("ring.toml")).unwrap();
+    let (before, after) = deck.split_once("velocity = [{").unwrap();
+    let (_, after) = after.split_once('\n').unwrap();
+    let deck = format!("{before}file = \"start.txt\"\n{after}");
+    fs::write(place.join("ring.toml"), deck).unwrap();
+    let points = fs::read_to_string(place.join("ring.txt")).unwrap();
+    let points = points.lines().filter(|line| !line.starts_with('#'));
+    let start: String = points.map(|_| "0 0 1 0.5\n").collect();
+    fs::write(place.join("start.txt"), start).unwrap();
+    let run = format!(
+        "run ring.toml --quiet --out {out} --set time.end=10us --set time.dt=0.1us --set checkpoint.every=60"
+    );
+    succeed(place, &run);
+    let report = place.join(out).join("run.json");
+    let text = fs::read_to_string(&report).unwrap();
+    fs::write(&report, text.replacen("\"finished\"", "\"running\"", 1)).unwrap();
+}
+
+#[test]
+fn a_run_is_resumed_from_another_folder() {
+    let place = tempfile::tempdir().unwrap();
+    stopped_ring(place.path(), "ring");
+    let whole = common::results(&place.path().join("ring"));
+    let elsewhere = tempfile::tempdir().unwrap();
+    let folder = place.path().join("ring");
+    let said = succeed(elsewhere.path(), &format!("resume {}", folder.display()));
+    let said = text(&said.stderr);
+    assert!(said.contains("step 60 of 100"), "{said}");
+    assert_eq!(report(&folder)["status"], "finished");
+    assert!(common::results(&folder) == whole);
+    let inputs = &report(&folder)["deck"]["inputs"]["files"];
+    assert_eq!(inputs[0]["file"], "ring.txt");
+    assert_eq!(inputs[1]["file"], "start.txt");
+    assert_eq!(inputs[0]["sha256"].as_str().unwrap().len(), 64);
+    // Results are drawn again from there, too.
+    succeed(
+        elsewhere.path(),
+        &format!("plot {} --field Velocity", folder.display()),
+    );
+}
+
+#[test]
+fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
+    let place = tempfile::tempdir().unwrap();
+    stopped_ring(place.path(), "ring");
+    let refused = |command: &str, file: &str, says: &str| {
+        let (status, message) = fail(place.path(), command);
+        assert_eq!(status, 3, "{message}");
+        assert!(
+            message.contains(&format!("{file} is read by the run: {says}")),
+            "{message}"
+        );
+        assert!(
+            message.contains("put the file back as it was, or start a new run"),
+            "{message}"
+        );
+    };
+    let changes: [(&str, fn(&str) -> String); 3] = [
+        // The last digit of a coordinate.
+        ("ring.txt", |text| text.replacen("1 ", "2 ", 1)),
+        // The same points in another order.
+        ("ring.txt", |text| {
+            let mut lines: Vec<&str> = text.lines().collect();
+            lines.reverse();
+            lines.join("\n")
+        }),
+        ("start.txt", |text| text.replacen("0.5", "0.6", 1)),
+    ];
+    for (file, change) in changes {
+        let path = place.path().join(file);
+        let before = fs::read_to_string(&path).unwrap();
+        assert_ne!(change(&before), before);
+        fs::write(&path, change(&before)).unwrap();
+        refused(
+            "resume ring",
+            file,
+            "its content has changed since the run began",
+        );
+        refused(
+            "plot ring --field Velocity",
+            file,
+            "its content has changed",
+        );
+        fs::remove_file(&path).unwrap();
+        refused("resume ring", file, "it does not exist any more");
+        fs::write(&path, before).unwrap();
+    }
+    succeed(place.path(), "resume ring");
 }

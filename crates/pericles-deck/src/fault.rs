@@ -122,6 +122,20 @@ pub enum Fault {
         /// What is wrong, with the file and the line in it.
         reason: String,
     },
+    /// A file whose content does not fit into the memory.
+    #[error("{reason}")]
+    LargeFile {
+        /// The file, and what it needs.
+        reason: String,
+    },
+    /// An initial state that cannot be read from its file.
+    #[error("{reason}")]
+    BadInitialFile {
+        /// What is wrong, with the file and the line in it.
+        reason: String,
+        /// The points of the body.
+        points: usize,
+    },
     /// Listed points whose volumes belong to another spacing.
     #[error(
         "the volumes of the listed points are those of cells of {found:.3e} m, not of {given:.3e} m"
@@ -367,6 +381,12 @@ impl Subject for Fault {
             Self::BadPoints { .. } => {
                 "a file of points has a line `x y z block volume` for each, in m and m³; a relative path starts at the deck's folder".into()
             }
+            Self::LargeFile { .. } => {
+                "the limit is what the machine has free, or what was given as the most".into()
+            }
+            Self::BadInitialFile { points, .. } => format!(
+                "the file has a line for each of the {points} points, in the order of the field files (listed points: of their file): the components of the displacement in m, then those of the velocity in m/s; a relative path starts at the deck's folder"
+            ),
             Self::OtherSpacing { section: Some(section), .. } => format!(
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
@@ -410,6 +430,7 @@ impl Subject for Fault {
             | Self::BadExpression { .. }
             | Self::BadCondition { .. }
             | Self::BadPoints { .. }
+            | Self::BadInitialFile { .. }
             | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
@@ -418,7 +439,9 @@ impl Subject for Fault {
             Self::NoExactSolution { .. } => "of another problem",
             Self::EmptyWindow { .. } => "no point",
             Self::LongSum { .. } => "too many terms",
-            Self::TooLarge { .. } | Self::LongHistory { .. } => "too large",
+            Self::TooLarge { .. } | Self::LongHistory { .. } | Self::LargeFile { .. } => {
+                "too large"
+            }
             Self::Model(_) => "refused",
         }
     }

@@ -125,12 +125,14 @@ fn conditions_time_and_output_arrive() {
                 set: "all".into(),
                 displacement: None,
                 velocity: Some([0.0, 1.0, 0.0].map(Into::into)),
+                file: None,
                 random_velocity: None,
             },
             Initial {
                 set: "top".into(),
                 displacement: Some([1e-6, 0.0, 0.0].map(Into::into)),
                 velocity: Some([0.0, 20.0, 0.0].map(Into::into)),
+                file: None,
                 random_velocity: None,
             }
         ]

@@ -199,6 +199,9 @@ pub(crate) struct RunArgs {
 pub(crate) struct CheckArgs {
     /// The deck, a TOML file
     pub(crate) deck: PathBuf,
+    /// Write all numbers as JSON, in SI units, to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]

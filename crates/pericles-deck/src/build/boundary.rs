@@ -15,6 +15,7 @@ use crate::boundary::BoundaryCondition;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
+use crate::fault::Fault;
 use crate::finding::Warning;
 use crate::reader::Path;
 use crate::set::ALL;
@@ -82,6 +83,7 @@ impl Deck {
             let (layer, beyond) = match exterior_data {
                 None => (OuterLayer::of(system, side, state, &no_fail), None),
                 Some(depth) => {
+                    self.refuse_initial_files()?;
                     exterior += depth / system.cloud().spacing();
                     self.check_exterior(&path.key("exterior_data"), exterior, resources)?;
                     let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
@@ -97,6 +99,23 @@ impl Deck {
             });
         }
         Ok(ends)
+    }
+
+    /// Refuses initial states from files where the initial fields are continued beyond the body.
+    fn refuse_initial_files(&self) -> Result<(), DeckError> {
+        let Some(k) = self
+            .initial
+            .iter()
+            .position(|initial| initial.file.is_some())
+        else {
+            return Ok(());
+        };
+        let fault = Fault::Misplaced {
+            key: "file".into(),
+            table: "an [[initial]] of a deck with `exterior_data`".into(),
+            allowed: "a file holds no values beyond the body; give `displacement` and `velocity` as expressions".into(),
+        };
+        Err(self.at_path(&Path::from("initial").index(k).key("file"), fault))
     }
 
     /// The initial fields of all points, continued beyond an end; displacement and velocity of each site.

@@ -21,7 +21,7 @@ mod surface;
 pub use exact::ExactReference;
 
 pub(crate) use memory::bytes;
-pub use resources::{PointsReader, Resources, SurfaceReader};
+pub use resources::{FileError, PointsReader, Resources, SurfaceReader, TableReader};
 
 use std::sync::Arc;
 
@@ -139,7 +139,7 @@ impl Deck {
         };
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
-        let mut state = self.initial_state(&cloud, &sets)?;
+        let mut state = self.initial_state(&cloud, &sets, &resources)?;
         let exact = self.exact_reference(&cloud, constants.young, &mut warnings)?;
         if let (Some(exact), Some(true)) = (&exact, self.exact.map(|exact| exact.start)) {
             exact

@@ -86,6 +86,8 @@ velocity = [0, { expression = "x" }]
 random_velocity = { generator = "splitmix64", radius = 1, seed = 1 }
 [[initial]]
 random_velocity = { radius = 1 }
+[[initial]]
+file = "state.txt"
 [[prescribe]]
 set = "top"
 velocity = [0, "free"]

@@ -5,6 +5,7 @@ mod common;
 
 mod conditions;
 mod ends;
+mod initial;
 mod plate;
 mod points;
 mod schemes;
