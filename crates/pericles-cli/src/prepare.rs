@@ -214,7 +214,7 @@ fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
     }
     if deck.material.surface_correction == SurfaceCorrection::Energy {
         changed.push(
-            "surface_correction = \"energy\" has a factor for each coordinate direction; formerly it had one for all directions"
+            "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one for all directions"
                 .into(),
         );
     }

@@ -152,7 +152,11 @@ impl Deck {
     /// Points within the horizon of a point inside.
     fn neighbours(&self, dimension: usize) -> f64 {
         let material = &self.material.bonds;
-        let spacing = self.body.grid.spacing;
+        let spacing = match &self.body.rectangular {
+            // The side of the square or cube of the same volume.
+            Some(sides) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
+            None => self.body.grid.spacing,
+        };
         let ratio = material.volume_correction.reach(material.horizon, spacing) / spacing;
         match dimension {
             1 => 2.0 * ratio,

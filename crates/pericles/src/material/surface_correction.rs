@@ -1,5 +1,6 @@
 //! Corrections for the bonds that points near a surface lack.
 
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::BondMaterial;
@@ -19,15 +20,20 @@ pub enum SurfaceCorrection {
     None,
     /// ½(g_i + g_j) with g_i = V₀/V_i, the volume V = Σ_j κ V_j of a family and of the point itself (Le & Bobaru, Comput. Mech. 61, 499, 2018).
     Volume,
-    /// Factors for each coordinate direction c from the energy of uniaxial tension along it, combined for a bond along the unit vector n by an ellipsoid:
+    /// Factors for three directions c at each point, from the energy of uniaxial tension along them, combined for a bond along the unit vector n by an
+    /// ellipsoid (Madenci & Oterkus, Peridynamic Theory and Its Applications, 2014, chapter 4):
     ///
-    /// g = (Σ_c (n_c/g_c)²)^(−1/2), g_c the mean of both ends (Madenci & Oterkus, Peridynamic Theory and Its Applications, 2014, chapter 4).
+    /// g = (Σ_c (n_c/g_c)²)^(−1/2), written as g = 1/|G⁻¹ n| with the tensor G, the mean of both ends, that has the factors g_c along the directions c.
     ///
-    /// The strain is 1 along c and −ν across, ν the contraction of the bond-based body (1/3 in 2D, 1/4 in 3D), and g_c is such that the energy density
+    /// The directions are the principal axes of Σ_j κ α |ξ| n⊗n V_j, and not those of the coordinates, so that oblique surfaces are corrected as well as those along the
+    /// grid. The strain is 1 along c and −ν across, ν the contraction of the bond-based body (1/3 in 2D, 1/4 in 3D), and g_c is such that the energy density
     /// W_c ∝ Σ_j g κ α |ξ| (n_c² − ν (1 − n_c²))² V_j is that of the interior. The condition hangs on the factors themselves; it is iterated three times from
     /// g = 1. Beyond four horizons from a surface the factor is 1 to round-off.
     Energy,
 }
+
+/// A symmetric tensor: xx, yy, zz, xy, yz, zx.
+type Tensor = [f64; 6];
 
 /// The factors of a body's points.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,8 +42,8 @@ pub enum SurfaceFactors {
     None,
     /// A factor for each point.
     Scalar(Vec<f64>),
-    /// A factor for each point and coordinate direction.
-    Directional(Vec<[f64; 3]>),
+    /// A symmetric tensor for each point: xx, yy, zz, xy, yz, zx.
+    Directional(Vec<[f64; 6]>),
 }
 
 impl SurfaceFactors {
@@ -46,20 +52,28 @@ impl SurfaceFactors {
         match self {
             Self::None => 1.0,
             Self::Scalar(factors) => 0.5 * (factors[i] + factors[j]),
-            Self::Directional(factors) => ellipsoid([&factors[i], &factors[j]], xi),
+            Self::Directional(tensors) => ellipsoid([&tensors[i], &tensors[j]], xi),
         }
     }
 }
 
-/// The factor of a bond ξ from those of its ends for each direction.
-fn ellipsoid([a, b]: [&[f64; 3]; 2], xi: [f64; 3]) -> f64 {
-    let (mut square, mut sum) = (0.0, 0.0);
-    for c in 0..3 {
-        let along = xi[c] / (0.5 * (a[c] + b[c]));
-        square += xi[c] * xi[c];
-        sum += along * along;
+/// |ξ|/|G⁻¹ ξ| with the mean G of the tensors of both ends.
+fn ellipsoid([a, b]: [&Tensor; 2], xi: [f64; 3]) -> f64 {
+    let [xx, yy, zz, xy, yz, zx]: Tensor = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+    // Cofactors: the inverse times the determinant.
+    let inverse = [
+        [yy * zz - yz * yz, yz * zx - xy * zz, xy * yz - yy * zx],
+        [yz * zx - xy * zz, xx * zz - zx * zx, xy * zx - xx * yz],
+        [xy * yz - yy * zx, xy * zx - xx * yz, xx * yy - xy * xy],
+    ];
+    let determinant = xx * inverse[0][0] + xy * inverse[0][1] + zx * inverse[0][2];
+    let (mut square, mut reduced) = (0.0, 0.0);
+    for (x, row) in xi.iter().zip(&inverse) {
+        let y = (row[0] * xi[0] + row[1] * xi[1] + row[2] * xi[2]) / determinant;
+        square += x * x;
+        reduced += y * y;
     }
-    (square / sum).sqrt()
+    (square / reduced).sqrt()
 }
 
 impl SurfaceCorrection {
@@ -70,7 +84,7 @@ impl SurfaceCorrection {
         bonds: &BondList,
         material: &BondMaterial,
     ) -> SurfaceFactors {
-        /// The first two leave up to 7 % of the tension of thin bars, further ones make shear softer.
+        /// Two leave 7 % of the tension of thin bars, further ones make shear softer.
         const PASSES: usize = 3;
         let body = Body {
             cloud,
@@ -81,14 +95,36 @@ impl SurfaceCorrection {
             Self::None => SurfaceFactors::None,
             Self::Volume => body.volume_factors(),
             Self::Energy => {
-                let interior = body.interior_energies();
-                let mut factors = vec![[1.0; 3]; cloud.len()];
+                let mut points = body.uncorrected();
                 for _ in 0..PASSES {
-                    factors = body.improved(&interior, &factors);
+                    body.improve(&mut points);
                 }
-                SurfaceFactors::Directional(factors)
+                SurfaceFactors::Directional(points.iter().map(Directions::tensor).collect())
             }
         }
+    }
+}
+
+/// The factors of a point along three directions.
+#[derive(Debug, Clone, Copy)]
+struct Directions {
+    /// Unit vectors at right angles.
+    axes: [[f64; 3]; 3],
+    /// Energies of tension along them inside the body.
+    interior: [f64; 3],
+    factors: [f64; 3],
+}
+
+impl Directions {
+    /// Σ_c g_c c⊗c
+    fn tensor(&self) -> Tensor {
+        const ENTRIES: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]];
+        ENTRIES.map(|[a, b]| {
+            let terms = self.axes.iter().zip(self.factors);
+            terms
+                .map(|(axis, factor)| factor * axis[a] * axis[b])
+                .sum::<f64>()
+        })
     }
 }
 
@@ -128,47 +164,91 @@ impl Body<'_> {
         SurfaceFactors::Scalar(self.for_each_point(factor))
     }
 
-    /// What a bond adds to the energies of tension along each axis, over c s² V/2.
-    fn energies(&self, xi: [f64; 3], r: f64) -> [f64; 3] {
+    /// α |ξ| of a bond.
+    fn weight(&self, xi: [f64; 3], r: f64) -> f64 {
+        self.material.influence.alpha_of(xi, self.material.horizon) * r
+    }
+
+    /// What a bond of weight 1 adds to the energies of tension along each axis, over c s² V/2.
+    fn energies(&self, axes: &[[f64; 3]; 3], xi: [f64; 3], r: f64) -> [f64; 3] {
         const CONTRACTION: [f64; 3] = [0.0, 1.0 / 3.0, 1.0 / 4.0];
-        let dimension = self.cloud.dimension();
-        let nu = CONTRACTION[dimension - 1];
-        let weight = self.material.influence.alpha_of(xi, self.material.horizon) * r;
-        std::array::from_fn(|c| {
-            let square = (xi[c] / r) * (xi[c] / r);
+        let nu = CONTRACTION[self.cloud.dimension() - 1];
+        axes.map(|axis| {
+            let along = (axis[0] * xi[0] + axis[1] * xi[1] + axis[2] * xi[2]) / r;
+            let square = along * along;
             let stretch = square - nu * (1.0 - square);
-            if c < dimension {
-                weight * stretch * stretch
-            } else {
-                0.0
+            stretch * stretch
+        })
+    }
+
+    /// The directions of every point with the factors 1.
+    fn uncorrected(&self) -> Vec<Directions> {
+        let mut family = Vec::new();
+        let volume = self.interior(|kappa, xi, r| family.push((kappa, xi, r)));
+        for (kappa, xi, r) in &mut family {
+            *kappa *= self.weight(*xi, *r) * volume;
+        }
+        self.for_each_point(|i| {
+            let axes = self.principal_axes(i);
+            let mut interior = [0.0; 3];
+            for &(weight, xi, r) in &family {
+                add(&mut interior, weight, self.energies(&axes, xi, r));
+            }
+            Directions {
+                axes,
+                interior,
+                factors: [1.0; 3],
             }
         })
     }
 
-    fn interior_energies(&self) -> [f64; 3] {
-        let mut sums = [0.0; 3];
-        let volume = self.interior(|kappa, xi, r| add(&mut sums, kappa, self.energies(xi, r)));
-        sums.map(|sum| sum * volume)
+    /// The principal axes of a family; those of the coordinates where they are principal.
+    fn principal_axes(&self, i: usize) -> [[f64; 3]; 3] {
+        /// Rounding of the sums, far below what bends an axis.
+        const NOTHING: f64 = 1e-9;
+        let (cloud, bonds) = (self.cloud, self.bonds);
+        let mut moment = Matrix3::<f64>::zeros();
+        for (_, j) in bonds.family(i) {
+            let (xi, r) = (bonds.vector(cloud, i, j), bonds.length(cloud, i, j));
+            let weight = self.weight(xi, r) * bonds.volume_factor(cloud, i, j);
+            let n = Vector3::from(xi) / r;
+            moment += n * n.transpose() * (weight * cloud.volumes()[j]);
+        }
+        let (trace, across) = (moment.trace(), [moment.m12, moment.m23, moment.m13]);
+        let bent = across.iter().any(|x| x.abs() > NOTHING * trace);
+        if bent && trace > 0.0 && trace.is_finite() {
+            moment.symmetric_eigen().eigenvectors.into()
+        } else {
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+        }
     }
 
-    /// Factors under which the energies of corrected bonds are nearer those of the interior.
-    fn improved(&self, interior: &[f64; 3], factors: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    /// Takes factors under which the energies of corrected bonds are nearer those of the interior.
+    fn improve(&self, points: &mut [Directions]) {
         let (cloud, bonds, volumes) = (self.cloud, self.bonds, self.cloud.volumes());
-        self.for_each_point(|i| {
+        let tensors: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
+        let improved: Vec<[f64; 3]> = self.for_each_point(|i| {
+            let own = &points[i];
             let mut sums = [0.0; 3];
             for (_, j) in bonds.family(i) {
                 let (xi, r) = (bonds.vector(cloud, i, j), bonds.length(cloud, i, j));
-                let factor = ellipsoid([&factors[i], &factors[j]], xi);
-                let weight = factor * bonds.volume_factor(cloud, i, j) * volumes[j];
-                add(&mut sums, weight, self.energies(xi, r));
+                let factor = ellipsoid([&tensors[i], &tensors[j]], xi);
+                let weight = factor * self.weight(xi, r) * bonds.volume_factor(cloud, i, j);
+                add(
+                    &mut sums,
+                    weight * volumes[j],
+                    self.energies(&own.axes, xi, r),
+                );
             }
-            let own = factors[i];
             // A point without bonds has nothing to be corrected.
             std::array::from_fn(|c| match sums[c] {
-                sum if sum > 0.0 => own[c] * interior[c] / sum,
-                _ => own[c],
+                sum if sum > 0.0 => own.factors[c] * own.interior[c] / sum,
+                _ => own.factors[c],
             })
-        })
+        });
+        for (point, factors) in points.iter_mut().zip(improved) {
+            point.factors = factors;
+        }
     }
 
     fn for_each_point<T: Send>(&self, value: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
