@@ -39,6 +39,15 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         None => lines.extend(material(&deck, &facts, &model.parts)),
     }
     lines.extend(time(&facts));
+    /// Loads with a line of their own; `run.json` has all.
+    const LOADS: usize = 20;
+    for load in facts.loads.iter().take(LOADS) {
+        lines.push(("load", load.line()));
+    }
+    if facts.loads.len() > LOADS {
+        let more = facts.loads.len() - LOADS;
+        lines.push(("loads", format!("{} more", count(more as u64))));
+    }
     for end in &facts.ends {
         lines.push(("absorbing end", end.line()));
     }

@@ -106,6 +106,7 @@ mod schema;
 mod scheme;
 mod set;
 mod source;
+mod stop;
 mod surface;
 mod time;
 mod units;
@@ -113,7 +114,9 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::BoundaryCondition;
-pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
+pub use build::{
+    AreaDoubt, ExactReference, LoadReport, Model, PointsReader, Resources, Sets, SurfaceReader,
+};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
@@ -133,5 +136,6 @@ pub use schema::{json_schema, reference};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
+pub use stop::{StopCondition, StopWhen};
 pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use time::{Time, TimeStep};
