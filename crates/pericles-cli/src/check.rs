@@ -44,6 +44,18 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         None => lines.extend(material(&deck, &facts, &model.parts)),
     }
     lines.extend(time(&facts));
+    /// Loads with a line of their own; `run.json` has all.
+    const LOADS: usize = 20;
+    for load in facts.loads.iter().take(LOADS) {
+        lines.push(Line::new("load", load.line()));
+    }
+    if facts.loads.len() > LOADS {
+        let more = facts.loads.len() - LOADS;
+        lines.push(
+            Line::new("loads", format!("{} more", count(more as u64)))
+                .with("loads_not_listed", more),
+        );
+    }
     for end in &facts.ends {
         lines.push(Line::new("absorbing end", end.line()));
     }

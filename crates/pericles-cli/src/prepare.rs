@@ -10,7 +10,7 @@ use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCor
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
 use pericles_deck::{
-    Deck, ExactReference, FileError, Model, Picture, Precision, Resources, Scheme,
+    Deck, ExactReference, FileError, LoadReport, Model, Picture, Precision, Resources, Scheme,
 };
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
@@ -26,7 +26,7 @@ use crate::args::Caching;
 use crate::console;
 use crate::error::CliError;
 use crate::refinement::RefinementFacts;
-use crate::units::{bytes, significant};
+use crate::units::{bytes, count, quantity, significant};
 
 /// What is known about a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -67,6 +67,9 @@ pub(crate) struct Facts {
     pub(crate) scheme: &'static str,
     /// None for schemes with one time step.
     pub(crate) refinement: Option<RefinementFacts>,
+    /// The loads, in the order of the deck.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) loads: Vec<LoadFacts>,
     /// The absorbing ends.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) ends: Vec<EndFacts>,
@@ -84,6 +87,46 @@ pub(crate) struct PlaneFacts {
     pub(crate) plane: String,
     /// Energy per area over the fracture energy, less one.
     pub(crate) deviation: f64,
+}
+
+/// What a load comes to; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct LoadFacts {
+    pub(crate) set: String,
+    pub(crate) points: usize,
+    /// None for body forces.
+    pub(crate) area: Option<f64>,
+    /// The resultant when it is largest in the run, an entry per dimension.
+    pub(crate) force: Vec<f64>,
+    /// When that is first so.
+    pub(crate) force_time: f64,
+}
+
+impl LoadFacts {
+    fn of(load: &LoadReport, dimension: usize) -> Self {
+        Self {
+            set: load.set.clone(),
+            points: load.points,
+            area: load.area,
+            force: load.force[..dimension].to_vec(),
+            force_time: load.at,
+        }
+    }
+
+    /// In a line.
+    pub(crate) fn line(&self) -> String {
+        let force: Vec<String> = self.force.iter().map(|f| quantity(*f, "N")).collect();
+        let area = self.area.map_or_else(String::new, |area| {
+            format!(" on {} mm²", significant(1e6 * area, 4))
+        });
+        format!(
+            "{}: {} points{area}; total force ({}), largest at t = {}",
+            self.set,
+            count(self.points as u64),
+            force.join(", "),
+            quantity(self.force_time, "s")
+        )
+    }
 }
 
 /// How an absorbing end is made.
@@ -178,6 +221,11 @@ impl Facts {
             memory_estimate: (operator.bytes() + numbers * size_of::<f64>() + ends) as u64,
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
+            loads: model
+                .loads
+                .iter()
+                .map(|load| LoadFacts::of(load, dimension))
+                .collect(),
             ends: model.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
             warnings: model

@@ -3,6 +3,7 @@
 use miette::Severity;
 use pericles::space::surface::SurfaceCaution;
 
+use crate::build::AreaDoubt;
 use crate::finding::Subject;
 
 /// Kinds of odd.
@@ -66,6 +67,9 @@ pub enum Caution {
         /// The longest bonds with a stiffness, in spacings.
         reach: usize,
     },
+    /// A traction on a set that is not one layer on one face.
+    #[error("{}", doubtful_area(.0))]
+    LoadedArea(AreaDoubt),
     /// A load that supports take.
     #[error("{} held along it: there it acts on the supports alone", share(*held, *points))]
     LoadOnHeld {
@@ -116,6 +120,18 @@ pub enum Caution {
         dt: f64,
         /// The limit, s.
         limit: f64,
+    },
+    /// A step that does not divide the time of the run.
+    #[error(
+        "the run does not end after a whole number of steps of {given:.5e} s; all steps are shortened to {used:.5e} s, {count} of which end at time.end exactly"
+    )]
+    ShortenedStep {
+        /// The step given, s.
+        given: f64,
+        /// The step used, s.
+        used: f64,
+        /// Number of steps.
+        count: u64,
     },
     /// A step that may exceed the stable limit.
     #[error(
@@ -221,6 +237,9 @@ impl Subject for Caution {
             }
             Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
             Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
+            Self::LoadedArea(_) => {
+                "give `area`, or use a layer of one face, such as layer = { side = \"+x\", cells = 3 }, and one [[load]] for each face"
+            }
             Self::LoadOnHeld { .. } => "take other points, or leave the load out",
             Self::Pieces { points: 1, .. } => {
                 "a crack that passes through points takes all their bonds: shift it by half a cell; else look at holes and the horizon, unless loose points are meant"
@@ -234,6 +253,9 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::ShortenedStep { .. } => {
+                "give a dt that divides end, or an end that is a multiple of dt, to choose both"
+            }
             Self::Surface(_) => "usual: 3 to 6 median edges",
             Self::ShortPeriod { .. } => {
                 "a longer body, a shorter run or a smaller exact.window brings it down"
@@ -268,11 +290,13 @@ impl Subject for Caution {
             Self::ShearStiffness { .. } => "little shear stiffness",
             Self::FastWaves { .. } => "very light",
             Self::IdleClasses { .. } => "no stiffness",
+            Self::LoadedArea(_) => "which area?",
             Self::LoadOnHeld { .. } => "held",
             Self::NoSupport { .. } => "loose parts",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::ShortenedStep { .. } => "shortened",
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
             Self::HistoricalKernels { .. } => "historical",
@@ -289,6 +313,34 @@ fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded: f64 = format!("{percent:.2e}").parse().unwrap_or(percent);
     format!("{rounded} %")
+}
+
+/// An area with four digits.
+fn square_millimetres(area: f64) -> String {
+    format!("{} mm²", short(1e6 * area))
+}
+
+fn doubtful_area(doubt: &AreaDoubt) -> String {
+    let name = |axis: &usize| ['x', 'y', 'z'][*axis];
+    match doubt {
+        AreaDoubt::Thinner {
+            axis,
+            area,
+            other,
+            face,
+        } => format!(
+            "this traction acts on {}, the set as seen along {}; the set is a layer normal to {}, whose face has {}",
+            square_millimetres(*area),
+            name(axis),
+            name(other),
+            square_millimetres(*face)
+        ),
+        AreaDoubt::Parts { axis, area } => format!(
+            "the set of this traction is not one layer on one face: the force on {}, the set as seen along {}, is spread over all its points",
+            square_millimetres(*area),
+            name(axis)
+        ),
+    }
 }
 
 /// (1e-3, 2e-3)

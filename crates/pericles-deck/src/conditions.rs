@@ -6,7 +6,7 @@ use pericles::boundary::{MotionKind, TimeFunction};
 use pericles::space::Point;
 
 use crate::component::{Component, Variables, VectorField, component, vector_field};
-use crate::course::function;
+use crate::course::{function, smooth_function};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -174,7 +174,7 @@ pub(crate) fn prescribe(
             };
             Some((kind, amplitude(&item, quantity, dimension)?))
         });
-    let function = function(&table);
+    let function = smooth_function(&table);
     let until = table.maybe("until", |item| item.positive(Quantity::Time));
     table.finish();
     let (kind, amplitude) = motion?;

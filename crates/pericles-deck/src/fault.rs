@@ -100,6 +100,24 @@ pub enum Fault {
         /// What is wrong, and what is allowed.
         reason: String,
     },
+    /// A load or motion that ceases to have a value.
+    #[error("the {what} on `{set}` has no finite value at t = {t:.4e} s, within the run")]
+    LostValue {
+        /// Load or prescribed motion.
+        what: &'static str,
+        /// Its set.
+        set: String,
+        /// When first, s.
+        t: f64,
+    },
+    /// A stop condition that nothing can meet.
+    #[error("the stop condition on `{set}` can never be met: {reason}")]
+    NeverStops {
+        /// The set.
+        set: String,
+        /// Why not.
+        reason: &'static str,
+    },
     /// A surface that cannot be had from its file.
     #[error("{file} gives no surface: {reason}")]
     BadSurfaceFile {
@@ -367,6 +385,10 @@ impl Subject for Fault {
             Self::BadSurfaceFile { .. } => {
                 "a surface is closed, in one part and oriented outwards, unless open, several or flip = true; `pericles geodesics FILE` tells more".into()
             }
+            Self::LostValue { .. } => "its expression must have a finite value, and that of a motion finite derivatives, at all times of the run; end the run or the load (`until`) before, or change it".into(),
+            Self::NeverStops { .. } => {
+                "reaction_below needs a set that a [[prescribe]] holds, damage_above a material that can break".into()
+            }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::EmptyWindow { .. } => {
@@ -435,6 +457,8 @@ impl Subject for Fault {
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
+            Self::LostValue { .. } => "not finite",
+            Self::NeverStops { .. } => "never met",
             Self::UnknownArea { .. } => "which area?",
             Self::NoExactSolution { .. } => "of another problem",
             Self::EmptyWindow { .. } => "no point",

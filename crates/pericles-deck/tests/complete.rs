@@ -202,6 +202,7 @@ fn conditions_time_and_output_arrive() {
             step: TimeStep::Fixed(25e-9),
             scheme: Scheme::VelocityVerlet,
             allow_unstable: true,
+            stop_when: vec![],
         }
     );
     let damage = Picture {

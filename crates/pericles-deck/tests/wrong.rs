@@ -139,6 +139,15 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"relaxation\"\ntolerance = 0", (36, 13), "0", &["forces out of balance"]),
     wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
     wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a share of the body's mass"]),
+    // Stop conditions.
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] lacks one of `reaction_below` and `damage_above`"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"tip\"\ndamage_above = 0.9\n[output]", (38, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 2\n[output]", (39, 18), "2", &["out of range", "share of the largest reaction"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\ndamage_above = 1\n[output]", (39, 16), "1", &["out of range", "below 1"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 0.1\ndamage_above = 0.9\n[output]", (40, 16), "0.9", &["`reaction_below` and `damage_above` are given together"]),
+    // Prescribed motions with jumps.
+    wrong("velocity = [0, \"free\"]", "velocity = [1, \"free\"]\nfunction = { kind = \"expression\", expression = \"step(t-1e-6)\" }", (24, 48), "\"step(t-1e-6)\"", &["no derivative in time", "`step(t-1e-6)`", "kind = \"table\""]),
+    wrong("velocity = [0, \"free\"]", "velocity = [1, \"free\"]\nfunction = { kind = \"expression\", expression = \"abs(t-1e-6)\" }", (24, 48), "\"abs(t-1e-6)\"", &["no derivative in time", "kind = \"table\""]),
     // Boundaries.
     wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),
@@ -242,6 +251,8 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("[time]", "[output]\nenergy_bound = 0\n[time]", (23, 16), "0", &["a positive number"]),
     wrong("[time]", "[output]\nenergy_bound = 3\n[[prescribe]]\nset = \"all\"\nvelocity = 1\n[time]", (23, 1), "energy_bound", &["supports that move"]),
     wrong("periodic = true", "quadrature = \"gauss\"\nrefine = [{ all = true, ratio = 2 }]", (6, 1), "quadrature", &["`quadrature` has no place in [body]"]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nstop_when = [{ set = \"all\", reaction_below = 0.1 }]", (26, 14), "{ set", &["the stop condition on `all` can never be met", "no [[prescribe]] names this set"]),
+    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nstop_when = [{ set = \"all\", damage_above = 0.1 }]", (26, 14), "{ set", &["the bonds of this body never break", "a material that can break"]),
     wrong("window = 3", "window = 0", (20, 10), "0", &["a positive number"]),
     wrong("window = 3", "window = 0.01", (20, 10), "0.01", &["contains no point: the nearest one is 5.0000e-2 m away"]),
     wrong("window = 3", "window = 3\ncentre = 1e18", (17, 12), "\"nonlocal-pulse\"", &["a sum of 4.0e18 terms", "at most 1e5"]),

@@ -382,9 +382,7 @@ pub enum PericlesError {
     #[error("the step was interrupted")]
     Interrupted,
     /// A load step without an equilibrium.
-    #[error(
-        "at t = {t:.4e} s the forces out of balance are {residual:.3e} of those that act after {iterations} iterations; the tolerance is {tolerance:.1e}"
-    )]
+    #[error("{}", no_equilibrium(*t, *iterations, *residual, *tolerance))]
     NoEquilibrium {
         /// Time of the load step, s.
         t: f64,
@@ -441,5 +439,16 @@ pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64> {
         Ok(value)
     } else {
         Err(PericlesError::NotPositive { quantity, value })
+    }
+}
+fn no_equilibrium(t: f64, iterations: u32, residual: f64, tolerance: f64) -> String {
+    if residual.is_finite() {
+        format!(
+            "at t = {t:.4e} s the forces out of balance are {residual:.3e} of those that act after {iterations} iterations; the tolerance is {tolerance:.1e}"
+        )
+    } else {
+        format!(
+            "at t = {t:.4e} s the forces grow without bound after {iterations} iterations, as where a body becomes much stiffer within a load step"
+        )
     }
 }

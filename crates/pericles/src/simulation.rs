@@ -116,7 +116,7 @@ fn no_state_advice(broken: u64) -> &'static str {
         "The body can probably not bear this load any more. A stop condition (reaction_below or damage_above) ends such a run in time; a prescribed displacement in place of a \
          load follows the failure; more load steps or iterations help where it only converges slowly"
     } else {
-        "Usual causes: a part of the body that no support holds, a load beyond buckling, too few iterations for so many points"
+        "Usual causes: a part of the body that no support holds, a load beyond buckling, too few iterations, or load steps so large that the body becomes much stiffer within one"
     }
 }
 

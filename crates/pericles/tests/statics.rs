@@ -499,9 +499,9 @@ fn stop_conditions_end_static_and_dynamic_runs() {
         match (&condition, reason.found) {
             (StopCondition::ReactionBelow { .. }, Found::Reaction { now, peak }) => {
                 assert!(now < 0.02 * peak, "{reason}");
-                // The force at which the soft part breaks, of the load steps before.
+                // No more than the soft part bears; bonds of the held layer are stretched more than the mean and break earlier.
                 let strength = 1e-3 * 0.5 * YOUNG * AREA;
-                assert!(peak > 0.8 * strength && peak < 1.3 * strength, "{peak}");
+                assert!(peak > 0.5 * strength && peak < strength, "{peak}");
             }
             (StopCondition::DamageAbove { .. }, Found::Damage { damage, .. }) => {
                 assert!(damage > 0.4, "{reason}");

@@ -1,18 +1,17 @@
-//! Initial state, loads, prescribed motions and probes of a model.
+//! Initial state, prescribed motions and probes of a model.
 
 use std::path::Path as FilePath;
 
 use pericles::System;
-use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
+use pericles::boundary::PrescribedMotion;
 use pericles::noise::uniform_in_ball;
 use pericles::observe::Probe as PointProbe;
 use pericles::space::{Point, PointCloud};
 use pericles::time::State;
 
-use super::{Resources, Sets, area};
+use super::{Resources, Sets};
 use crate::caution::Caution;
-use crate::component::VectorField;
-use crate::conditions::{LoadAmplitude, ProbePlace, RandomVelocity};
+use crate::conditions::{ProbePlace, RandomVelocity};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -108,61 +107,6 @@ impl Deck {
                 velocity[c * n + i as usize] += vector[c];
             }
         }
-    }
-
-    pub(super) fn add_loads(
-        &self,
-        system: &mut System,
-        cloud: &PointCloud,
-        sets: &Sets,
-    ) -> Result<(), DeckError> {
-        for (k, load) in self.loads.iter().enumerate() {
-            let path = Path::from("load").index(k);
-            let points = self.members(sets, &load.set, &path)?.clone();
-            let (field, factor) = match &load.amplitude {
-                LoadAmplitude::BodyForce(density) => (density, 1.0),
-                // On a surface a traction is the force per area itself.
-                LoadAmplitude::Traction { traction, .. } if self.surface.is_some() => {
-                    (traction, 1.0)
-                }
-                LoadAmplitude::Traction { traction, area } => {
-                    let area = match area {
-                        Some(area) => *area,
-                        None => self
-                            .loaded_area(cloud, &load.set, &points, traction)
-                            .map_err(|reason| {
-                                self.at_path(&path.key("traction"), Fault::UnknownArea { reason })
-                            })?,
-                    };
-                    let volume = |i: &u32| cloud.volumes()[*i as usize];
-                    (traction, area / points.iter().map(volume).sum::<f64>())
-                }
-            };
-            let density = self.load_density(&path, field, factor, cloud, &points)?;
-            system.add_load(BodyLoad {
-                points,
-                density,
-                function: load.function.clone(),
-                window: load.window,
-            });
-        }
-        Ok(())
-    }
-
-    fn loaded_area(
-        &self,
-        cloud: &PointCloud,
-        set: &str,
-        points: &[u32],
-        traction: &VectorField,
-    ) -> Result<f64, &'static str> {
-        if self.body.listed.is_some() && cloud.dimension() > 1 {
-            return Err("listed points have no faces");
-        }
-        let named = self.sets.iter().find(|named| named.name == set);
-        let acts = std::array::from_fn(|c| traction[c].number() != Some(0.0));
-        let axis = area::normal_axis(named.and_then(|named| named.members.region()), &acts)?;
-        Ok(area::seen_along(cloud, points, axis))
     }
 
     pub(super) fn add_motions(

@@ -91,6 +91,9 @@ impl Deck {
                 traction: field, ..
             }) = &given.amplitude;
             let acts = |c: usize| c < system.dimension() && field[c].number() != Some(0.0);
+            if !(0..3).any(acts) {
+                continue;
+            }
             // The axes along which each point is held, one bit each.
             let mut held = vec![0u8; system.points()];
             for motion in system.motions() {

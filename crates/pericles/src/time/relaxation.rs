@@ -155,9 +155,10 @@ impl Relaxation {
         system.load_density_into(t, &mut self.force);
         let load = self.norm(system, &self.force, |free| free);
         let mut first = f64::NAN;
-        let mut ratio = f64::NAN;
+        let (mut ratio, mut done) = (f64::NAN, 0);
         for iteration in 0..=iterations {
             interrupt.poll()?;
+            done = iteration;
             system.force_density_into(t, u, &mut self.force);
             let residual = self.norm(system, &self.force, |free| free);
             if iteration == 0 {
@@ -192,7 +193,7 @@ impl Relaxation {
         }
         Err(PericlesError::NoEquilibrium {
             t,
-            iterations,
+            iterations: done,
             residual: ratio,
             tolerance,
         })
