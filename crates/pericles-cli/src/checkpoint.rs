@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::CliError;
 use crate::inputs::Inputs;
 
-const FAILED: &str = "failed.chk";
+/// The state of a run that became unstable.
+pub(crate) const FAILED: &str = "failed.chk";
 
 /// What a checkpoint says besides the state: enough to build the same run again.
 #[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
