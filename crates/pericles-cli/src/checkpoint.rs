@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::CliError;
 use crate::inputs::Inputs;
 
-const FAILED: &str = "failed.chk";
+/// The state of a run that became unstable.
+pub(crate) const FAILED: &str = "failed.chk";
 /// Between load steps checkpoints are as many times rarer than they take to write.
 const SHARE: u32 = 20;
 

@@ -1,16 +1,16 @@
 //! What can go wrong on the way from the command line to the results, and how it is reported.
 
-use std::fmt::{self, Display};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use miette::{Diagnostic, MietteHandler, ReportHandler};
+use miette::Diagnostic;
 use pericles::space::surface::SurfaceError;
 use pericles::{PericlesError, SimulationError};
 use pericles_deck::DeckError;
 use pericles_io::{IoError, MeshError};
 
 use crate::console;
+use crate::drawn::Drawn;
 use crate::exit::Exit;
 
 /// Everything that ends a command early.
@@ -136,6 +136,14 @@ pub(crate) enum CliError {
         #[help]
         allowed: &'static str,
     },
+    /// A vertex that a surface does not have.
+    #[error("the surface has no vertex {number}; its {vertices} vertices are numbered from 0 to {}", vertices.saturating_sub(1))]
+    NoVertex {
+        /// The number given.
+        number: usize,
+        /// How many there are.
+        vertices: usize,
+    },
     /// A step of the library outside of a run.
     #[error(transparent)]
     Library(#[from] PericlesError),
@@ -210,7 +218,7 @@ impl CliError {
             | Self::NoResults { .. }
             | Self::Library(_) => Exit::Input,
             Self::Mesh(_) | Self::Surface { .. } | Self::Damaged { .. } => Exit::Input,
-            Self::UnknownShape { .. } => Exit::Usage,
+            Self::UnknownShape { .. } | Self::NoVertex { .. } => Exit::Usage,
             Self::Io(error) if error.is_output_problem() => Exit::Output,
             Self::Io(IoError::Shape { .. } | IoError::Unsuitable { .. }) => Exit::Internal,
             Self::Io(_) => Exit::Input,
@@ -229,11 +237,12 @@ impl CliError {
         if std::io::stderr().is_terminal() {
             return match self {
                 // One by one: the error as a whole would list them all a second time.
-                Self::Deck(error) if !error.problems().is_empty() => error
-                    .problems()
-                    .iter()
-                    .for_each(|problem| console::note(format_args!("{}", Drawn(problem)))),
-                other => console::note(format_args!("{}", Drawn(other))),
+                Self::Deck(error) if !error.problems().is_empty() => {
+                    error.problems().iter().for_each(|problem| {
+                        console::note_in_colour(format_args!("{}", Drawn(problem)))
+                    })
+                }
+                other => console::note_in_colour(format_args!("{}", Drawn(other))),
             };
         }
         console::note(format_args!("error: {self}"));
@@ -241,15 +250,6 @@ impl CliError {
         if let (Some(help), false) = (self.help(), matches!(self, Self::Deck(_))) {
             console::note(format_args!("help: {help}"));
         }
-    }
-}
-
-/// A diagnostic as it looks on a terminal.
-struct Drawn<'a>(&'a dyn Diagnostic);
-
-impl Display for Drawn<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        MietteHandler::default().debug(self.0, f)
     }
 }
 

@@ -18,6 +18,7 @@ mod converge;
 mod deadline;
 mod diff;
 mod dispersion;
+mod drawn;
 mod error;
 mod exit;
 mod geodesics;

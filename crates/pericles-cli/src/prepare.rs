@@ -13,8 +13,8 @@ use pericles_deck::{
     Deck, ExactReference, FileError, LoadReport, Model, Picture, Precision, Resources, Scheme,
 };
 use pericles_io::observers::{
-    Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
-    PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
+    Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, FragmentCourse, History,
+    InnerColumns, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
 use pericles_io::{
     DiskCache, IoError, MeshError, OutputFolder, PointsError, RowsError, read_points, read_rows,
@@ -23,6 +23,7 @@ use pericles_io::{
 use serde::Serialize;
 
 use crate::args::Caching;
+use crate::checkpoint;
 use crate::console;
 use crate::error::CliError;
 use crate::refinement::RefinementFacts;
@@ -312,6 +313,15 @@ pub(crate) fn simulation(
     let exact = model.exact.take();
     let surface = model.surface.clone();
     let mut simulation = model.simulation();
+    let mut names = [
+        "run.json",
+        "report.html",
+        "history.csv",
+        "checkpoints/step-*.chk",
+    ]
+    .map(String::from)
+    .to_vec();
+    names.push(format!("checkpoints/{}", checkpoint::FAILED));
 
     let mut history = History::new(folder.file("history.csv"), dimension);
     if simulation.integrator().inner_iterations().is_some() {
@@ -326,30 +336,39 @@ pub(crate) fn simulation(
     if let Some(rate) = output.energy_bound {
         history = history.with(EnergyBoundColumns(EnergyInequality::new(rate)));
     }
+    if !output.extremes.is_empty() {
+        history = history.with(ExtremeColumns::new(output.extremes.clone(), dimension));
+    }
     simulation.observe(output.history, Box::new(history));
     if let Some(reactions) = reactions {
+        names.push("reactions.csv".into());
         simulation.observe(output.history, Box::new(reactions));
     }
     if !probes.is_empty() {
+        names.push("probes.csv".into());
         let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
         simulation.observe(output.history, Box::new(probes));
     }
     if can_break && !cracks.is_empty() {
+        names.push("cracks.csv".into());
         let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
         simulation.observe(output.cracks.schedule, Box::new(cracks));
     }
     if can_break && output.fragments.schedule != Schedule::Never {
+        names.push("fragments.csv".into());
         let smallest = output.fragments.smallest;
         let course = FragmentCourse::new(folder.file("fragments.csv"), smallest);
         simulation.observe(output.fragments.schedule, Box::new(course));
     }
     if let Some(surface) = &surface {
+        names.push("surface.csv".into());
         let measure = SurfaceMeasure::new(surface.clone());
         let course = SurfaceCourse::new(folder.file("surface.csv"), measure);
         simulation.observe(output.history, Box::new(course));
     }
     if output.fields != Schedule::Never {
+        names.extend(["fields.pvd".into(), "fields/fields_*.vtu".into()]);
         folder.subfolder("fields")?;
         let single = output.precision == Precision::Single;
         let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
@@ -358,7 +377,13 @@ pub(crate) fn simulation(
         }
         simulation.observe(output.fields, Box::new(fields));
     }
-    add_pictures(deck, folder, surface.as_ref(), &mut simulation)?;
+    names.extend(add_pictures(
+        deck,
+        folder,
+        surface.as_ref(),
+        &mut simulation,
+    )?);
+    folder.claim(&names)?;
     Ok(simulation)
 }
 
@@ -405,15 +430,17 @@ pub(crate) fn readers() -> Resources<'static> {
     }
 }
 
+/// Adds the pictures that a deck asks for; their files, relative to the folder.
 fn add_pictures(
     deck: &Deck,
     folder: &OutputFolder,
     surface: Option<&Arc<Surface>>,
     simulation: &mut Simulation,
-) -> Result<(), CliError> {
+) -> Result<Vec<String>, CliError> {
     if deck.output.pictures.is_empty() {
-        return Ok(());
+        return Ok(Vec::new());
     }
+    let mut names = Vec::new();
     let place = folder.subfolder("pictures")?;
     let dimension = simulation.system().dimension();
     let mut uses: HashMap<String, u32> = HashMap::new();
@@ -426,11 +453,15 @@ fn add_pictures(
             1 => what.name(dimension),
             number => format!("{}_{number}", what.name(dimension)),
         };
+        names.push(format!("pictures/{stem}-*.png"));
+        if picture.animation {
+            names.push(format!("pictures/{stem}.apng"));
+        }
         let mut pictures = Pictures::new(&place, stem, what);
         if picture.animation {
             pictures = pictures.animated();
         }
         simulation.observe(picture.schedule, Box::new(pictures));
     }
-    Ok(())
+    Ok(names)
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
 use pericles_deck::{Deck, Model};
-use pericles_io::{IoError, OutputFolder};
+use pericles_io::{IoError, OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
 use crate::args::{ResumeArgs, RunArgs};
@@ -149,6 +149,30 @@ fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
     doubts
 }
 
+/// Field files that the series lists and that are missing or cut short. The run needs none of them to go on, but its results lack them.
+///
+/// # Errors
+/// A series that cannot be read.
+fn incomplete(folder: &OutputFolder) -> Result<Option<String>, CliError> {
+    let series = folder.file("fields.pvd");
+    if !series.exists() {
+        return Ok(None);
+    }
+    let states = PvdSeries::read(&series)?;
+    let broken: Vec<_> = (states.iter())
+        .filter(|(_, file)| !VtuFile::is_whole(folder.file(file)))
+        .collect();
+    Ok(broken.first().map(|(time, first)| {
+        format!(
+            "{} of the {} field files of the run so far are missing or cut short, the first of them {} at t = {}: the series will have gaps there",
+            broken.len(),
+            states.len(),
+            first.display(),
+            quantity(*time, "s")
+        )
+    }))
+}
+
 /// A run in its folder.
 pub(crate) struct Session {
     simulation: Simulation,
@@ -210,6 +234,7 @@ impl Session {
         let deck = stored.metadata.deck.read()?;
         let (model, mut facts) = modelled(&deck, means)?;
         facts.warnings.extend(doubts(&stored, &deck, &facts));
+        facts.warnings.extend(incomplete(&folder)?);
         let mut simulation = prepare::simulation(&deck, model, &folder)?;
         // The state is still that of the start.
         let start = Start::of(&simulation);

@@ -451,3 +451,21 @@ fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
     }
     succeed(place.path(), "resume ring");
 }
+
+#[test]
+fn field_files_that_are_gone_or_cut_short_are_reported_when_a_run_is_resumed() {
+    let place = tempfile::tempdir().unwrap();
+    stopped_ring(place.path(), "ring");
+    let fields = place.path().join("ring/fields");
+    let file = fs::OpenOptions::new()
+        .write(true)
+        .open(fields.join("fields_000002.vtu"))
+        .unwrap();
+    file.set_len(100).unwrap();
+    fs::remove_file(fields.join("fields_000001.vtu")).unwrap();
+    let said = text(&succeed(place.path(), "resume ring").stderr);
+    assert!(
+        said.contains("2 of the 11 field files of the run so far are missing or cut short, the first of them fields/fields_000001.vtu at t = 1.00 µs"),
+        "{said}"
+    );
+}

@@ -229,6 +229,7 @@ fn conditions_time_and_output_arrive() {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
+            extremes: Vec::new(),
             energy_bound: None,
             cracks: CrackOutput {
                 schedule: Schedule::Count(92),

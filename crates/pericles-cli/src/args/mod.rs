@@ -14,9 +14,9 @@ use crate::plot::Frames;
 use crate::sweep::Axis;
 
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
-pub(crate) use values::{Direction, Format, Length, Range};
+pub(crate) use values::{Direction, Format, Length, Pair, Range};
 
-use values::{direction, instruction_set, length, range, ratio, tolerance};
+use values::{direction, instruction_set, length, pair, range, ratio, tolerance};
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
 
@@ -179,7 +179,7 @@ pub(crate) struct RunArgs {
     /// Folder for the results; must not exist
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Let --out replace the results of an earlier run; other files in the folder stay
+    /// Let --out replace the results of an earlier run: the files that it put on record; other files in the folder stay
     #[arg(long, requires = "out")]
     pub(crate) force: bool,
     #[command(flatten)]
@@ -246,6 +246,9 @@ pub(crate) struct GeodesicsArgs {
         default_value = "exact,edge,edge-diagonals,steiner(2),steiner(3)"
     )]
     pub(crate) methods: Vec<GeodesicMethod>,
+    /// Also report the distance between two vertices, numbered from 0 as in the file, such as 0,41; may be given several times
+    #[arg(long, value_name = "I,J", value_parser = pair)]
+    pub(crate) between: Vec<Pair>,
     /// Allow edges with one triangle
     #[arg(long)]
     pub(crate) open: bool,

@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use pericles_io::DiskCache;
 
-use super::values::wall_time;
+use super::values::{threads, wall_time};
 use crate::machine;
 use crate::prepare::Means;
 
@@ -101,7 +101,7 @@ pub(crate) struct Execution {
 #[derive(Debug, Args)]
 pub(crate) struct Threads {
     /// Threads [default: one per core]; results do not depend on it
-    #[arg(long = "threads", value_name = "N")]
+    #[arg(long = "threads", value_name = "N", value_parser = threads)]
     count: Option<NonZeroUsize>,
 }
 

@@ -127,7 +127,7 @@ scheme = "velocity-verlet"
 allow_unstable = true
 [output]
 fields = { interval = 1, names = ["Damage"] }
-history = { every = 1 }
+history = { every = 1, extremes = ["Damage"] }
 cracks = { count = 1, threshold = 0.5 }
 fragments = { count = 1, smallest = 0.5 }
 precision = "single"

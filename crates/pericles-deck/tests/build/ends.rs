@@ -1,5 +1,7 @@
 //! Boundaries through which waves leave.
 
+use pericles_deck::Deck;
+
 use super::{build, refusal};
 
 /// A bar that goes on for ever at both ends.
@@ -75,6 +77,21 @@ fn histories_by_exponentials_keep_their_tolerance() {
     let pairs = exact.iter().zip(&fitted);
     let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs())) / largest;
     assert!(error < 1e-5 && error > 0.0, "{error:e}");
+}
+
+#[test]
+fn a_comparison_of_exponentials_needs_exponentials() {
+    let verified = |more: &str| {
+        let side = format!("side = \"+x\"\nverify = true{more}");
+        Deck::parse(&BAR.replace("side = \"+x\"", &side), "bar.toml", &[])
+    };
+    let message = verified("").unwrap_err().to_string();
+    assert!(
+        message.contains("without one the history is exact"),
+        "{message}"
+    );
+    assert!(verified("\ntolerance = 1e-6").is_ok());
+    assert!(verified("\nhistory = \"exponentials\"").is_ok());
 }
 
 #[test]

@@ -29,6 +29,8 @@ pub enum Field {
     Stress,
     /// Strain of the displacement gradient that fits a point's bonds best. As stress.
     Strain,
+    /// Volume of the point, m³; its area on a surface, m². The same at all times.
+    Volume,
 }
 
 impl Field {
@@ -42,7 +44,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -52,6 +54,7 @@ impl Field {
         Self::Reaction,
         Self::Stress,
         Self::Strain,
+        Self::Volume,
     ];
 
     /// Name in files.
@@ -66,6 +69,7 @@ impl Field {
             Self::Reaction => "Reaction_Density",
             Self::Stress => "Stress",
             Self::Strain => "Strain",
+            Self::Volume => "Volume",
         }
     }
 
@@ -78,6 +82,7 @@ impl Field {
             Self::Stress => "Pa",
             Self::Damage | Self::Strain => "",
             Self::StrainEnergyDensity => "J/m³",
+            Self::Volume => "m³",
         }
     }
 
@@ -241,6 +246,7 @@ impl<'a> Snapshot<'a> {
             }),
             Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
             Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
+            Field::Volume => self.system.cloud().volumes(),
         }
     }
 
