@@ -1,9 +1,9 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
 use pericles::family::geodesic::Ball;
-use pericles::material::{BondConstants, SurfaceBond};
+use pericles::material::{BondConstants, ElasticWaves, SurfaceBond};
 use pericles::space::surface::AreaRule;
-use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
+use pericles_deck::{Deck, KernelQuality, Model, Scheme, SurfaceDeck, VertexAreas};
 
 use crate::args::CheckArgs;
 use crate::console;
@@ -13,7 +13,6 @@ use crate::given;
 use crate::prepare::{self, Facts, Means};
 use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
-use crate::waves::WaveSpeeds;
 
 /// Checks a deck.
 ///
@@ -38,6 +37,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         Some(surface) => lines.extend(surface_material(surface)),
         None => lines.extend(material(&deck, &facts, &model.parts)),
     }
+    lines.extend(plane_waves(&deck, &model));
     lines.extend(time(&facts));
     for end in &facts.ends {
         lines.push(("absorbing end", end.line()));
@@ -164,7 +164,7 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
         ));
     }
     let density = deck.material.bonds.density;
-    let speeds = WaveSpeeds::of(facts.youngs_modulus, density, deck.body.state);
+    let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
     let mut waves = format!("pressure {:.0} m/s", speeds.pressure);
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
@@ -173,6 +173,60 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
         );
     }
     lines.push(("waves", waves));
+    lines
+}
+
+/// What kernel and grid do to plane waves.
+fn plane_waves(deck: &Deck, model: &Model) -> Vec<Line> {
+    let Some(waves) = deck.plane_waves(model) else {
+        return Vec::new();
+    };
+    let grid = waves.grid;
+    let (tolerance, length) = (
+        percent(grid.tolerance),
+        std::f64::consts::TAU / grid.wavenumber,
+    );
+    let spacings = significant(length / model.cloud.spacing(), 3);
+    let mut lines = Vec::new();
+    if let Some(longest) = waves.model {
+        lines.push((
+            "kernel dispersion",
+            format!(
+                "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
+                quantity(longest, "m"),
+                significant(longest / deck.material.bonds.horizon, 3)
+            ),
+        ));
+    }
+    let reference = match waves.model {
+        Some(_) => "the nonlocal continuum",
+        None => "long waves",
+    };
+    lines.push((
+        "grid dispersion",
+        format!(
+            "phase speed within {tolerance} of {reference} from wavelengths of {} ({spacings} spacings)",
+            quantity(length, "m")
+        ),
+    ));
+    if let (Some([tuned, constant]), Some(table)) = (waves.tuning, &deck.material.tuned) {
+        let bound = match table.tuning.lower_bound {
+            Some(bound) => format!("; coefficients of at least {bound}"),
+            None => String::new(),
+        };
+        let shortest = KernelQuality::SHORTEST;
+        lines.push((
+            "tuned kernel",
+            format!(
+                "within {} of long waves from {} spacings per wavelength (constant kernel: {}); at most {} off from {shortest} spacings (constant: {}){bound}",
+                percent(0.01),
+                significant(tuned.spacings, 3),
+                significant(constant.spacings, 3),
+                percent(tuned.worst),
+                percent(constant.worst)
+            ),
+        ));
+    }
     lines
 }
 

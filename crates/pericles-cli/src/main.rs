@@ -42,7 +42,6 @@ mod summary;
 mod sweep;
 mod units;
 mod watch;
-mod waves;
 
 use std::process::ExitCode;
 

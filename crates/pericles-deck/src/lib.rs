@@ -113,7 +113,9 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::BoundaryCondition;
-pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
+pub use build::{
+    ExactReference, KernelQuality, Model, PlaneWaves, PointsReader, Resources, Sets, SurfaceReader,
+};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};

@@ -3,6 +3,7 @@
 mod area;
 mod assemble;
 mod boundary;
+mod breaking;
 mod conditions;
 mod content;
 mod damping;
@@ -18,6 +19,7 @@ mod sense;
 mod step;
 mod surface;
 
+pub use content::{KernelQuality, PlaneWaves};
 pub use exact::ExactReference;
 
 pub(crate) use memory::bytes;
@@ -165,6 +167,7 @@ impl Deck {
             &mut warnings,
         )?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
+        self.judge_breaking(&system, &state, &constants, &steps, &mut warnings);
         let ends = self.add_ends(&mut system, ends, &steps, &resources, &mut warnings)?;
         self.add_damping_layers(&mut system, layers, &steps)?;
         Ok(Model {

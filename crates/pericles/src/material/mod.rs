@@ -21,6 +21,7 @@ mod polynomial;
 mod power;
 mod surface_correction;
 mod treatment;
+mod waves;
 
 pub use composite::{InterfaceRule, PairClasses};
 pub use constants::{
@@ -31,3 +32,4 @@ pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};
 pub use surface_correction::SurfaceCorrection;
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};
+pub use waves::{ElasticWaves, TransverseWaves};
