@@ -37,10 +37,12 @@ pub(crate) enum CliError {
     Io(#[from] IoError),
     /// The output folder is taken.
     #[error("{} exists already", path.display())]
-    #[diagnostic(help("choose another --out, or replace the results in it with --force"))]
     OutExists {
         /// The folder.
         path: PathBuf,
+        /// What to do.
+        #[help]
+        help: &'static str,
     },
     /// The run became unstable, or found no way on.
     #[error("{source}")]
@@ -126,6 +128,23 @@ pub(crate) enum CliError {
         name: String,
         /// Why.
         source: SurfaceError,
+    },
+    /// A spectrum of a lattice whose waves grow.
+    #[error(
+        "the spectrum cannot be measured: the kernel is unstable on this grid, some waves grow"
+    )]
+    #[diagnostic(help("leave --measure out, or use a stable kernel"))]
+    UnstableSpectrum,
+    /// A vector with more components than the body has dimensions.
+    #[error("{option} has {given} components; the body has {dimension} dimension(s)")]
+    #[diagnostic(help("give one component for each dimension of the body"))]
+    Components {
+        /// The option.
+        option: &'static str,
+        /// Components given.
+        given: usize,
+        /// Of the body.
+        dimension: usize,
     },
     /// A word that is neither a shape nor a file.
     #[error("\"{given}\" is no shape")]
@@ -216,9 +235,12 @@ impl CliError {
             | Self::InputChanged { .. }
             | Self::NoRun { .. }
             | Self::NoResults { .. }
+            | Self::UnstableSpectrum
             | Self::Library(_) => Exit::Input,
             Self::Mesh(_) | Self::Surface { .. } | Self::Damaged { .. } => Exit::Input,
-            Self::UnknownShape { .. } | Self::NoVertex { .. } => Exit::Usage,
+            Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
+                Exit::Usage
+            }
             Self::Io(error) if error.is_output_problem() => Exit::Output,
             Self::Io(IoError::Shape { .. } | IoError::Unsuitable { .. }) => Exit::Internal,
             Self::Io(_) => Exit::Input,
@@ -278,7 +300,13 @@ mod tests {
             (CliError::from(io(io::ErrorKind::StorageFull)), 6),
             (observed(io(io::ErrorKind::StorageFull)), 6),
             (observed(IoError::Locked { path: path() }), 6),
-            (CliError::OutExists { path: path() }, 6),
+            (
+                CliError::OutExists {
+                    path: path(),
+                    help: "",
+                },
+                6,
+            ),
             (CliError::NoRun { path: path() }, 3),
             (CliError::from(IoError::NotFound { path: path() }), 3),
             (CliError::of_run(unstable, || "left".into()), 4),

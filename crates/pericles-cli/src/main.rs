@@ -45,7 +45,6 @@ mod summary;
 mod sweep;
 mod units;
 mod watch;
-mod waves;
 
 use std::process::ExitCode;
 

@@ -25,6 +25,7 @@ use crate::signals::Signals;
 use crate::summary;
 use crate::sweep;
 use crate::units::{count, quantity};
+use crate::watch::Breakage;
 
 /// Runs a deck.
 ///
@@ -44,7 +45,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     }
     // The folder is made once nothing in the deck can be wrong any more.
     let modelled = modelled(&deck, &args.options.means())?;
-    let folder = output_folder(args.out.as_deref(), args.force, &args.deck, "")?;
+    let folder = output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")?;
     let session = Session::begun(&deck, text, modelled, folder, quiet)?;
     let session = session.with_chart(args.chart);
     session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?)
@@ -93,17 +94,21 @@ pub(crate) fn modelled(deck: &Deck, means: &Means<'_>) -> Result<(Model, Facts),
 /// A folder that exists, unless `force` lets its results be replaced; one that cannot be made.
 pub(crate) fn output_folder(
     out: Option<&Path>,
-    force: bool,
+    force: Option<bool>,
     deck: &Path,
     suffix: &str,
 ) -> Result<OutputFolder, CliError> {
+    let help = match force {
+        Some(_) => "choose another --out, or replace the results in it with --force",
+        None => "choose another --out, or move the folder away",
+    };
     let Some(path) = out else {
         let mut name = deck.file_stem().unwrap_or("run".as_ref()).to_owned();
         name.push(suffix);
         return Ok(OutputFolder::create_numbered(Path::new(".").join(name))?);
     };
-    OutputFolder::create(path, force).map_err(|error| match error {
-        IoError::FolderExists { path } => CliError::OutExists { path },
+    OutputFolder::create(path, force.unwrap_or(false)).map_err(|error| match error {
+        IoError::FolderExists { path } => CliError::OutExists { path, help },
         other => other.into(),
     })
 }
@@ -316,6 +321,8 @@ impl Session {
             deadline.begin();
         }
         let mut trouble = None;
+        let mut breakage = Breakage::from(&self.simulation);
+        let (warnings, quiet) = (&mut self.report.model.warnings, self.quiet);
         let cost = Cell::new(checkpoints.cost());
         let end = deadline.as_ref().map(Deadline::end);
         // Asked within steps that iterate, which may take longer than any other part of a run.
@@ -327,6 +334,12 @@ impl Session {
         let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
             let state = simulation.state();
             progress.step(state.step, state.t);
+            if let Some(warning) = breakage.look(simulation) {
+                if !quiet {
+                    progress.note(format_args!("warning: {warning}"));
+                }
+                warnings.push(warning);
+            }
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
             if signals.asked().is_some() || deadline.as_mut().is_some_and(late) {
                 return Control::Stop;

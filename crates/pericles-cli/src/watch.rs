@@ -6,6 +6,7 @@
 //! | energy balance of static states | [`STATIC_ENERGY`] of the work exchanged or of the energy at the start |
 //! | momentum account | [`MOMENTUM`] of the momentum that the energy there was could have made; [`IMPULSE`] of it with supports or two time steps |
 //! | loads and reactions of a static state | [`REACTIONS`] of the reactions |
+//! | bonds that break in masses, once while the run goes on | [`BROKEN_AT_ONCE`] of the bonds in one step, [`BROKEN_IN_ALL`] in all |
 //! | points near breaking, where nothing broke | [`ENDANGERED`] of the points have bonds beyond [`NEAR`] of the critical stretch |
 //! | displacements of a run that began as its own mirror image | they differ from their image by [`ASYMMETRY`] of the largest |
 //!
@@ -15,7 +16,7 @@ use pericles::Simulation;
 use pericles::observe::Field;
 
 use crate::report::Audit;
-use crate::units::{percent, significant};
+use crate::units::{percent, quantity, significant};
 
 /// The account closes to 10⁻³ and better with steps near the stable one.
 const ENERGY: f64 = 0.01;
@@ -31,6 +32,60 @@ const NEAR: f64 = 0.9;
 const ENDANGERED: f64 = 0.01;
 /// Rounding that did not grow is ten orders below.
 const ASYMMETRY: f64 = 1e-6;
+
+/// Share of the bonds that break in one step where a run goes wrong; cracks break far less.
+const BROKEN_AT_ONCE: f64 = 0.05;
+/// Share of the bonds that break in a run where little is left of the body.
+const BROKEN_IN_ALL: f64 = 0.5;
+
+/// Looks out for bonds that break in masses, and warns once.
+pub(crate) struct Breakage {
+    /// Bonds at the start.
+    bonds: u64,
+    /// Broken at the last step.
+    broken: u64,
+    warned: bool,
+}
+
+impl Breakage {
+    /// From a state of a run on.
+    pub(crate) fn from(simulation: &Simulation) -> Self {
+        let operator = simulation.system().operator();
+        let (bonds, broken) = (operator.directed_bonds() / 2, operator.broken_bonds());
+        // A resumed run has warned before.
+        let warned = broken as f64 > BROKEN_IN_ALL * bonds as f64;
+        Self {
+            bonds,
+            broken,
+            warned,
+        }
+    }
+
+    /// Looks at the state after a step.
+    pub(crate) fn look(&mut self, simulation: &Simulation) -> Option<String> {
+        if self.warned {
+            return None;
+        }
+        let broken = simulation.system().operator().broken_bonds();
+        let share = |bonds: u64| bonds as f64 / self.bonds.max(1) as f64;
+        let (now, all) = (share(broken.saturating_sub(self.broken)), share(broken));
+        self.broken = broken;
+        let what = if now > BROKEN_AT_ONCE {
+            format!("{} of all bonds broke in one step", percent(now))
+        } else if all > BROKEN_IN_ALL {
+            format!("{} of all bonds have broken", percent(all))
+        } else {
+            return None;
+        };
+        self.warned = true;
+        let state = simulation.state();
+        Some(format!(
+            "{what} (step {}, t = {}): the body falls apart in masses, not along cracks; check speeds, loads, fracture energy and their units",
+            state.step,
+            quantity(state.t, "s")
+        ))
+    }
+}
 
 /// What is odd.
 pub(crate) fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {

@@ -317,3 +317,35 @@ output = {{ fields = "never" }}
         assert_eq!(list.contains("waves shorter than"), expected, "{list}");
     }
 }
+
+#[test]
+fn bonds_that_break_in_masses() {
+    // A bar that is torn to pieces by a spread of speeds.
+    let deck = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.01 }
+initial = [{ velocity = [{ expression = "0.1*x" }] }]
+time = { end = 20 }
+output = { fields = "never", history = "never" }
+"#;
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("deck.toml"), deck).unwrap();
+    let shown = |more: &str| {
+        let output = succeed(
+            place.path(),
+            &format!("run deck.toml --out out --force {more}"),
+        );
+        let report = report(&place.path().join("out"));
+        let warnings = report["model"]["warnings"].as_array().unwrap();
+        let in_masses = |text: &str| text.matches("falls apart in masses").count();
+        let kept = warnings.iter().filter_map(|warning| warning.as_str());
+        (
+            in_masses(&text(&output.stderr)),
+            kept.map(in_masses).sum::<usize>(),
+        )
+    };
+    // One warning, on the screen and in the report.
+    assert_eq!(shown(""), (1, 1));
+    assert_eq!(shown("--quiet"), (0, 1));
+    assert_eq!(shown("--set material.critical_stretch=30"), (0, 0));
+}

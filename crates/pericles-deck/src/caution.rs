@@ -157,8 +157,9 @@ pub enum Caution {
     },
     /// Waves that the grid does not carry.
     #[error(
-        "{:.0} % of the energy of this {what} is in waves shorter than {length:.3e} m or faster than a period of {period:.3e} s, which the grid delays by more than {:.0} %",
-        100.0 * share, 100.0 * tolerance
+        "{:.0} % of the energy of this {what} is in waves shorter than {} or with periods below {}: on this grid their speed differs by more than {:.0} % from {}",
+        100.0 * share, prefixed(*length, "m"), prefixed(*period, "s"), 100.0 * tolerance,
+        if *nonlocal { "that in the nonlocal continuum" } else { "that of long waves" }
     )]
     ShortWaves {
         /// What sends them out.
@@ -167,10 +168,73 @@ pub enum Caution {
         share: f64,
         /// The deviation of their speed, relative.
         tolerance: f64,
+        /// Whether the speed in the nonlocal continuum is the reference; that of long waves otherwise.
+        nonlocal: bool,
         /// The shortest period that the grid carries, s.
         period: f64,
         /// The shortest wave that it carries, m.
         length: f64,
+    },
+    /// Coefficients of both signs with which some waves grow.
+    #[error(
+        "the coefficients of this influence function make the lattice unstable: some waves grow (smallest ω²/k² = {smallest:.3e} m²/s²)"
+    )]
+    GrowingWaves {
+        /// The smallest ω²/k², m²/s².
+        smallest: f64,
+    },
+    /// Tuned coefficients that disperse more than a constant influence function.
+    #[error(
+        "the tuned influence function carries waves worse than a constant one: within 1 % of the speed of long waves from {} spacings per wavelength (constant: {}), at most {:.1} % off from {shortest} spacings on (constant: {:.1} %)",
+        short(spacings[0]), short(spacings[1]), 100.0 * worst[0], 100.0 * worst[1]
+    )]
+    PoorTuning {
+        /// Spacings per wavelength from which on the phase speed is within 1 %: tuned, constant.
+        spacings: [f64; 2],
+        /// The largest relative error down to `shortest`: tuned, constant.
+        worst: [f64; 2],
+        /// Spacings per wavelength.
+        shortest: f64,
+    },
+    /// A speed at which bodies break in masses.
+    #[error(
+
+        "this {what} reaches {} m/s, above the {wave} of {} m/s: bonds break in masses, not along cracks",
+        short(*speed), short(*limit)
+
+    )]
+    FastMotion {
+        /// What moves.
+        what: &'static str,
+        /// Its largest speed, m/s.
+        speed: f64,
+        /// The speed that cracks do not exceed, m/s.
+        limit: f64,
+        /// What that speed is.
+        wave: &'static str,
+    },
+    /// Bonds that break before any wave has run.
+    #[error(
+        "the first time step ({}) stretches bonds of {points} of {of} points beyond the critical stretch",
+        prefixed(*dt, "s")
+    )]
+    TornAtOnce {
+        /// Points with such bonds.
+        points: usize,
+        /// All points.
+        of: usize,
+        /// The step, s.
+        dt: f64,
+    },
+    /// Bonds that break but carry nothing.
+    #[error(
+        "{empty} of {of} classes of bonds have the coefficient 0: these bonds carry no force, but they break and count as damage"
+    )]
+    EmptyClasses {
+        /// Classes without stiffness.
+        empty: usize,
+        /// All classes.
+        of: usize,
     },
     /// Kernels whose errors grow.
     #[error(
@@ -261,7 +325,20 @@ impl Subject for Caution {
                 "a longer body, a shorter run or a smaller exact.window brings it down"
             }
             Self::ShortWaves { .. } => {
-                "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
+                "use a finer grid, a smoother time function or field, or a tuned influence function; `pericles dispersion` shows the speeds of all waves"
+            }
+            Self::GrowingWaves { .. } => {
+                "a run of such a body gains energy without limit; use positive coefficients"
+            }
+            Self::PoorTuning { .. } => {
+                "decay = 1 (the default) and method = \"least-squares\" do best; lower_bound limits what tuning can do"
+            }
+            Self::FastMotion { .. } => "check the value and its unit (m/s); use a lower speed",
+            Self::TornAtOnce { .. } => {
+                "check speeds, displacements and the critical stretch; use a ramp or a lower speed, or no_fail for the points near supports"
+            }
+            Self::EmptyClasses { .. } => {
+                "use a positive lower_bound such as 0.5, or a shorter horizon"
             }
             Self::HistoricalKernels { .. } => {
                 "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
@@ -299,6 +376,10 @@ impl Subject for Caution {
             Self::ShortenedStep { .. } => "shortened",
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
+            Self::GrowingWaves { .. } => "unstable",
+            Self::PoorTuning { .. } => "poorly tuned",
+            Self::EmptyClasses { .. } => "no stiffness",
+            Self::FastMotion { .. } | Self::TornAtOnce { .. } => "breaks at once",
             Self::HistoricalKernels { .. } => "historical",
             Self::ExactHistory { .. } => "exact history",
             Self::FieldAtEnd { .. } => "field at the end",
@@ -340,6 +421,28 @@ fn doubtful_area(doubt: &AreaDoubt) -> String {
             square_millimetres(*area),
             name(axis)
         ),
+    }
+}
+
+/// `4.21 mm`, `0.812 µs`: three digits with the prefix that keeps the number between 1 and 1000.
+fn prefixed(value: f64, unit: &str) -> String {
+    const PREFIXES: [(f64, &str); 7] = [
+        (1.0, ""),
+        (1e-3, "m"),
+        (1e-6, "µ"),
+        (1e-9, "n"),
+        (1e-12, "p"),
+        (1e3, "k"),
+        (1e6, "M"),
+    ];
+    let fits = |(scale, _): &&(f64, &str)| (1.0..999.5).contains(&(value / scale));
+    match PREFIXES.iter().find(fits) {
+        Some((scale, prefix)) => {
+            let number = value / scale;
+            let decimals = 2 - number.log10().floor().clamp(0.0, 2.0) as usize;
+            format!("{number:.decimals$} {prefix}{unit}")
+        }
+        None => format!("{value:.3e} {unit}"),
     }
 }
 

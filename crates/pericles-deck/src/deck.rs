@@ -98,7 +98,9 @@ impl Deck {
         match deck {
             Some(deck) if closed.problems.is_empty() => {
                 let record = closed.record;
-                Ok((Self { record, ..deck }, closed.survey))
+                let deck = Self { record, ..deck };
+                deck.refuse_unstable_table()?;
+                Ok((deck, closed.survey))
             }
             _ => Err(DeckError::refused(closed.problems)),
         }

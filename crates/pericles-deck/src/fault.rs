@@ -331,6 +331,14 @@ pub enum Fault {
         /// What may be taken, bytes.
         memory: u64,
     },
+    /// Tuned coefficients with which waves grow.
+    #[error(
+        "the tuned coefficients make the lattice unstable: the smallest ω²/k² of its waves is {smallest:.3} E/ρ, it must be positive"
+    )]
+    UnstableTable {
+        /// The smallest ω²/k² over E/ρ.
+        smallest: f64,
+    },
     /// The library refuses the value.
     #[error(transparent)]
     Model(#[from] PericlesError),
@@ -413,6 +421,9 @@ impl Subject for Fault {
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
             Self::OtherSpacing { .. } => "places in the file are in m and volumes in m³".into(),
+            Self::UnstableTable { .. } => {
+                "use lower_bound = \"auto\" (the default), another method, another decay or another horizon; time.allow_unstable = true accepts the deck for `pericles dispersion`".into()
+            }
             Self::TooLarge { .. } => {
                 "a larger spacing or a shorter horizon needs less; lengths without a unit are in m".into()
             }
@@ -466,6 +477,7 @@ impl Subject for Fault {
             Self::TooLarge { .. } | Self::LongHistory { .. } | Self::LargeFile { .. } => {
                 "too large"
             }
+            Self::UnstableTable { .. } => "unstable",
             Self::Model(_) => "refused",
         }
     }

@@ -116,8 +116,8 @@ mod vocabulary;
 pub use body::{Body, Quadrature};
 pub use boundary::BoundaryCondition;
 pub use build::{
-    AreaDoubt, ExactReference, FileError, LoadReport, Model, PointsReader, Resources, Sets,
-    SurfaceReader, TableReader,
+    AreaDoubt, ExactReference, FileError, KernelQuality, LoadReport, Model, PlaneWaves,
+    PointsReader, Resources, Sets, SurfaceReader, TableReader,
 };
 pub use caution::Caution;
 pub use component::{Component, VectorField};

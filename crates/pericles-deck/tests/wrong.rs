@@ -223,6 +223,7 @@ const WRONG: &[Wrong] = &[
     // What the library refuses.
     wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),
     wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "must exceed"]),
+    wrong("fracture_energy", "influence = { function = \"tuned\", decay = 0 }\nfracture_energy", (13, 43), "0", &["`0` is out of range", "rad per spacing (usual: 1), or \"none\""]),
     wrong("[\"50 mm\", \"20 mm\"]]", "[0, 0.02]]", (18, 1), "[[crack]]", &["no usable surface"]),
     wrong("\"2440 kg/m3\"", "\"2440 kg/m3", (10, 22), "", &["not valid TOML"]),
     wrong("shape = \"plate\"", "shape = \"plate\"\nshape = \"bar\"", (5, 1), "shape", &["duplicate key"]),

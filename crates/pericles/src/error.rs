@@ -132,6 +132,14 @@ pub enum PericlesError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A field that is made of single bonds, of a body that does not know them.
+    #[error(
+        "{field} is a sum over single bonds, which this form of the bonds does not have: use a list or a grid of bonds, or leave the field out"
+    )]
+    NoSuchField {
+        /// The field.
+        field: &'static str,
+    },
     /// Plane waves were asked for on a body without a grid.
     #[error("the points lie on no regular grid: plane waves are known for grids only")]
     NoLattice,
@@ -169,15 +177,6 @@ pub enum PericlesError {
         with: &'static str,
         /// What is allowed.
         allowed: &'static str,
-    },
-    /// A tuned table with which waves grow.
-    #[error(
-        "the tuned coefficients make the lattice unstable: some waves have ω²/k² = {smallest:e} (over E/ρ, spacings), it must be positive; use a \
-         lower bound, another method or another horizon"
-    )]
-    UnstableTable {
-        /// The smallest ω²/k² over E/ρ.
-        smallest: f64,
     },
     /// A tuning problem without a unique solution.
     #[error(

@@ -102,6 +102,7 @@ Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the f
   curves.csv, .png  ω(k) with phase and group velocity, the time-discrete curve, the continuum
   polar.csv, .png   speed of long waves by direction
   classes.csv       α of every class of bonds
+  wavevectors.csv   frequencies at the wave vectors of --wavevector
   spectrum_*, peaks what --measure found")]
     Dispersion(DispersionArgs),
     /// Compare ways to find distances along a surface
@@ -219,6 +220,9 @@ pub(crate) struct DispersionArgs {
     /// Follow waves along this direction instead of the border of the irreducible zone, such as 2,1 or 1,1,0
     #[arg(long, value_name = "X,Y,Z", value_parser = direction)]
     pub(crate) direction: Option<Direction>,
+    /// Report the frequencies at this wave vector, rad/m, such as 1000,0; may be given several times
+    #[arg(long, value_name = "KX,KY,KZ", value_parser = direction, allow_hyphen_values = true)]
+    pub(crate) wavevector: Vec<Direction>,
     /// Also measure the spectrum in a time-domain run of a periodic box
     #[arg(long, conflicts_with = "direction")]
     pub(crate) measure: bool,

@@ -6,16 +6,45 @@ use std::time::Duration;
 use clap::ValueEnum;
 use pericles::operator::InstructionSet;
 
-/// A direction; missing components are zero.
+use crate::error::CliError;
+
+/// A vector other than zero; missing components are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Direction(pub(crate) [f64; 3]);
+pub(crate) struct Direction {
+    vector: [f64; 3],
+    /// Components given.
+    given: usize,
+}
+
+impl Direction {
+    /// The vector, missing components zero.
+    pub(crate) fn vector(self) -> [f64; 3] {
+        self.vector
+    }
+
+    /// The vector, for a body of so many dimensions.
+    ///
+    /// # Errors
+    /// More components than the body has; `option` is what they were given to.
+    pub(crate) fn of(self, dimension: usize, option: &'static str) -> Result<[f64; 3], CliError> {
+        if self.given <= dimension {
+            return Ok(self.vector);
+        }
+        Err(CliError::Components {
+            option,
+            given: self.given,
+            dimension,
+        })
+    }
+}
 
 /// One to three numbers, such as `2,1` or `1,1,0`.
 pub(super) fn direction(text: &str) -> Result<Direction, String> {
     let mut vector = [0.0_f64; 3];
     let numbers: Vec<&str> = text.split(',').collect();
     let allowed = "one to three numbers with commas between them, not all zero";
-    if numbers.len() > 3 {
+    let given = numbers.len();
+    if given > 3 {
         return Err(allowed.into());
     }
     for (component, number) in vector.iter_mut().zip(numbers) {
@@ -28,7 +57,7 @@ pub(super) fn direction(text: &str) -> Result<Direction, String> {
             // The direction is right, its square is not.
             vector = vector.map(|x| x / largest);
         }
-        Ok(Direction(vector))
+        Ok(Direction { vector, given })
     } else {
         Err(allowed.into())
     }

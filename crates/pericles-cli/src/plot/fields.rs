@@ -48,7 +48,7 @@ pub(super) fn draw(
             surface: surface.clone(),
             steady: args.animation,
             width: args.width,
-            view: args.view.map(|view| view.0).or(what.view),
+            view: args.view.map(|view| view.vector()).or(what.view),
             scale: args.scale.unwrap_or(what.scale),
             ..what
         })

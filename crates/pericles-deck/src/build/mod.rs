@@ -3,6 +3,7 @@
 mod area;
 mod assemble;
 mod boundary;
+mod breaking;
 mod conditions;
 mod content;
 mod damping;
@@ -21,6 +22,7 @@ mod stop;
 mod surface;
 
 pub use area::AreaDoubt;
+pub use content::{KernelQuality, PlaneWaves};
 pub use exact::ExactReference;
 pub use loads::LoadReport;
 
@@ -177,6 +179,7 @@ impl Deck {
             &mut warnings,
         )?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
+        self.judge_breaking(&system, &state, &constants, &steps, &mut warnings);
         let ends = self.add_ends(&mut system, ends, &state, &steps, &resources, &mut warnings)?;
         self.add_damping_layers(&mut system, layers, &steps)?;
         self.refuse_lost_values(&system, &steps)?;

@@ -2,6 +2,7 @@
 
 use pericles::System;
 use pericles::family::{BondList, Crack};
+use pericles::kernel::InfluenceFunction;
 use pericles::material::BondConstants;
 use pericles::space::{Point, PointCloud};
 
@@ -63,6 +64,22 @@ impl Deck {
             let caution = Caution::ShearStiffness { error };
             warnings.push(self.finding(&self.horizon_key().into(), caution));
         }
+    }
+
+    /// Warns of classes of bonds that carry nothing where bonds can break: they count as damage without ever having resisted.
+    pub(super) fn judge_classes(&self, constants: &BondConstants) -> Option<Warning> {
+        /// Of the largest coefficient; the bound of tuned coefficients is met to round-off.
+        const NOTHING: f64 = 1e-9;
+        let InfluenceFunction::Classes(table) = &self.material.bonds.influence.function else {
+            return None;
+        };
+        let values = table.entries().iter().map(|(_, value)| value.abs());
+        let largest = values.clone().fold(0.0, f64::max);
+        let empty = values.filter(|value| *value <= NOTHING * largest).count();
+        let of = table.entries().len();
+        let caution = Caution::EmptyClasses { empty, of };
+        (empty > 0 && constants.critical_stretch.is_finite())
+            .then(|| self.finding(&"material.influence".into(), caution))
     }
 
     /// What is odd about a pre-crack that cuts no bond.

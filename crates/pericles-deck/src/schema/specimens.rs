@@ -278,8 +278,10 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["material.influence={ function = 'classes', table = [[[1], 1], [[2], 1], [[3], 1]] }"]),
     specimen(PLATE, &["material.horizon_ratio=1", "material.influence={ function = 'classes', table = [[[1, 0], 1]] }"]),
     specimen(BAR, &["material.influence={ function = 'tuned' }"]),
+    specimen(BAR, &["material.influence={ function = 'tuned', decay = 'none', lower_bound = 'none' }"]),
+    specimen(BAR, &["material.influence={ function = 'tuned', lower_bound = 'auto' }"]),
     specimen(
-        BAR,
+        PLATE,
         &["material.influence={ function = 'tuned', method = 'least-squares', combination = 'separated', pressure_weight = 1, shear_weight = 1, decay = 1, lower_bound = 0.001 }"],
     ),
     // Other laws.

@@ -41,7 +41,7 @@ fn conditions() {
     for i in 0..n {
         let left = model.cloud.point(i)[0] < 2e-3;
         let expected = if left {
-            (0.0, 2.0, 1e-6)
+            (0.0, 2.0, 1e-7)
         } else {
             (1.0, 0.0, 0.0)
         };

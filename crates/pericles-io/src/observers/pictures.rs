@@ -231,6 +231,7 @@ impl Pictures {
 
 impl Observer for Pictures {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        snapshot.check(self.what.field)?;
         self.what.draw(snapshot, self.still(self.drawn))?;
         self.drawn += 1;
         Ok(())

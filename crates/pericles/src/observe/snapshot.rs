@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use super::tensors::{fitted_strain, places, virial_stress};
+use crate::error::{PericlesError, Result};
 use crate::operator::BondView;
 use crate::space::PointCloud;
 use crate::system::System;
@@ -209,7 +210,20 @@ impl<'a> Snapshot<'a> {
         self.state
     }
 
-    /// A field; vectors component-major.
+    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have.
+    ///
+    /// # Errors
+    /// A field that cannot.
+    pub fn check(&self, field: Field) -> Result<()> {
+        if field.is_tensor() && self.system.operator().as_bonds().is_none() {
+            return Err(PericlesError::NoSuchField {
+                field: field.name(),
+            });
+        }
+        Ok(())
+    }
+
+    /// A field; vectors component-major. Not numbers where [`Snapshot::check`] refuses it.
     pub fn field(&self, field: Field) -> &[f64] {
         let (t, u) = (self.state.t, &self.state.u);
         match field {
