@@ -177,6 +177,9 @@ fn a_tube_flies_apart() {
     let report = report(&out);
     // The start brings all the energy there is.
     assert!(report["audit"]["energy_drift"].as_f64().unwrap().abs() < 5e-3);
+    // Fragments are expected: no warning of bonds that break in masses.
+    let warnings = report["model"]["warnings"].as_array().unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
 }
 
 #[test]
