@@ -1,6 +1,7 @@
 //! `check`: what a run of a deck would need. Runs nothing and writes nothing.
 
 use pericles::family::geodesic::Ball;
+use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, SurfaceBond};
 use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
@@ -139,8 +140,12 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
         (
             "bond constant c",
             format!(
-                "{:.6e} (SI, of the force density c α s)",
-                facts.micromodulus
+                "{:.6e} (SI, of the force density c α {})",
+                facts.micromodulus,
+                match deck.material.bonds.influence.acts_on {
+                    ActsOn::Stretch => "s",
+                    ActsOn::Displacement => "η",
+                }
             ),
         ),
         (
@@ -165,15 +170,24 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     }
     let density = deck.material.bonds.density;
     let speeds = WaveSpeeds::of(facts.youngs_modulus, density, deck.body.state);
-    let mut waves = format!("pressure {:.0} m/s", speeds.pressure);
+    let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
-            ", shear {:.0} m/s, Rayleigh {:.0} m/s",
-            transverse.shear, transverse.rayleigh
+            ", shear {} m/s, Rayleigh {} m/s",
+            speed(transverse.shear),
+            speed(transverse.rayleigh)
         );
     }
     lines.push(("waves", waves));
     lines
+}
+
+/// A speed with whole metres per second, or with three digits where it is small.
+fn speed(speed: f64) -> String {
+    match speed.abs() >= 100.0 {
+        true if speed < 1e7 => format!("{speed:.0}"),
+        _ => significant(speed, 3),
+    }
 }
 
 /// From critical stretch and fracture energy (J/m²).

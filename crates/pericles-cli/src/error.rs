@@ -215,10 +215,21 @@ impl CliError {
         if std::io::stderr().is_terminal() {
             return match self {
                 // One by one: the error as a whole would list them all a second time.
-                Self::Deck(error) if !error.problems().is_empty() => error
-                    .problems()
-                    .iter()
-                    .for_each(|problem| console::note(format_args!("{}", Drawn(problem)))),
+                Self::Deck(error) if !error.problems().is_empty() => {
+                    /// Lines that are longer fill the screen.
+                    const LONGEST: usize = 500;
+                    for problem in error.problems().iter().take(DeckError::SHOWN) {
+                        if problem.location().line_length() > LONGEST {
+                            console::note(format_args!("error: {}", problem.line()));
+                        } else {
+                            console::note(format_args!("{}", Drawn(problem)));
+                        }
+                    }
+                    let left = error.problems().len().saturating_sub(DeckError::SHOWN);
+                    if left > 0 {
+                        console::note(format_args!("and {left} more problems"));
+                    }
+                }
                 other => console::note(format_args!("{}", Drawn(other))),
             };
         }

@@ -91,9 +91,18 @@ impl Default for Checkpoint {
     }
 }
 
-/// `driven`: whether supports move.
-pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> Option<Output> {
-    let (fields, names) = fields(&table, dimension);
+/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default.
+pub(crate) fn read(
+    table: Table<'_>,
+    dimension: Option<usize>,
+    driven: bool,
+    surface: bool,
+) -> Option<Output> {
+    let mut usual = Field::USUAL.to_vec();
+    if surface {
+        usual.push(Field::KineticEnergyDensity);
+    }
+    let (fields, names) = fields(&table, dimension, usual);
     let history = scheduled(&table, "history", 200);
     let cracks = cracks(&table, history);
     let fragments = fragments(&table);
@@ -162,8 +171,12 @@ fn scheduled(table: &Table<'_>, key: &'static str, count: u64) -> Option<Schedul
 }
 
 /// When field files are written, and which fields.
-fn fields(table: &Table<'_>, dimension: Option<usize>) -> (Option<Schedule>, Option<Vec<Field>>) {
-    let usual = Some(Field::USUAL.to_vec());
+fn fields(
+    table: &Table<'_>,
+    dimension: Option<usize>,
+    usual: Vec<Field>,
+) -> (Option<Schedule>, Option<Vec<Field>>) {
+    let usual = Some(usual);
     if is_never(table, "fields") {
         return (Some(Schedule::Never), usual);
     }
@@ -318,7 +331,7 @@ fn quantity(field: Field) -> Quantity {
         Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
         Field::Stress => Quantity::Traction,
         Field::Damage | Field::Strain => Quantity::Number,
-        Field::StrainEnergyDensity => Quantity::EnergyDensity,
+        Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
     }
 }
 

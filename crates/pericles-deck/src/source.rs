@@ -16,6 +16,8 @@ pub(crate) struct Place {
 #[derive(Debug, Clone)]
 pub struct Location {
     text: Arc<NamedSource<String>>,
+    /// Length of the line, bytes.
+    line_length: usize,
     source: usize,
     start: usize,
     length: usize,
@@ -37,6 +39,11 @@ impl Location {
     /// The column in characters, from 1.
     pub fn column(&self) -> usize {
         self.column
+    }
+
+    /// The length of the line in bytes: very long lines are better not shown.
+    pub fn line_length(&self) -> usize {
+        self.line_length
     }
 
     /// The stretch in bytes.
@@ -74,7 +81,24 @@ impl std::fmt::Display for Location {
 
 /// The texts a deck is read from.
 #[derive(Debug, Clone)]
-pub(crate) struct Sources(Vec<Arc<NamedSource<String>>>);
+pub(crate) struct Sources(Vec<Source>);
+
+/// A text with the places where its lines start, so that a place is found without reading all that stands before it.
+#[derive(Debug, Clone)]
+struct Source {
+    text: Arc<NamedSource<String>>,
+    lines: Arc<[usize]>,
+}
+
+impl Source {
+    fn new(name: &str, text: &str) -> Self {
+        let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
+        Self {
+            text: Arc::new(NamedSource::new(name, text.to_owned())),
+            lines: std::iter::once(0).chain(breaks).collect(),
+        }
+    }
+}
 
 impl Default for Sources {
     /// One empty text.
@@ -85,23 +109,22 @@ impl Default for Sources {
 
 impl Sources {
     pub(crate) fn new(name: &str, text: &str) -> Self {
-        Self(vec![Arc::new(NamedSource::new(name, text.to_owned()))])
+        Self(vec![Source::new(name, text)])
     }
 
     /// Adds a text; returns its number.
     pub(crate) fn add(&mut self, name: &str, text: &str) -> usize {
-        self.0
-            .push(Arc::new(NamedSource::new(name, text.to_owned())));
+        self.0.push(Source::new(name, text));
         self.0.len() - 1
     }
 
     /// The name of the deck's file.
     pub(crate) fn name(&self) -> &str {
-        self.0.first().map_or("", |named| named.name())
+        self.0.first().map_or("", |source| source.text.name())
     }
 
     pub(crate) fn text(&self, source: usize) -> &str {
-        self.0.get(source).map_or("", |named| named.inner())
+        self.0.get(source).map_or("", |source| source.text.inner())
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -110,7 +133,7 @@ impl Sources {
 
     pub(crate) fn locate(&self, place: Place) -> Location {
         let source = place.source.min(self.0.len() - 1);
-        let text = Arc::clone(&self.0[source]);
+        let Source { text, lines } = &self.0[source];
         let inner = text.inner();
         let floor = |mut at: usize| {
             at = at.min(inner.len());
@@ -120,15 +143,17 @@ impl Sources {
             at
         };
         let (start, end) = (floor(place.start), floor(place.end));
-        let before = &inner[..start];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = lines.partition_point(|&line| line <= start);
+        let line_start = lines[line - 1];
+        let line_end = lines.get(line).copied().unwrap_or(inner.len());
         Location {
             source,
             start,
             length: end.saturating_sub(start),
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-            text,
+            line,
+            line_length: line_end - line_start,
+            column: inner[line_start..start].chars().count() + 1,
+            text: Arc::clone(text),
         }
     }
 }

@@ -68,6 +68,7 @@ pub mod solve;
 pub mod space;
 mod system;
 pub mod time;
+pub mod units;
 
 pub use accounts::{Completed, Ledger};
 pub use archive::{Archive, Saved, Values};

@@ -11,6 +11,7 @@ mod fields;
 mod graded;
 mod memory;
 mod parts;
+mod plausible;
 mod points;
 mod resources;
 mod scheme;
@@ -149,6 +150,8 @@ impl Deck {
         self.add_loads(&mut system, &cloud, &sets)?;
         self.add_motions(&mut system, &state, &sets)?;
         self.judge_conditions(&system, &mut warnings);
+        warnings.extend(self.judge_idle_keys(&system));
+        warnings.extend(self.judge_rest(&state));
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
         let ends = self.ends(&system, &state, &sets, &*integrator, &resources)?;
@@ -203,7 +206,7 @@ impl Deck {
                 let (surface, cloud) = self.surface_points(deck, &resources)?;
                 Ok((cloud, Some(surface)))
             }
-            None => Ok((self.points(&resources)?.cloud, None)),
+            None => Ok((self.points(&resources, &mut Vec::new())?.cloud, None)),
         }
     }
 

@@ -29,6 +29,8 @@ pub enum Field {
     Stress,
     /// Strain of the displacement gradient that fits a point's bonds best. As stress.
     Strain,
+    /// Kinetic energy density ½ ρ v², J/m³.
+    KineticEnergyDensity,
 }
 
 impl Field {
@@ -42,7 +44,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -52,6 +54,7 @@ impl Field {
         Self::Reaction,
         Self::Stress,
         Self::Strain,
+        Self::KineticEnergyDensity,
     ];
 
     /// Name in files.
@@ -66,6 +69,7 @@ impl Field {
             Self::Reaction => "Reaction_Density",
             Self::Stress => "Stress",
             Self::Strain => "Strain",
+            Self::KineticEnergyDensity => "Kinetic_Energy_Density",
         }
     }
 
@@ -77,7 +81,7 @@ impl Field {
             Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
             Self::Stress => "Pa",
             Self::Damage | Self::Strain => "",
-            Self::StrainEnergyDensity => "J/m³",
+            Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
         }
     }
 
@@ -158,6 +162,7 @@ pub struct Snapshot<'a> {
     force: OnceCell<Vec<f64>>,
     damage: OnceCell<Vec<f64>>,
     energy_density: OnceCell<Vec<f64>>,
+    kinetic_density: OnceCell<Vec<f64>>,
     external: OnceCell<Vec<f64>>,
     reaction: OnceCell<Vec<f64>>,
     stress: OnceCell<Vec<f64>>,
@@ -176,6 +181,7 @@ impl<'a> Snapshot<'a> {
             force: OnceCell::new(),
             damage: OnceCell::new(),
             energy_density: OnceCell::new(),
+            kinetic_density: OnceCell::new(),
             external: OnceCell::new(),
             reaction: OnceCell::new(),
             stress: OnceCell::new(),
@@ -241,6 +247,9 @@ impl<'a> Snapshot<'a> {
             }),
             Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
             Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
+            Field::KineticEnergyDensity => self
+                .kinetic_density
+                .get_or_init(|| self.kinetic_energy_density()),
         }
     }
 
