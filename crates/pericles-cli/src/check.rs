@@ -1,16 +1,22 @@
-//! `check`: what a run of a deck would need. Runs nothing and writes nothing.
+//! `check`: report what a run of a deck needs, without running it: as lines for people, and as JSON with every number in them.
+
+use std::path::Path;
 
 use pericles::family::geodesic::Ball;
 use pericles::kernel::ActsOn;
-use pericles::material::{BondConstants, SurfaceBond};
+use pericles::material::{BondConstants, Calibration, SurfaceBond};
+use pericles::observe::Probe;
 use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
+use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::given;
+use crate::line::{self, Line};
 use crate::prepare::{self, Facts, Means};
 use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
@@ -35,29 +41,60 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         console::note(format_args!("warning: {warning}"));
     }
     let mut lines = body(&deck, &facts);
+    lines.extend(neighbours(&model));
     match &deck.surface {
         Some(surface) => lines.extend(surface_material(surface)),
         None => lines.extend(material(&deck, &facts, &model.parts)),
     }
     lines.extend(time(&facts));
+    lines.extend(probes(&model));
     for end in &facts.ends {
-        lines.push(("absorbing end", end.line()));
+        lines.push(Line::new("absorbing end", end.line()));
+    }
+    for changed in &facts.changed_defaults {
+        lines.push(Line::new("changed default", changed.clone()));
     }
     if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
         // A step goes from static state to static state: one would be the whole run.
         let note = "that of as many iterations as each static state takes";
-        lines.push(("run time", note.into()));
+        lines.push(Line::new("run time", note));
     } else {
         let time = run_time(&deck, &facts, model, count_of_threads, &mut lines)?;
         lines.push(time);
     }
-    let title = deck.title.as_deref().unwrap_or("no title");
-    let mut text = format!("{}: {title}", args.deck.display());
-    for (name, value) in lines {
-        text += &format!("\n  {name:<18} {value}");
+    if let Some(path) = &args.json {
+        let results = json_of(&args.deck, &deck, &facts, &lines)?;
+        console::write_json(path, &results)?;
     }
-    console::print(format_args!("{text}"))?;
+    if args.json.as_deref() != Some(Path::new("-")) {
+        let title = deck.title.as_deref().unwrap_or("no title");
+        let mut text = format!("{}: {title}", args.deck.display());
+        for line in &lines {
+            text += &format!("\n  {line}");
+        }
+        console::print(format_args!("{text}"))?;
+    }
     Ok(Exit::Done)
+}
+
+/// All that `check` knows, in SI units: the facts under the keys that they have in `model` of `run.json`, and the values of the lines.
+fn json_of(path: &Path, deck: &Deck, facts: &Facts, lines: &[Line]) -> Result<Value, CliError> {
+    #[derive(Serialize)]
+    struct Named<'a> {
+        deck: String,
+        title: Option<&'a str>,
+        #[serde(flatten)]
+        facts: &'a Facts,
+    }
+    let mut json = serde_json::to_value(Named {
+        deck: path.display().to_string(),
+        title: deck.title.as_deref(),
+        facts,
+    })?;
+    if let Value::Object(object) = &mut json {
+        line::add_values(object, lines);
+    }
+    Ok(json)
 }
 
 /// How long the run will take, from a few of its steps; what that says of two time steps is added to the lines.
@@ -86,58 +123,114 @@ fn run_time(
         )?,
     };
     let seconds = step * facts.steps as f64;
-    Ok((
-        "run time",
-        format!(
-            "about {} on {} ({}), files not counted",
-            duration(seconds),
-            threads(count_of_threads),
-            facts.instruction_set
-        ),
-    ))
+    let text = format!(
+        "about {} on {} ({}), files not counted",
+        duration(seconds),
+        threads(count_of_threads),
+        facts.instruction_set
+    );
+    Ok(Line::new("run time", text)
+        .with("run_seconds", seconds)
+        .with("threads", count_of_threads))
 }
-
-type Line = (&'static str, String);
 
 fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
     let body = match &deck.surface {
-        Some(_) => "surface in 3D".into(),
-        None => format!("{}D, {}", facts.dimension, deck.body.state.name()),
+        Some(_) => Line::new("body", "surface in 3D"),
+        None => {
+            let state = deck.body.state.name();
+            let text = format!("{}D, {state}", facts.dimension);
+            Line::new("body", text).with("state", state)
+        }
     };
+    let per_point = facts.directed_bonds as f64 / facts.points as f64;
+    let ratio = facts.horizon / facts.spacing;
     let mut lines = vec![
-        ("body", body),
-        ("points", count(facts.points as u64)),
-        (
+        body,
+        Line::new("points", count(facts.points as u64)),
+        Line::new(
             "bonds",
             format!(
                 "{} ({} directed, {} per point), kept as a {}",
                 count(facts.bonds),
                 count(facts.directed_bonds),
-                significant(facts.directed_bonds as f64 / facts.points as f64, 3),
+                significant(per_point, 3),
                 facts.operator
             ),
+        )
+        .with("directed_bonds_per_point", per_point),
+        Line::new(
+            "memory",
+            format!("about {} at the peak", bytes(facts.memory_estimate)),
         ),
-        ("memory", format!("about {}", bytes(facts.memory_estimate))),
-        (
+        Line::new(
             "spacing, horizon",
             format!(
                 "{}, {}; ratio {}",
                 quantity(facts.spacing, "m"),
                 quantity(facts.horizon, "m"),
-                significant(facts.horizon / facts.spacing, 4)
+                significant(ratio, 4)
             ),
-        ),
+        )
+        .with("horizon_ratio", ratio),
     ];
     if facts.precut_bonds > 0 {
-        lines.insert(3, ("bonds cut before", count(facts.precut_bonds)));
+        let cut = Line::new("bonds cut before", count(facts.precut_bonds));
+        lines.insert(3, cut);
     }
     lines
 }
 
+/// The fewest, mean and most neighbours of a point, where the operator knows them one by one.
+fn neighbours(model: &Model) -> Option<Line> {
+    let zoned = model.system.operator().as_zoned()?;
+    let count_of = |i: usize| {
+        let mut count = 0u64;
+        zoned.neighbours(i, &mut |_| count += 1);
+        count
+    };
+    let counts = (0..model.cloud.len()).map(count_of);
+    let (least, most, sum) = counts.fold((u64::MAX, 0, 0), |(least, most, sum), n| {
+        (least.min(n), most.max(n), sum + n)
+    });
+    let mean = sum as f64 / model.cloud.len() as f64;
+    let text = format!(
+        "{} to {} per point, {} on average",
+        count(least),
+        count(most),
+        significant(mean, 3)
+    );
+    let value = json!({ "least": least, "mean": mean, "most": most });
+    Some(Line::new("neighbours", text).with("neighbours", value))
+}
+
+/// Where the probes read: at a point, or the mean over a set.
+fn probes(model: &Model) -> Vec<Line> {
+    let line = |probe: &Probe| {
+        let mut value = json!({ "name": probe.name, "points": probe.points.len() });
+        let text = match probe.points[..] {
+            [point] => {
+                let place = model.cloud.point(point as usize);
+                let place = &place[..model.cloud.dimension()];
+                let shown: Vec<String> = place.iter().map(|x| quantity(*x, "m")).collect();
+                value["place"] = json!(place);
+                format!("{} at ({})", probe.name, shown.join(", "))
+            }
+            _ => format!(
+                "{}: mean over {} points",
+                probe.name,
+                count(probe.points.len() as u64)
+            ),
+        };
+        Line::new("probe", text).with_entry("probes", value)
+    };
+    model.probes.iter().map(line).collect()
+}
+
 fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     let mut lines = vec![
-        ("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
-        (
+        Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
+        Line::new(
             "bond constant c",
             format!(
                 "{:.6e} (SI, of the force density c α {})",
@@ -148,24 +241,32 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
                 }
             ),
         ),
-        (
-            "stiffness error",
-            format!("{} of the grid's interior", percent(facts.stiffness_error)),
-        ),
+        Line::new("stiffness error", stiffness_error(deck, facts)),
     ];
     let strength = facts.critical_stretch.zip(facts.fracture_energy);
-    lines.push(("breaking", breaking(strength)));
+    lines.push(Line::new("breaking", breaking(strength)));
+    if !facts.crack_planes.is_empty() {
+        lines.push(Line::new("crack planes", crack_planes(facts)));
+    }
     for (part, constants) in deck.material.parts.iter().zip(parts) {
-        let strength = (constants.critical_stretch, constants.fracture_energy);
-        lines.push((
-            "besides",
-            format!(
-                "{}: Young's modulus {}, {} kg/m³; breaking {}",
-                part.name,
-                quantity(constants.young, "Pa"),
-                significant(part.density, 4),
-                breaking(Some(strength).filter(|(stretch, _)| stretch.is_finite()))
-            ),
+        let strength = Some((constants.critical_stretch, constants.fracture_energy))
+            .filter(|(stretch, _)| stretch.is_finite());
+        let text = format!(
+            "{}: Young's modulus {}, {} kg/m³; breaking {}",
+            part.name,
+            quantity(constants.young, "Pa"),
+            significant(part.density, 4),
+            breaking(strength)
+        );
+        lines.push(Line::new("besides", text).with_entry(
+            "parts",
+            json!({
+                "name": part.name,
+                "youngs_modulus": constants.young,
+                "density": part.density,
+                "critical_stretch": strength.map(|(stretch, _)| stretch),
+                "fracture_energy": strength.map(|(_, energy)| energy),
+            }),
         ));
     }
     let density = deck.material.bonds.density;
@@ -178,7 +279,14 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
             speed(transverse.rayleigh)
         );
     }
-    lines.push(("waves", waves));
+    lines.push(Line::new("waves", waves).with(
+        "wave_speeds",
+        json!({
+            "pressure": speeds.pressure,
+            "shear": speeds.transverse.map(|transverse| transverse.shear),
+            "rayleigh": speeds.transverse.map(|transverse| transverse.rayleigh),
+        }),
+    ));
     lines
 }
 
@@ -188,6 +296,44 @@ fn speed(speed: f64) -> String {
         true if speed < 1e7 => format!("{speed:.0}"),
         _ => significant(speed, 3),
     }
+}
+
+/// How far the grid's interior is from the stiffness asked for, and what can be done about it.
+fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
+    /// Worth a word.
+    const NOTICED: f64 = 0.01;
+    let mut line = format!("{} in bulk", percent(facts.stiffness_error));
+    if facts.dimension > 1 {
+        line += &format!(", {} in shear along the axes", percent(facts.shear_error));
+    }
+    line += ", of the grid's interior";
+    let calibration = deck.material.bonds.modulus.calibration;
+    if facts.stiffness_error.abs() > NOTICED && calibration != Calibration::Lattice {
+        line += "; modulus = \"lattice\" makes it 0 in bulk";
+    }
+    line
+}
+
+/// What cracks along the planes of the lattice cost.
+fn crack_planes(facts: &Facts) -> String {
+    let planes: Vec<String> = facts
+        .crack_planes
+        .iter()
+        .map(|plane| {
+            let sign = if plane.deviation > 0.0 { "+" } else { "" };
+            // What rounding leaves is nothing.
+            let deviation = (plane.deviation * 1e6).round() * 1e-6;
+            format!("{} {sign}{}", plane.plane, percent(deviation))
+        })
+        .collect();
+    let calibration = match facts.fracture_calibration {
+        Some(calibration) => format!(" (fracture_calibration = \"{calibration}\")"),
+        None => String::new(),
+    };
+    format!(
+        "energy per area over the fracture energy: {}{calibration}",
+        planes.join(", ")
+    )
 }
 
 /// From critical stretch and fracture energy (J/m²).
@@ -213,6 +359,10 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
         VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
         VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
     };
+    let same_area = match surface.areas {
+        VertexAreas::Same(area) => Some(area),
+        VertexAreas::Rule(_) => None,
+    };
     let own_cell = if material.self_cell {
         "added"
     } else if material.alpha >= 0.5 {
@@ -229,23 +379,27 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
         "never".into()
     };
     vec![
-        (
+        Line::new(
             "force",
             format!(
                 "{law}; p = {}, α = {}, κ = {}",
                 material.p, material.alpha, material.kappa
             ),
+        )
+        .with(
+            "surface_law",
+            json!({ "p": material.p, "alpha": material.alpha, "kappa": material.kappa }),
         ),
-        (
+        Line::new(
             "distances",
             match surface.ball {
                 Ball::Geodesic => surface.method.to_string(),
                 Ball::Euclid => format!("{}, of the vertices in a ball of space", surface.method),
             },
         ),
-        ("areas", areas),
-        ("own cell", own_cell.into()),
-        ("breaking", breaking),
+        Line::new("areas", areas).with("vertex_area", same_area),
+        Line::new("own cell", own_cell),
+        Line::new("breaking", breaking),
     ]
 }
 
@@ -257,24 +411,25 @@ fn time(facts: &Facts) -> Vec<Line> {
         } else {
             ""
         };
-        lines.push(("highest frequency", format!("{omega:.4e} 1/s{doubt}")));
-        lines.push((
-            "stable step",
-            format!("{} ({})", quantity(limit, "s"), facts.scheme),
-        ));
+        let text = format!("{omega:.4e} 1/s{doubt}");
+        lines.push(Line::new("highest frequency", text));
+        let text = format!("{} ({})", quantity(limit, "s"), facts.scheme);
+        lines.push(Line::new("stable step", text));
     }
-    let share = facts
-        .stable_step
-        .map(|limit| format!(", {} of the stable one", percent(facts.dt / limit)))
+    let ratio = facts.stable_step.map(|limit| facts.dt / limit);
+    let share = ratio
+        .map(|ratio| format!(", {} of the stable one", percent(ratio)))
         .unwrap_or_default();
-    lines.push((
-        "steps",
-        format!(
-            "{} of {}{share}; end at {}",
-            count(facts.steps),
-            quantity(facts.dt, "s"),
-            quantity(facts.steps as f64 * facts.dt, "s")
-        ),
-    ));
+    let end = facts.steps as f64 * facts.dt;
+    let text = format!(
+        "{} of {}{share}; end at {}",
+        count(facts.steps),
+        quantity(facts.dt, "s"),
+        quantity(end, "s")
+    );
+    let steps = Line::new("steps", text)
+        .with("end", end)
+        .with("dt_over_stable_step", ratio);
+    lines.push(steps);
     lines
 }

@@ -65,6 +65,15 @@ pub(crate) enum CliError {
         /// Why.
         reason: String,
     },
+    /// A file that the deck names is not what it was when the run began.
+    #[error("{} is read by the run: {reason}", path.display())]
+    #[diagnostic(help("put the file back as it was, or start a new run"))]
+    InputChanged {
+        /// The file.
+        path: PathBuf,
+        /// What has happened to it.
+        reason: String,
+    },
     /// There are no results.
     #[error("{} is no output folder of a run: {reason}", path.display())]
     #[diagnostic(help("give the folder that `pericles run` made, such as ./branching"))]
@@ -177,7 +186,9 @@ impl CliError {
                 Ok(error) => Self::Io(*error),
                 Err(source) => Self::Simulation(SimulationError::Observe(source)),
             },
-            SimulationError::Unstable { .. } | SimulationError::Stuck { .. } => Self::Unstable {
+            SimulationError::Unstable { .. }
+            | SimulationError::Stuck { .. }
+            | SimulationError::NoStaticState { .. } => Self::Unstable {
                 source: error,
                 left: left(),
             },
@@ -189,9 +200,12 @@ impl CliError {
     pub(crate) fn exit(&self) -> Exit {
         match self {
             Self::Deck(error) if error.is_too_large() => Exit::Memory,
+            Self::Io(IoError::TooLarge { .. })
+            | Self::Mesh(MeshError::Io(IoError::TooLarge { .. })) => Exit::Memory,
             Self::Deck(_)
             | Self::NoDeck { .. }
             | Self::Checkpoint { .. }
+            | Self::InputChanged { .. }
             | Self::NoRun { .. }
             | Self::NoResults { .. }
             | Self::Library(_) => Exit::Input,

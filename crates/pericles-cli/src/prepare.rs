@@ -6,21 +6,27 @@ use std::sync::Arc;
 use pericles::Simulation;
 use pericles::boundary::absorbing::{EndReport, KernelMethod, Side};
 use pericles::cache::{Cache, NoCache};
+use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources, Scheme};
+use pericles_deck::{
+    Deck, ExactReference, FileError, Model, Picture, Precision, Resources, Scheme,
+};
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
     PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
 };
-use pericles_io::{DiskCache, OutputFolder, read_points, read_surface};
+use pericles_io::{
+    DiskCache, IoError, MeshError, OutputFolder, PointsError, RowsError, read_points, read_rows,
+    read_surface,
+};
 use serde::Serialize;
 
 use crate::args::Caching;
 use crate::console;
 use crate::error::CliError;
 use crate::refinement::RefinementFacts;
-use crate::units::bytes;
+use crate::units::{bytes, significant};
 
 /// What is known about a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -40,15 +46,23 @@ pub(crate) struct Facts {
     /// None if bonds never break.
     pub(crate) critical_stretch: Option<f64>,
     pub(crate) fracture_energy: Option<f64>,
+    /// How the critical stretch follows from the fracture energy; none if the deck gives no fracture energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fracture_calibration: Option<&'static str>,
+    /// Cracks along the planes of the lattice, if bonds break and there is a lattice.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) crack_planes: Vec<PlaneFacts>,
     /// Bulk stiffness of the grid's interior over the continuum's, less one.
     pub(crate) stiffness_error: f64,
+    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one.
+    pub(crate) shear_error: f64,
     pub(crate) dt: f64,
     pub(crate) steps: u64,
     /// None if nothing resists motion.
     pub(crate) highest_frequency: Option<f64>,
     pub(crate) frequency_converged: Option<bool>,
     pub(crate) stable_step: Option<f64>,
-    /// Points, state, bonds and histories, bytes.
+    /// The estimated peak, files and pictures not counted, bytes.
     pub(crate) memory_estimate: u64,
     pub(crate) scheme: &'static str,
     /// None for schemes with one time step.
@@ -58,6 +72,18 @@ pub(crate) struct Facts {
     pub(crate) ends: Vec<EndFacts>,
     pub(crate) instruction_set: &'static str,
     pub(crate) warnings: Vec<String>,
+    /// Defaults that this deck relies on and that have changed since the last release.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) changed_defaults: Vec<String>,
+}
+
+/// What a crack along a plane of the lattice costs.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct PlaneFacts {
+    /// Miller indices, such as (110).
+    pub(crate) plane: String,
+    /// Energy per area over the fracture energy, less one.
+    pub(crate) deviation: f64,
 }
 
 /// How an absorbing end is made.
@@ -112,9 +138,6 @@ impl Facts {
         let directed_bonds = operator.directed_bonds();
         let constants = &model.constants;
         let finite = |x: f64| x.is_finite().then_some(x);
-        // Position and volume, then displacement, velocity and acceleration.
-        let ends: usize = model.ends.iter().map(|(_, end)| end.bytes).sum();
-        let numbers = points * (dimension + 1) + 3 * points * dimension;
         Self {
             dimension,
             points,
@@ -133,13 +156,23 @@ impl Facts {
             micromodulus: constants.micromodulus,
             critical_stretch: finite(constants.critical_stretch),
             fracture_energy: finite(constants.fracture_energy),
+            fracture_calibration: constants.fracture_calibration.map(|given| given.name()),
+            crack_planes: constants
+                .crack_planes
+                .iter()
+                .map(|plane| PlaneFacts {
+                    plane: plane.to_string(),
+                    deviation: plane.energy() / constants.fracture_energy - 1.0,
+                })
+                .collect(),
             stiffness_error: constants.stiffness_error,
+            shear_error: constants.shear_error,
             dt: model.dt,
             steps: model.steps,
             highest_frequency: model.frequency.map(|f| f.estimate),
             frequency_converged: model.frequency.map(|f| f.converged),
             stable_step: model.stable_step(),
-            memory_estimate: (operator.bytes() + numbers * size_of::<f64>() + ends) as u64,
+            memory_estimate: deck.memory_estimate(model),
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
             ends: model.ends.iter().map(EndFacts::of).collect(),
@@ -150,8 +183,39 @@ impl Facts {
                 .chain(&deck.judge_waves(model))
                 .map(|w| w.line())
                 .collect(),
+            changed_defaults: changed_defaults(deck, model),
         }
     }
+}
+
+/// What this deck leaves to defaults that differ from those of the last release.
+fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
+    let mut changed = Vec::new();
+    let (material, constants) = (&deck.material.bonds, &model.constants);
+    let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
+    if lattice && !deck.gives("material.fracture_calibration") {
+        let continuum = BondMaterial {
+            fracture: Fracture::Energy {
+                energy: constants.fracture_energy,
+                calibration: FractureCalibration::Continuum,
+            },
+            ..material.clone()
+        };
+        let before = continuum.constants(&model.cloud, deck.body.state);
+        let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
+        changed.push(format!(
+            "fracture_calibration = \"lattice\" gives the critical stretch {}; \"continuum\", the former default, gives {}",
+            significant(constants.critical_stretch, 4),
+            significant(before, 4)
+        ));
+    }
+    if deck.material.surface_correction == SurfaceCorrection::Energy {
+        changed.push(
+            "surface_correction = \"energy\" has a factor for each coordinate direction; formerly it had one for all directions"
+                .into(),
+        );
+    }
+    changed
 }
 
 /// What a model may be made with.
@@ -167,6 +231,7 @@ pub(crate) struct Means<'a> {
 /// A deck that is refused.
 pub(crate) fn model(deck: &Deck, means: &Means<'_>) -> Result<Model, CliError> {
     let cache = means.caching.cache();
+    let cache = cache.map(|cache| cache.within(means.memory));
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
         memory: means.memory,
@@ -267,9 +332,23 @@ pub(crate) fn picture_of(
 pub(crate) fn readers() -> Resources<'static> {
     Resources {
         cache: &NoCache,
-        read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
-        read_points: &|path, dimension| {
-            read_points(path, dimension).map_err(|error| error.to_string())
+        read_surface: &|path, memory| {
+            read_surface(path, memory).map_err(|error| match &error {
+                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_points: &|path, dimension, memory| {
+            read_points(path, dimension, memory).map_err(|error| match &error {
+                PointsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_table: &|path, rows, columns, memory| {
+            read_rows(path, rows, columns, memory).map_err(|error| match &error {
+                RowsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
         },
         ..Resources::default()
     }

@@ -10,11 +10,13 @@ use pericles::time::{
     HighestFrequency, Integrator, RefinementReport, RungeKutta, State, Tableau, VelocityVerlet,
     highest_frequency,
 };
-use pericles::{PericlesError, System};
+use pericles::{Interrupt, PericlesError, System};
 use pericles_deck::{Deck, FineRegion, Model, Scheme};
 use serde::Serialize;
+use serde_json::json;
 
-use crate::units::{percent, quantity, significant};
+use crate::line::Line;
+use crate::units::{count, percent, quantity, significant};
 
 /// What is known of two time steps before the first; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -23,6 +25,10 @@ pub(crate) struct RefinementFacts {
     pub(crate) ratio: u32,
     /// Fraction φ of fine points at the start.
     pub(crate) fine_fraction: f64,
+    /// Points with the fine step, points with the coarse step, and those of the latter that have fine neighbours, at the start.
+    pub(crate) fine_points: u64,
+    pub(crate) coarse_points: u64,
+    pub(crate) border_points: u64,
     /// Whether the fine region follows damage.
     pub(crate) follows_damage: bool,
     /// The highest frequency of the whole body; that of the model limits the coarse step.
@@ -69,6 +75,9 @@ impl RefinementFacts {
         Some(Self {
             ratio: report.ratio,
             fine_fraction: report.mean_fraction,
+            fine_points: report.fine_points,
+            coarse_points: report.points - report.fine_points,
+            border_points: report.border_points,
             follows_damage: matches!(
                 fine_region(&deck.time.scheme),
                 Some(FineRegion::Adaptive(_))
@@ -210,7 +219,7 @@ pub(crate) fn seconds_per_step(
 ) -> Result<f64, PericlesError> {
     let mut step = || {
         let t_next = state.t + dt;
-        integrator.step(system, state, t_next)
+        integrator.step(system, state, t_next, Interrupt::never())
     };
     let mut most = most.min(MOST);
     // The first step finds cold caches and sleeping threads.
@@ -227,14 +236,14 @@ pub(crate) fn seconds_per_step(
     Ok(began.elapsed().as_secs_f64() / steps as f64)
 }
 
-/// What `check` says of two time steps, name and value.
+/// The lines of `check` about two time steps.
 pub(crate) fn lines(
     facts: &RefinementFacts,
     scheme: &str,
     dt: f64,
     comparison: &Comparison,
-) -> Vec<(&'static str, String)> {
-    let ratio = f64::from(facts.ratio);
+) -> Vec<Line> {
+    let fine_dt = dt / f64::from(facts.ratio);
     let frequencies = match (facts.omega_dt, facts.omega_dt_fine) {
         (Some(coarse), Some(fine)) => format!("; ω dt {coarse:.2} coarse, {fine:.2} fine"),
         _ => String::new(),
@@ -245,28 +254,36 @@ pub(crate) fn lines(
     } else {
         ""
     };
+    let steps = format!(
+        "{} and {} for {} of the points{following}{frequencies}",
+        quantity(dt, "s"),
+        quantity(fine_dt, "s"),
+        percent(facts.fine_fraction),
+    );
+    let zones = format!(
+        "{} points with the fine step, {} with the coarse step, {} of them next to fine ones",
+        count(facts.fine_points),
+        count(facts.coarse_points),
+        count(facts.border_points),
+    );
+    let over_uniform = comparison.uniform / comparison.seconds;
+    let over_verlet = comparison.verlet / comparison.seconds;
+    let cost = format!(
+        "{} evaluations per point and step; {plain} with the fine step everywhere {} times that ({} by the clock), velocity-verlet there {} times ({} by the clock)",
+        significant(facts.evaluations, 3),
+        significant(facts.speed_up, 3),
+        significant(over_uniform, 3),
+        significant(facts.speed_up_over_verlet, 3),
+        significant(over_verlet, 3),
+    );
     vec![
-        (
-            "two time steps",
-            format!(
-                "{} and {} for {} of the points{following}{frequencies}",
-                quantity(dt, "s"),
-                quantity(dt / ratio, "s"),
-                percent(facts.fine_fraction),
-            ),
+        Line::new("two time steps", steps).with("dt_fine", fine_dt),
+        Line::new("their zones", zones),
+        Line::new("their cost", cost).with(
+            "refinement_by_clock",
+            json!({ "speed_up": over_uniform, "speed_up_over_verlet": over_verlet }),
         ),
-        (
-            "their cost",
-            format!(
-                "{} evaluations per point and step; {plain} with the fine step everywhere {} times that ({} by the clock), velocity-verlet there {} times ({} by the clock)",
-                significant(facts.evaluations, 3),
-                significant(facts.speed_up, 3),
-                significant(comparison.uniform / comparison.seconds, 3),
-                significant(facts.speed_up_over_verlet, 3),
-                significant(comparison.verlet / comparison.seconds, 3),
-            ),
-        ),
-        ("do they pay", verdict(facts, scheme, comparison)),
+        Line::new("do they pay", verdict(facts, scheme, comparison)),
     ]
 }
 

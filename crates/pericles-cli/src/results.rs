@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::checkpoint::DeckText;
 use crate::error::CliError;
+use crate::machine;
 
 /// The folder of a run that was started once.
 pub(crate) struct Results {
@@ -29,7 +30,7 @@ impl FieldFile {
     /// # Errors
     /// A file that is gone or damaged.
     pub(crate) fn read(&self) -> Result<FieldData, CliError> {
-        Ok(read_fields(&self.path)?)
+        Ok(read_fields(&self.path, machine::memory())?)
     }
 }
 

@@ -1,9 +1,10 @@
 //! `run` and `resume`: a simulation in its folder, from a first step to its end or to a signal.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
+use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
 use pericles_deck::{Deck, Model};
 use pericles_io::{IoError, OutputFolder};
 
@@ -118,7 +119,7 @@ fn is_finished(folder: &OutputFolder) -> bool {
 }
 
 /// What may make a resumed run differ from an uninterrupted one.
-fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
+fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
     let mut doubts: Vec<String> = stored
         .refused
         .iter()
@@ -136,6 +137,13 @@ fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
         doubts.push(format!(
             "the run was begun with instruction set {} and goes on with {}: it may not be the same bit for bit",
             metadata.instruction_set, facts.instruction_set
+        ));
+    }
+    let files = deck.files();
+    if let (Some(file), true) = (files.first(), metadata.deck.inputs.is_empty()) {
+        let file = file.display();
+        doubts.push(format!(
+            "the version that began the run did not record the content of {file}: whether it has changed since is not known"
         ));
     }
     doubts
@@ -198,10 +206,10 @@ impl Session {
         if is_finished(&folder) {
             return Ok(None);
         }
-        let stored = Stored::latest(&folder)?;
+        let stored = Stored::latest(&folder, means.memory)?;
         let deck = stored.metadata.deck.read()?;
         let (model, mut facts) = modelled(&deck, means)?;
-        facts.warnings.extend(doubts(&stored, &facts));
+        facts.warnings.extend(doubts(&stored, &deck, &facts));
         let mut simulation = prepare::simulation(&deck, model, &folder)?;
         // The state is still that of the start.
         let start = Start::of(&simulation);
@@ -283,7 +291,15 @@ impl Session {
             deadline.begin();
         }
         let mut trouble = None;
-        let outcome = self.simulation.run(|simulation| {
+        let cost = Cell::new(checkpoints.cost());
+        let end = deadline.as_ref().map(Deadline::end);
+        // Asked within steps that iterate, which may take longer than any other part of a run.
+        let is_over = || {
+            let late = |end: Instant| Instant::now() + 2 * cost.get() >= end;
+            signals.asked().is_some() || end.is_some_and(late)
+        };
+        let interrupt = Interrupt::when(&is_over);
+        let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
             let state = simulation.state();
             progress.step(state.step, state.t);
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
@@ -296,6 +312,7 @@ impl Session {
                 trouble = Some(error);
                 return Control::Stop;
             }
+            cost.set(checkpoints.cost());
             Control::Continue
         });
         progress.finish();
@@ -333,6 +350,7 @@ impl Session {
             .warnings
             .extend(animations::gaps(&self.folder.file("pictures")));
         self.report.audit = Some(audit);
+        self.report.stop_reason = self.simulation.stop_reason().map(ToString::to_string);
         let exit = match outcome {
             Outcome::Finished => {
                 self.report.status = Status::Finished;

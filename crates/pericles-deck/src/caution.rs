@@ -33,6 +33,24 @@ pub enum Caution {
         /// The critical stretch.
         stretch: f64,
     },
+    /// A body whose bonds are far from the modulus asked for.
+    #[error(
+        "inside the body the bonds have {} of the bulk stiffness asked for",
+        percent(1.0 + error)
+    )]
+    StiffnessError {
+        /// Bulk stiffness over the one asked for, less one.
+        error: f64,
+    },
+    /// A body that resists shear along its grid far less than its material.
+    #[error(
+        "inside the body the bonds have {} of the material's shear stiffness along the grid's axes",
+        percent(1.0 + error)
+    )]
+    ShearStiffness {
+        /// Shear stiffness over the continuum's, less one.
+        error: f64,
+    },
     /// Waves that no solid carries.
     #[error("waves run at {speed:.3e} m/s, faster than in any solid")]
     FastWaves {
@@ -203,6 +221,26 @@ pub enum Caution {
         /// The error of the Green functions.
         growth: f64,
     },
+    /// Exponentials that miss their tolerance.
+    #[error(
+        "no sum of exponentials meets the tolerance {tolerance:.0e} (the best has the error {residual:.1e}): the exact blocked history is used"
+    )]
+    ExactHistory {
+        /// What was asked for.
+        tolerance: f64,
+        /// What the best fit has.
+        residual: f64,
+    },
+    /// An initial field that is not zero at an absorbing end.
+    #[error(
+        "the initial field at the absorbing end {side} is {share:.1e} of its largest value; it counts as zero beyond, which is an error of that size"
+    )]
+    FieldAtEnd {
+        /// The side.
+        side: &'static str,
+        /// The largest value in the outer layer over that of the body.
+        share: f64,
+    },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
     EqualSteps,
@@ -248,6 +286,12 @@ impl Subject for Caution {
                 "give `fracture_energy` or `critical_stretch`, or leave the key out"
             }
             Self::NothingActs => "add [[load]], [[prescribe]] or [[initial]]",
+            Self::StiffnessError { .. } => {
+                "modulus = \"lattice\" gives the modulus on this grid; or take a horizon of three spacings and more"
+            }
+            Self::ShearStiffness { .. } => {
+                "a horizon of one spacing joins a point to few neighbours off the axes; take three spacings"
+            }
             Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
             Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
             Self::LoadOnHeld { .. } => "take other points, or leave the load out",
@@ -273,6 +317,12 @@ impl Subject for Caution {
             Self::HistoricalKernels { .. } => {
                 "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
             }
+            Self::ExactHistory { .. } => {
+                "it costs memory that grows with the number of steps; history = \"blocked\" avoids the attempt, a larger tolerance may be met"
+            }
+            Self::FieldAtEnd { .. } => {
+                "`exterior_data` continues the field beyond the end; or move the end outwards"
+            }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
                 "predictor = \"structured\" is stable; or make dt smaller, or the run short"
@@ -294,6 +344,8 @@ impl Subject for Caution {
             Self::UnusedCoordinate { .. } => "not used",
             Self::IdleHole | Self::NothingBreaks { .. } => "no effect",
             Self::NothingActs => "at rest",
+            Self::StiffnessError { .. } => "another stiffness",
+            Self::ShearStiffness { .. } => "little shear stiffness",
             Self::FastWaves { .. } => "very light",
             Self::IdleClasses { .. } => "no stiffness",
             Self::LoadOnHeld { .. } => "held",
@@ -304,10 +356,19 @@ impl Subject for Caution {
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
             Self::HistoricalKernels { .. } => "historical",
+            Self::ExactHistory { .. } => "exact history",
+            Self::FieldAtEnd { .. } => "field at the end",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }
     }
+}
+
+/// 12.3 %
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let rounded: f64 = format!("{percent:.2e}").parse().unwrap_or(percent);
+    format!("{rounded} %")
 }
 
 /// (1e-3, 2e-3)

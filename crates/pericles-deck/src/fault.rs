@@ -123,6 +123,20 @@ pub enum Fault {
         /// What is wrong, with the file and the line in it.
         reason: String,
     },
+    /// A file whose content does not fit into the memory.
+    #[error("{reason}")]
+    LargeFile {
+        /// The file, and what it needs.
+        reason: String,
+    },
+    /// An initial state that cannot be read from its file.
+    #[error("{reason}")]
+    BadInitialFile {
+        /// What is wrong, with the file and the line in it.
+        reason: String,
+        /// The points of the body.
+        points: usize,
+    },
     /// Listed points whose volumes belong to another spacing.
     #[error(
         "the volumes of the listed points are those of cells of {found:.3e} m, not of {given:.3e} m"
@@ -292,6 +306,28 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
+    /// A window of comparison without points.
+    #[error(
+        "the window of {window:.4e} m around x = {centre:.4e} m contains no point: the nearest one is {nearest:.4e} m away"
+    )]
+    EmptyWindow {
+        /// Half its width, m.
+        window: f64,
+        /// Its middle, m.
+        centre: f64,
+        /// Distance of the nearest point, m.
+        nearest: f64,
+    },
+    /// An exact solution that is too expensive.
+    #[error(
+        "the exact solution would need a sum of {terms:.1e} terms for each point at the end of the run; at most {most:.0e} are allowed"
+    )]
+    LongSum {
+        /// Terms.
+        terms: f64,
+        /// Terms that are allowed.
+        most: f64,
+    },
     /// A body that would need more memory than there is.
     #[error(
         "the body would have {} points and need some {} of memory; {} may be taken",
@@ -384,12 +420,24 @@ impl Subject for Fault {
                     .into()
             }
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
+            Self::EmptyWindow { .. } => {
+                "give a larger window, or move the centre of the exact solution into the body".into()
+            }
+            Self::LongSum { .. } => {
+                "the number of terms is 2 (distance from the centre + 6 c end)/width: move exact.centre into the body, give a larger width, or shorten the run".into()
+            }
             Self::BadCondition { .. } => {
                 "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m".into()
             }
             Self::BadPoints { .. } => {
                 "a file of points has a line `x y z block volume` for each, in m and m³; a relative path starts at the deck's folder".into()
             }
+            Self::LargeFile { .. } => {
+                "the limit is what the machine has free, or what was given as the most".into()
+            }
+            Self::BadInitialFile { points, .. } => format!(
+                "the file has a line for each of the {points} points, in the order of the field files (listed points: of their file): the components of the displacement in m, then those of the velocity in m/s; a relative path starts at the deck's folder"
+            ),
             Self::OtherSpacing { section: Some(section), .. } => format!(
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
@@ -433,6 +481,7 @@ impl Subject for Fault {
             | Self::BadExpression { .. }
             | Self::BadCondition { .. }
             | Self::BadPoints { .. }
+            | Self::BadInitialFile { .. }
             | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
@@ -443,7 +492,11 @@ impl Subject for Fault {
             Self::NoTensors { .. } => "not available",
             Self::NotPeriodic { .. } => "not with periodic faces",
             Self::NoExactSolution { .. } => "of another problem",
-            Self::TooLarge { .. } | Self::LongHistory { .. } => "too large",
+            Self::EmptyWindow { .. } => "no point",
+            Self::LongSum { .. } => "too many terms",
+            Self::TooLarge { .. } | Self::LongHistory { .. } | Self::LargeFile { .. } => {
+                "too large"
+            }
             Self::Model(_) => "refused",
         }
     }

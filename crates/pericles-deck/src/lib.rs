@@ -81,6 +81,7 @@ mod build;
 mod caution;
 mod component;
 mod conditions;
+mod constants;
 mod course;
 mod crack;
 mod deck;
@@ -113,7 +114,9 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::BoundaryCondition;
-pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
+pub use build::{
+    ExactReference, FileError, Model, PointsReader, Resources, Sets, SurfaceReader, TableReader,
+};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};

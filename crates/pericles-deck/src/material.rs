@@ -2,19 +2,19 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
-use pericles::material::{
-    BondMaterial, Calibration, CubicLaw, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
-    SurfaceCorrection, Treatment,
-};
+use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Treatment};
 use pericles::operator::{BondForm, DamageMeasure};
 
 use crate::body::BodyRead;
+use crate::constants::{
+    ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
+};
 use crate::influence::{Setting, influence};
 use crate::part::{self, MaterialInterface, Part};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
-use crate::vocabulary::{HORIZONS, MODULI, STRENGTHS};
+use crate::vocabulary::HORIZONS;
 
 /// The material with what goes with it.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,17 +51,7 @@ pub struct Inclusion {
 pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
     let dimension = body.frame.dimension;
     let name = table.maybe("name", |item| item.text());
-    let law = table.choice_or_first(
-        "model",
-        "model",
-        &[
-            ("bond-stretch", PairLaw::BondStretch),
-            ("linear", PairLaw::Linear),
-            ("green-strain", PairLaw::GreenStrain),
-            ("literal57", PairLaw::Literal57),
-        ],
-    );
-    let law = treated(&table, law);
+    let law = law(&table);
     let density = table
         .required("density")
         .and_then(|item| item.positive(Quantity::Density));
@@ -100,6 +90,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
     );
     let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
     let fracture = fracture(&table);
+    let fracture_calibration = fracture_calibration(&table, body);
     let no_fail = table
         .optional("no_fail")
         .map_or(Some(Vec::new()), |item| sets.references(&item));
@@ -108,21 +99,19 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         .into_iter()
         .map(|table| inclusion(table, sets))
         .collect();
-    let parts = part::parts(table.tables("part"), body, sets);
-    let interface = interface(&table, name.as_ref(), parts.as_deref());
+    let parts = table.tables("part");
     let damage = damage(&table);
-    let form = table.choice_or_first(
-        "bonds",
-        "form of bonds",
-        &[
-            ("fastest", BondForm::Fastest),
-            ("grid", BondForm::Grid),
-            ("grid-f32", BondForm::FloatGrid),
-            ("list", BondForm::List),
-            ("convolution", BondForm::Convolution),
-            ("spectral", BondForm::Spectral),
-        ],
-    );
+    let form = form(&table);
+    let rules = ConstantRules {
+        state: body.state,
+        sums: Sums::of(influence.as_ref(), form, body),
+        fracture: fracture_calibration,
+    };
+    rules.judge_volume_correction(&table);
+    let modulus = rules.modulus(&table, modulus);
+    let fracture = rules.fracture(fracture);
+    let parts = part::parts(parts, &rules, sets);
+    let interface = interface(&table, name.as_ref(), parts.as_deref());
     table.finish();
     Some(Material {
         name: name?,
@@ -143,6 +132,22 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         damage: damage?,
         form: form?,
     })
+}
+
+/// How bonds are kept.
+fn form(table: &Table<'_>) -> Option<BondForm> {
+    table.choice_or_first(
+        "bonds",
+        "form of bonds",
+        &[
+            ("fastest", BondForm::Fastest),
+            ("grid", BondForm::Grid),
+            ("grid-f32", BondForm::FloatGrid),
+            ("list", BondForm::List),
+            ("convolution", BondForm::Convolution),
+            ("spectral", BondForm::Spectral),
+        ],
+    )
 }
 
 /// Bonds between materials, where there are several.
@@ -166,6 +171,20 @@ fn interface(
 }
 
 /// The law as it is taken.
+fn law(table: &Table<'_>) -> Option<PairLaw> {
+    let law = table.choice_or_first(
+        "model",
+        "model",
+        &[
+            ("bond-stretch", PairLaw::BondStretch),
+            ("linear", PairLaw::Linear),
+            ("green-strain", PairLaw::GreenStrain),
+            ("literal57", PairLaw::Literal57),
+        ],
+    );
+    treated(table, law)
+}
+
 fn treated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
     #[derive(Clone, Copy)]
     enum Kind {
@@ -213,43 +232,6 @@ pub(crate) fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> 
         set: set?,
         stiffness: stiffness?,
     })
-}
-
-pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
-    let value = table.exactly_one(MODULI).and_then(|(kind, item)| {
-        let number = item.positive(Quantity::Modulus)?;
-        let value = match kind {
-            "youngs_modulus" => ElasticModulus::Young(number),
-            "bulk_modulus" => ElasticModulus::Bulk(number),
-            _ => ElasticModulus::Shear(number),
-        };
-        if let Some(state) = state {
-            item.accept(value.young(state))?;
-        }
-        Some(value)
-    });
-    let calibration = table.choice_or_first(
-        "modulus",
-        "calibration",
-        &[
-            ("continuum", Calibration::Continuum),
-            ("lattice", Calibration::Lattice),
-            ("unmodified", Calibration::Unmodified),
-        ],
-    );
-    Some(Modulus {
-        value: value?,
-        calibration: calibration?,
-    })
-}
-
-pub(crate) fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
-    let Some(item) = table.optional("poisson_ratio") else {
-        return;
-    };
-    if let (Some(ratio), Some(state)) = (item.quantity(Quantity::Number), state) {
-        item.accept(state.check_poisson_ratio(ratio));
-    }
 }
 
 /// A horizon as written.
@@ -322,16 +304,6 @@ fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
         }
     };
     length.map(Extent::Finite)
-}
-
-pub(crate) fn fracture(table: &Table<'_>) -> Option<Fracture> {
-    match table.at_most_one(STRENGTHS)? {
-        None => Some(Fracture::Unbreakable),
-        Some(("fracture_energy", item)) => {
-            Some(Fracture::Energy(item.positive(Quantity::SurfaceEnergy)?))
-        }
-        Some((_, item)) => Some(Fracture::CriticalStretch(item.positive(Quantity::Number)?)),
-    }
 }
 
 fn damage(table: &Table<'_>) -> Option<DamageMeasure> {

@@ -2,9 +2,8 @@
 
 use pericles::material::{Fracture, InterfaceRule, Modulus};
 
-use crate::body::BodyRead;
+use crate::constants::{self, ConstantRules};
 use crate::fault::Fault;
-use crate::material;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::{self, SetNames};
@@ -44,18 +43,22 @@ pub struct MaterialInterface {
 }
 
 /// All parts, in the order in which later ones replace earlier ones.
-pub(crate) fn parts(tables: Vec<Table<'_>>, body: &BodyRead, sets: &SetNames) -> Option<Vec<Part>> {
+pub(crate) fn parts(
+    tables: Vec<Table<'_>>,
+    rules: &ConstantRules,
+    sets: &SetNames,
+) -> Option<Vec<Part>> {
     let mut names: Vec<String> = Vec::new();
     let parts: Vec<Option<Part>> = tables
         .into_iter()
-        .map(|table| part(table, body, sets, &mut names))
+        .map(|table| part(table, rules, sets, &mut names))
         .collect();
     parts.into_iter().collect()
 }
 
 fn part(
     table: Table<'_>,
-    body: &BodyRead,
+    rules: &ConstantRules,
     sets: &SetNames,
     names: &mut Vec<String>,
 ) -> Option<Part> {
@@ -79,9 +82,9 @@ fn part(
     let density = table
         .required("density")
         .and_then(|item| item.positive(Quantity::Density));
-    let modulus = material::modulus(&table, body.state);
-    material::poisson_ratio(&table, body.state);
-    let fracture = material::fracture(&table);
+    let modulus = rules.modulus(&table, constants::modulus(&table, rules.state));
+    constants::poisson_ratio(&table, rules.state);
+    let fracture = rules.fracture(constants::fracture(&table));
     for key in [
         "model",
         "horizon",
@@ -89,6 +92,7 @@ fn part(
         "influence",
         "volume_correction",
         "surface_correction",
+        "fracture_calibration",
     ] {
         table.forbid(key, "[material] says it for all bonds of the body");
     }
@@ -113,13 +117,14 @@ pub(crate) fn interface(table: Table<'_>, names: &[Option<String>]) -> Option<Ma
             ("weaker", InterfaceRule::Weaker),
         ],
     );
+    let mut given: Vec<[u8; 2]> = Vec::new();
     let pairs: Vec<Option<([u8; 2], f64)>> = table
         .tables("pair")
         .into_iter()
         .map(|table| {
             let between = table
                 .required("between")
-                .and_then(|item| pair(&item, names));
+                .and_then(|item| new_pair(&item, names, &mut given));
             let stretch = table
                 .required("critical_stretch")
                 .and_then(|item| item.positive(Quantity::Number));
@@ -132,6 +137,22 @@ pub(crate) fn interface(table: Table<'_>, names: &[Option<String>]) -> Option<Ma
         rule: rule?,
         critical_stretches: pairs.into_iter().collect::<Option<_>>()?,
     })
+}
+
+/// A pair of materials that no earlier entry names.
+fn new_pair(
+    item: &Item<'_>,
+    names: &[Option<String>],
+    given: &mut Vec<[u8; 2]>,
+) -> Option<[u8; 2]> {
+    let between = pair(item, names)?;
+    let [a, b] = between;
+    if given.contains(&[a, b]) || given.contains(&[b, a]) {
+        item.out_of_range("each pair of materials once, in either order");
+        return None;
+    }
+    given.push(between);
+    Some(between)
 }
 
 /// Two different names of materials, as their numbers.

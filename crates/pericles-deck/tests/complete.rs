@@ -4,7 +4,8 @@ use pericles::boundary::{ALWAYS, MotionKind, TimeFunction};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+    BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, PairLaw,
+    StressState,
 };
 use pericles::observe::{Field, Schedule};
 use pericles::space::{Face, Grid, Region, Shape};
@@ -75,7 +76,10 @@ fn every_entry_arrives() {
             acts_on: ActsOn::Displacement,
         },
         volume_correction: VolumeCorrection::Linear,
-        fracture: Fracture::Energy(135.0),
+        fracture: Fracture::Energy {
+            energy: 135.0,
+            calibration: FractureCalibration::Lattice,
+        },
     };
     assert_eq!(deck.material.name.as_deref(), Some("soda-lime glass"));
     assert_eq!(deck.material.bonds, bonds);
@@ -121,12 +125,14 @@ fn conditions_time_and_output_arrive() {
                 set: "all".into(),
                 displacement: None,
                 velocity: Some([0.0, 1.0, 0.0].map(Into::into)),
+                file: None,
                 random_velocity: None,
             },
             Initial {
                 set: "top".into(),
                 displacement: Some([1e-6, 0.0, 0.0].map(Into::into)),
                 velocity: Some([0.0, 20.0, 0.0].map(Into::into)),
+                file: None,
                 random_velocity: None,
             }
         ]

@@ -51,7 +51,7 @@ fn tuned_for_the_deck_s_own_grid() {
     assert!((values(&absolute.unwrap())[0] - 20.83).abs() < 0.05);
 
     // With breaking only a positive table will do.
-    let breaks = r#"fracture_energy = "135 J/m2""#;
+    let breaks = "fracture_energy = 135\nfracture_calibration = \"continuum\"";
     let refused = deck(&format!("influence = {{ function = \"tuned\" }}\n{breaks}")).unwrap();
     let message = refused.build().err().unwrap().to_string();
     assert!(message.contains("negative"), "{message}");

@@ -399,10 +399,12 @@ pub enum PericlesError {
         /// What stands in the way.
         cause: &'static str,
     },
+    /// A step was asked to stop.
+    #[error("the step was interrupted")]
+    Interrupted,
     /// A load step without an equilibrium.
     #[error(
-        "at t = {t:e} s no equilibrium was found: after {iterations} iterations the forces that are out of balance are {residual:e} of those that act, \
-         {tolerance:e} was asked for; usual causes: a part without support, a load beyond what the body bears, too few iterations"
+        "at t = {t:.4e} s the forces out of balance are {residual:.3e} of those that act after {iterations} iterations; the tolerance is {tolerance:.1e}"
     )]
     NoEquilibrium {
         /// Time of the load step, s.

@@ -9,12 +9,15 @@ use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::{
     BondConstants, BondMaterial, ElasticModulus, Fracture, InterfaceRule, Modulus, PairClasses,
-    StressState, SurfaceCorrection,
+    StressState, SurfaceCorrection, SurfaceFactors,
 };
 use pericles::operator::{BondBody, BondForm, CompositeBody, DamageMeasure, ForceOperator, On};
 use pericles::space::PointCloud;
-use pericles::time::{Damping, Relaxation, RelaxationOptions, State};
-use pericles::{Control, PericlesError, PointScalar, Simulation, SimulationError, System};
+use pericles::time::{Damping, Relaxation, RelaxationOptions, State, VelocityVerlet};
+use pericles::{
+    Control, Found, Outcome, PericlesError, PointScalar, Simulation, SimulationError,
+    StopCondition, StopWhen, System,
+};
 
 const CELLS: usize = 100;
 const DX: f64 = 0.01;
@@ -195,7 +198,7 @@ fn a_load_without_support_has_no_equilibrium() {
         ..fine()
     };
     match relaxed(system, options, 1) {
-        Err(SimulationError::Stuck { source, .. }) => {
+        Err(SimulationError::NoStaticState { source, .. }) => {
             let found = matches!(
                 *source,
                 PericlesError::NoEquilibrium {
@@ -329,28 +332,34 @@ fn two_materials_in_a_row_are_two_springs_and_part_where_their_bond_is_weak() {
 
 #[test]
 fn corrected_surfaces_keep_the_interior_and_the_momentum() {
-    let cloud = boxed([0.0; 3], &[0.16, 0.12], DX, 0.01);
+    let (width, height) = (0.32, 0.26);
+    let cloud = boxed([0.0; 3], &[width, height], DX, 0.01);
     let steel = steel(Fracture::Unbreakable);
     let bonds = BondList::new(&cloud, steel.horizon, steel.volume_correction).unwrap();
     let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
-    assert!(
-        SurfaceCorrection::None
-            .factors(&cloud, &bonds, &steel)
-            .is_empty()
+    assert_eq!(
+        SurfaceCorrection::None.factors(&cloud, &bonds, &steel),
+        SurfaceFactors::None
     );
-    for correction in [SurfaceCorrection::Volume, SurfaceCorrection::Energy] {
+    for (correction, margin) in [
+        (SurfaceCorrection::Volume, 0.08),
+        // Its condition is iterated: what is corrected reaches as many families further.
+        (SurfaceCorrection::Energy, 0.12),
+    ] {
         let factors = correction.factors(&cloud, &bonds, &steel);
+        let factor = |i: usize, j: usize| factors.of_bond(i, j, bonds.vector(&cloud, i, j));
         let corner = cloud.nearest([0.0; 3]);
-        assert!(factors[corner] > 2.0 && factors[corner] < 5.0);
+        let (_, beside) = bonds.family(corner).next().unwrap();
+        assert!(factor(corner, beside) > 1.5 && factor(corner, beside) < 5.0);
         for i in 0..cloud.len() {
             let [x, y, _] = cloud.point(i);
-            let inside = |x: f64, side: f64| x > 0.04 && x < side - 0.04;
-            if inside(x, 0.16) && inside(y, 0.12) {
-                assert!(
-                    (factors[i] - 1.0).abs() < 1e-12,
-                    "{correction:?} {}",
-                    factors[i]
-                );
+            let inside = |x: f64, side: f64| x > margin && x < side - margin;
+            for (_, j) in bonds.family(i) {
+                assert_eq!(factor(i, j), factor(j, i));
+                if inside(x, width) && inside(y, height) {
+                    let off = factor(i, j) - 1.0;
+                    assert!(off.abs() < 1e-12, "{correction:?} {off}");
+                }
             }
         }
         let body = BondBody {
@@ -382,7 +391,7 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
             operator.energy(0.0, &u)
         };
         // In plane stress with nu = 1/3: W = E/(1 - nu) strain² per volume.
-        let exact = YOUNG / (2.0 / 3.0) * 1e-12 * 0.16 * 0.12 * 0.01;
+        let exact = YOUNG / (2.0 / 3.0) * 1e-12 * width * height * 0.01;
         let error = |correction| (energy(correction) / exact - 1.0).abs();
         assert!(
             error(correction) < 0.35 * error(SurfaceCorrection::None),
@@ -433,4 +442,113 @@ fn stress_and_strain_of_a_uniform_state() {
             }
         }
     }
+}
+
+/// A bar whose right third is softer and breaks, pulled apart in so many load steps.
+fn torn_bar() -> System {
+    let cloud = bar();
+    let brittle = steel(Fracture::CriticalStretch(1e-3));
+    let soft = BondMaterial {
+        modulus: Modulus {
+            value: ElasticModulus::Young(0.5 * YOUNG),
+            ..brittle.modulus
+        },
+        ..brittle.clone()
+    };
+    let of_point = (0..cloud.len())
+        .map(|i| u8::from(cloud.point(i)[0] > 0.66))
+        .collect();
+    let both = [constants(&brittle, &cloud), constants(&soft, &cloud)];
+    let classes = PairClasses::new(of_point, &both, InterfaceRule::Harmonic).unwrap();
+    let force = operator(&cloud, &brittle, Some(&classes), SurfaceCorrection::None);
+    held(&cloud, force, &Pull::Move(2e-3))
+}
+
+#[test]
+fn stop_conditions_end_static_and_dynamic_runs() {
+    const STEPS: u64 = 24;
+    let all = (0..bar().len() as u32).collect();
+    let conditions = [
+        StopCondition::ReactionBelow {
+            share: 0.02,
+            motions: vec![1],
+        },
+        StopCondition::DamageAbove {
+            damage: 0.4,
+            points: all,
+        },
+    ];
+    for condition in conditions {
+        let system = torn_bar();
+        let scheme = Relaxation::new(fine(), &system).unwrap();
+        let state = State::at_rest(system.points());
+        let dt = 1.0 / STEPS as f64;
+        let mut run = Simulation::new(system, Box::new(scheme), state, dt, STEPS);
+        run.stop_when(StopWhen::new("right".into(), condition.clone()));
+        let mut states = 0;
+        let ended = run.run(|_| {
+            states += 1;
+            Control::Continue
+        });
+        assert_eq!(ended.unwrap(), Outcome::Finished);
+        let reason = run.stop_reason().expect("a condition is met");
+        assert_eq!((reason.step, reason.t), (run.state().step, run.state().t));
+        assert!(run.state().step < STEPS && run.state().step == states + 1);
+        // The bar has just torn, and in no load step before.
+        assert!(run.system().operator().broken_bonds() > 0, "{reason}");
+        match (&condition, reason.found) {
+            (StopCondition::ReactionBelow { .. }, Found::Reaction { now, peak }) => {
+                assert!(now < 0.02 * peak, "{reason}");
+                // The force at which the soft part breaks, of the load steps before.
+                let strength = 1e-3 * 0.5 * YOUNG * AREA;
+                assert!(peak > 0.8 * strength && peak < 1.3 * strength, "{peak}");
+            }
+            (StopCondition::DamageAbove { .. }, Found::Damage { damage, .. }) => {
+                assert!(damage > 0.4, "{reason}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    // Pulled apart within some wave transits.
+    let system = torn_bar();
+    let n = system.points();
+    let dt = 1e-6;
+    let mut state = State::at_rest(n);
+    for i in 0..n {
+        state.v[i] = 20.0 * system.cloud().point(i)[0].max(0.0);
+    }
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, dt, 2000);
+    run.stop_when(StopWhen::new(
+        "all".into(),
+        StopCondition::DamageAbove {
+            damage: 0.3,
+            points: (0..n as u32).collect(),
+        },
+    ));
+    assert_eq!(run.run(|_| Control::Continue).unwrap(), Outcome::Finished);
+    assert!(run.stop_reason().is_some() && run.state().step < 2000);
+}
+
+#[test]
+fn a_body_that_fails_under_its_load_is_said_to_have_no_static_state() {
+    // A dead load beyond the strength: once the bar is torn nothing holds its end.
+    let cloud = bar();
+    let brittle = steel(Fracture::CriticalStretch(0.5 * FORCE / (YOUNG * AREA)));
+    let force = operator(&cloud, &brittle, None, SurfaceCorrection::None);
+    let system = held(&cloud, force, &Pull::Force);
+    let options = RelaxationOptions {
+        iterations: 2000,
+        ..fine()
+    };
+    let error = relaxed(system, options, 4).err().expect("no static state");
+    let message = error.to_string();
+    for part in [
+        "no static state was found for the load step that follows step",
+        "bonds broke in this load step",
+        "can probably not bear this load any more",
+        "reaction_below or damage_above",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(!message.contains("m/s"), "{message}");
 }

@@ -10,7 +10,8 @@ use pericles::analysis::{BondLattice, Contour, long_wave_speeds};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::{ActsOn, ClassTable, Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, LinearBond, Modulus, PairLaw, StressState,
+    BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, LinearBond, Modulus,
+    PairLaw, StressState,
 };
 use pericles::operator::{BondBody, BondForce, BondForm, DamageMeasure, ForceOperator, On};
 use pericles::space::{Grid, PointCloud, Shape};
@@ -212,7 +213,10 @@ fn tables_that_do_not_fit_are_refused() {
     assert!(fits.constants(&cloud, strain).is_ok());
     // Signed values and breaking.
     let breaks = BondMaterial {
-        fracture: Fracture::Energy(135.0),
+        fracture: Fracture::Energy {
+            energy: 135.0,
+            calibration: FractureCalibration::Continuum,
+        },
         ..fits.clone()
     };
     assert!(
@@ -336,7 +340,11 @@ fn critical_stretches_of_the_glasses() {
                 .into_iter()
                 .zip(expected)
             {
-                let mut material = glass(function.clone(), calibration, Fracture::Energy(energy));
+                let fracture = Fracture::Energy {
+                    energy,
+                    calibration: FractureCalibration::Continuum,
+                };
+                let mut material = glass(function.clone(), calibration, fracture);
                 material.modulus.value = ElasticModulus::Young(young);
                 let s0 = material
                     .constants(&cloud, StressState::PlaneStrain)

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use pericles::family::geodesic::GeodesicMethod;
+use pericles::operator::InstructionSet;
 
 use crate::exit::Exit;
 use crate::plot::Frames;
@@ -15,7 +16,7 @@ use crate::sweep::Axis;
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
 pub(crate) use values::{Direction, Format, Length, Range};
 
-use values::{direction, length, range, ratio, tolerance};
+use values::{direction, instruction_set, length, range, ratio, tolerance};
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
 
@@ -48,6 +49,9 @@ Examples:
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Use no vector instructions beyond a set, for tests and comparisons: baseline, avx2 or avx512 [default: the best of this machine]
+    #[arg(long, value_name = "SET", global = true, hide_short_help = true, value_parser = instruction_set)]
+    pub(crate) instruction_set: Option<InstructionSet>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -195,6 +199,9 @@ pub(crate) struct RunArgs {
 pub(crate) struct CheckArgs {
     /// The deck, a TOML file
     pub(crate) deck: PathBuf,
+    /// Write all numbers as JSON, in SI units, to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]

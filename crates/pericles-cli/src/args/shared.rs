@@ -83,7 +83,7 @@ pub(crate) struct Memory {
 impl Memory {
     /// Bytes that a run may take; without a limit from the user those that are free, where the system tells.
     pub(crate) fn bytes(&self) -> u64 {
-        self.most.or_else(machine::free_memory).unwrap_or(u64::MAX)
+        self.most.unwrap_or_else(machine::memory)
     }
 }
 

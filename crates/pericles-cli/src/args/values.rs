@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use clap::ValueEnum;
+use pericles::operator::InstructionSet;
 
 /// A direction; missing components are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +26,11 @@ pub(super) fn direction(text: &str) -> Result<Direction, String> {
     } else {
         Err(allowed.into())
     }
+}
+
+/// An instruction set by its name.
+pub(super) fn instruction_set(name: &str) -> Result<InstructionSet, String> {
+    InstructionSet::named(name).ok_or_else(|| "allowed: baseline, avx2, avx512".to_owned())
 }
 
 /// Kinds of picture files.

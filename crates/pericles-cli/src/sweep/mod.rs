@@ -343,6 +343,7 @@ mod tests {
                 file: "a.toml".into(),
                 source: String::new(),
                 overrides: vec!["time.end=1".into()],
+                inputs: Default::default(),
             },
             axes: vec![
                 "body.spacing=1 mm,1/mm".parse().unwrap(),

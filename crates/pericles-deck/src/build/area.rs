@@ -26,14 +26,13 @@ pub(crate) fn normal_axis(
 /// layer of a cylinder the cells of its base.
 pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
     let dimension = cloud.dimension();
-    let dx = cloud.spacing();
     let [corner, _] = cloud.bounds();
     let columns: BTreeSet<[i64; 3]> = points
         .iter()
         .map(|&i| {
             let place = cloud.point(i as usize);
             // Centres of cells, divided ones too, lie well inside the large cells.
-            let cell = |c: usize| ((place[c] - corner[c]) / dx).floor() as i64;
+            let cell = |c: usize| ((place[c] - corner[c]) / cloud.cell_side(c)).floor() as i64;
             std::array::from_fn(|c| {
                 if c == axis || c >= dimension {
                     0
@@ -43,13 +42,15 @@ pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64
             })
         })
         .collect();
-    columns.len() as f64 * cloud.section() * dx.powi(dimension as i32 - 1)
+    let across = (0..dimension).filter(|&c| c != axis);
+    let cell: f64 = across.map(|c| cloud.cell_side(c)).product();
+    columns.len() as f64 * cloud.section() * cell
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pericles::space::{Face, Grid, Shape};
+    use pericles::space::{Face, Grid, Shape, rectangular_cells};
 
     #[test]
     fn faces_of_boxes_and_bases_of_cylinders() {
@@ -78,6 +79,9 @@ mod tests {
         close(area(&plate, 1), 0.5);
         let size = vec![2.0, 1.0, 3.0];
         close(area(&points(Shape::Box { origin, size }, 1.0), 1), 6.0);
+        let oblong = rectangular_cells([0.0; 3], &[2.0, 1.0], &[0.1, 0.05], 0.25, &[]).unwrap();
+        close(area(&oblong, 0), 0.25);
+        close(area(&oblong, 1), 0.5);
         let rod = Shape::Cylinder {
             base: [0.0; 3],
             axis: 0,

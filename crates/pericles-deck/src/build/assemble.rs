@@ -50,8 +50,8 @@ impl Deck {
         let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
-        let constants = material
-            .constants(&cloud, self.body.state)
+        let constants = self
+            .constants_of(material, &cloud)
             .map_err(|error| self.at_material(error))?;
         warnings.extend(self.judge_speed(&constants));
         warnings.extend(self.judge_solid(&constants));
@@ -132,7 +132,10 @@ impl Deck {
                 micromodulus: f64::NAN,
                 critical_stretch: deck.material.critical_stretch,
                 fracture_energy: f64::NAN,
+                fracture_calibration: None,
+                crack_planes: Vec::new(),
                 stiffness_error: f64::NAN,
+                shear_error: f64::NAN,
             },
             parts: Vec::new(),
             cloud,

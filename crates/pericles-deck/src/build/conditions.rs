@@ -1,5 +1,7 @@
 //! Initial state, loads, prescribed motions and probes of a model.
 
+use std::path::Path as FilePath;
+
 use pericles::System;
 use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
 use pericles::noise::uniform_in_ball;
@@ -7,7 +9,7 @@ use pericles::observe::Probe as PointProbe;
 use pericles::space::{Point, PointCloud};
 use pericles::time::State;
 
-use super::{Sets, area};
+use super::{Resources, Sets, area};
 use crate::caution::Caution;
 use crate::component::VectorField;
 use crate::conditions::{LoadAmplitude, ProbePlace, RandomVelocity};
@@ -23,12 +25,25 @@ impl Deck {
         &self,
         cloud: &PointCloud,
         sets: &Sets,
+        resources: &Resources<'_>,
     ) -> Result<State, DeckError> {
         let n = cloud.len();
         let mut state = State::at_rest(cloud.dimension() * n);
         for (k, initial) in self.initial.iter().enumerate() {
             let path = Path::from("initial").index(k);
             let points = self.members(sets, &initial.set, &path)?;
+            if let Some(file) = &initial.file {
+                let rows = self.initial_rows(&path, file, cloud, resources)?;
+                let columns = 2 * cloud.dimension();
+                for &i in points {
+                    let row = cloud.user_number(i as usize) * columns;
+                    for c in 0..cloud.dimension() {
+                        let at = c * n + i as usize;
+                        state.u[at] = rows[row + c];
+                        state.v[at] = rows[row + cloud.dimension() + c];
+                    }
+                }
+            }
             let fields = [
                 (&initial.displacement, &mut state.u),
                 (&initial.velocity, &mut state.v),
@@ -46,7 +61,7 @@ impl Deck {
                 }
             }
             if let Some(random) = initial.random_velocity {
-                if initial.velocity.is_none() {
+                if initial.velocity.is_none() && initial.file.is_none() {
                     for c in 0..cloud.dimension() {
                         for &i in points {
                             state.v[c * n + i as usize] = 0.0;
@@ -57,6 +72,25 @@ impl Deck {
             }
         }
         Ok(state)
+    }
+
+    /// The rows of a file with the initial state: for each point, in the user's order, its displacement, m, and velocity, m/s.
+    fn initial_rows(
+        &self,
+        path: &Path,
+        file: &FilePath,
+        cloud: &PointCloud,
+        resources: &Resources<'_>,
+    ) -> Result<Vec<f64>, DeckError> {
+        const COLUMNS: [[&str; 3]; 2] = [["u_x", "u_y", "u_z"], ["v_x", "v_y", "v_z"]];
+        let columns = COLUMNS.map(|names| names[..cloud.dimension()].to_vec());
+        let (file, points) = (self.beside(file), cloud.len());
+        (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
+            |error| {
+                let fault = error.fault(|reason| Fault::BadInitialFile { reason, points });
+                self.at_path(&path.key("file"), fault)
+            },
+        )
     }
 
     /// The whole body is drawn, in the user's order, whatever the set: a point's velocity depends on seed and number only.

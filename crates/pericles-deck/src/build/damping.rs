@@ -100,11 +100,12 @@ pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointC
             )
         };
         let [(low, a), (high, b)] = [false, true].map(depth_of);
+        let cell = cloud.cell_side(axis);
         let axis = cloud.axis(axis).iter();
         let ends = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (low.min(*x), high.max(*x))
         });
-        let length = ends.1 - ends.0 + cloud.spacing();
+        let length = ends.1 - ends.0 + cell;
         if low + high > length { a + b } else { a.max(b) }
     };
     (0..cloud.dimension()).map(along).sum()

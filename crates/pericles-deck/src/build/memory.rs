@@ -8,6 +8,7 @@
 //! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
 //! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
+//! | a site beyond an absorbing end | [`EXTERIOR`] numbers where initial fields continue there |
 //! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer; three times as many with fields beyond it |
 //!
 //! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
@@ -15,7 +16,7 @@
 use pericles::operator::BondForm;
 use pericles::space::{GradedGrid, PointCloud, Shape};
 
-use super::Resources;
+use super::{Model, Resources};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -32,6 +33,8 @@ const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
 const LAG: f64 = 24.0;
+/// Numbers for a site of the exterior: its initial fields, and the state and work arrays of their motion.
+const EXTERIOR: f64 = 8.0;
 
 impl Deck {
     /// Refuses a body on a grid that does not fit, from the number of its cells.
@@ -118,14 +121,14 @@ impl Deck {
         Err(self.at_path(path, fault))
     }
 
-    /// Refuses a piece of the exterior whose initial fields do not fit.
+    /// Refuses `sites` of the exterior, at all ends together, whose fields do not fit.
     pub(super) fn check_exterior(
         &self,
         path: &Path,
         sites: f64,
         resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
-        self.refuse_if_more(path, sites, 2.0 * NUMBER * sites, resources)
+        self.refuse_if_more(path, sites, EXTERIOR * NUMBER * sites, resources)
     }
 
     fn refuse_if_more(
@@ -165,11 +168,7 @@ impl Deck {
 
     fn bytes_of_point(&self, dimension: usize, neighbours: f64) -> f64 {
         let transform = TRANSFORM * 2f64.powi(dimension as i32) * (dimension as f64).powi(2);
-        let listed = if self.keeps_every_bond() {
-            LISTED + KEPT
-        } else {
-            LISTED
-        };
+        let listed = self.bytes_of_listed_bond();
         let bonds = match self.material.form {
             BondForm::List => listed * neighbours,
             BondForm::Convolution | BondForm::Spectral => transform,
@@ -179,6 +178,34 @@ impl Deck {
             _ => listed * neighbours,
         };
         self.bytes_of_state(dimension) + bonds
+    }
+
+    /// The estimated peak of a run's memory, bytes: points with their state, bonds as they are found, transforms, histories of absorbing ends. Files and pictures
+    /// are not counted.
+    pub fn memory_estimate(&self, model: &Model) -> u64 {
+        let (points, dimension) = (model.cloud.len() as f64, model.cloud.dimension());
+        let operator = model.system.operator();
+        let bonds = operator.directed_bonds() as f64;
+        let list = self.bytes_of_listed_bond() * bonds;
+        let found = match (&self.surface, model.form) {
+            (Some(_), _) => VERTEX * points + GEODESIC * bonds,
+            (None, BondForm::List) => list,
+            // Whether every part of a static body has a support is found on a list of its bonds.
+            _ if matches!(self.time.scheme, Scheme::Relaxation(_)) => list,
+            _ => 0.0,
+        };
+        let ends: usize = model.ends.iter().map(|(_, end)| end.bytes).sum();
+        let kept = operator.bytes() as f64;
+        (points * self.bytes_of_state(dimension) + found.max(kept)) as u64 + ends as u64
+    }
+
+    /// Bytes of a bond of a list while families are found.
+    fn bytes_of_listed_bond(&self) -> f64 {
+        if self.keeps_every_bond() {
+            LISTED + KEPT
+        } else {
+            LISTED
+        }
     }
 
     /// Whether a stencil can serve all points.

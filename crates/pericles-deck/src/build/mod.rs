@@ -22,7 +22,7 @@ mod surface;
 pub use exact::ExactReference;
 
 pub(crate) use memory::bytes;
-pub use resources::{PointsReader, Resources, SurfaceReader};
+pub use resources::{FileError, PointsReader, Resources, SurfaceReader, TableReader};
 
 use std::sync::Arc;
 
@@ -140,8 +140,8 @@ impl Deck {
         };
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
-        let mut state = self.initial_state(&cloud, &sets)?;
-        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
+        let mut state = self.initial_state(&cloud, &sets, &resources)?;
+        let exact = self.exact_reference(&cloud, constants.young, &mut warnings)?;
         if let (Some(exact), Some(true)) = (&exact, self.exact.map(|exact| exact.start)) {
             exact
                 .solution
@@ -168,7 +168,7 @@ impl Deck {
             &mut warnings,
         )?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
-        let ends = self.add_ends(&mut system, ends, &steps, &resources, &mut warnings)?;
+        let ends = self.add_ends(&mut system, ends, &state, &steps, &resources, &mut warnings)?;
         self.add_damping_layers(&mut system, layers, &steps)?;
         Ok(Model {
             cloud,

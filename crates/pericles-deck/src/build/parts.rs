@@ -1,10 +1,12 @@
 //! Several materials: the classes of bonds, and the density of every point.
 
 use pericles::PointScalar;
-use pericles::material::{BondConstants, BondMaterial, PairClasses};
+use pericles::material::{BondConstants, BondMaterial, Calibration, PairClasses};
+use pericles::operator::BondForm;
 use pericles::space::PointCloud;
 
 use super::Sets;
+use crate::body::Quadrature;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -32,6 +34,7 @@ impl Deck {
     ) -> Result<Composition, DeckError> {
         let material = &self.material;
         self.judge_stretch(constants, &"material".into(), warnings);
+        self.judge_stiffness(constants, &"material".into(), warnings);
         if material.parts.is_empty() {
             return Ok(Composition {
                 classes: None,
@@ -49,10 +52,11 @@ impl Deck {
                 fracture: part.fracture,
                 ..material.bonds.clone()
             };
-            let own = own
-                .constants(cloud, self.body.state)
+            let own = self
+                .constants_of(&own, cloud)
                 .map_err(|error| self.at_path(&path, error.into()))?;
             self.judge_stretch(&own, &path, warnings);
+            self.judge_stiffness(&own, &path, warnings);
             all.push(own);
             // The library refuses more materials than a byte counts.
             let number = (k + 1) as u8;
@@ -93,6 +97,30 @@ impl Deck {
             classes: Some(classes),
             density: PointScalar::PerPoint(densities),
             parts: all,
+        })
+    }
+
+    /// The constants of a material's bonds. Forces that take integrals, by a spectrum or at Gauss nodes, have the errors of the integrals, not those of sums over
+    /// a lattice.
+    pub(super) fn constants_of(
+        &self,
+        material: &BondMaterial,
+        cloud: &PointCloud,
+    ) -> pericles::Result<BondConstants> {
+        let constants = material.constants(cloud, self.body.state)?;
+        let integrals =
+            self.material.form == BondForm::Spectral || self.body.quadrature == Quadrature::Gauss;
+        if !integrals {
+            return Ok(constants);
+        }
+        let mut right = material.clone();
+        right.modulus.calibration = Calibration::Continuum;
+        let right = right.constants(cloud, self.body.state)?;
+        let error = constants.micromodulus / right.micromodulus - 1.0;
+        Ok(BondConstants {
+            stiffness_error: error,
+            shear_error: error,
+            ..constants
         })
     }
 

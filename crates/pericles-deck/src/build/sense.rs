@@ -37,6 +37,34 @@ impl Deck {
         (speed > FASTEST).then(|| self.finding(&"material.density".into(), caution))
     }
 
+    /// Warns of constants with which the body does not have the stiffness of its material. Points of a file are not judged: they have no interior to
+    /// compare with.
+    pub(super) fn judge_stiffness(
+        &self,
+        constants: &BondConstants,
+        path: &Path,
+        warnings: &mut Vec<Warning>,
+    ) {
+        /// Usual horizons and functions stay within 6 %.
+        const BULK: f64 = 0.1;
+        /// A horizon of two spacings lacks a third of the shear stiffness.
+        const SHEAR: f64 = 0.5;
+        if self.body.listed.is_some() {
+            return;
+        }
+        let error = constants.stiffness_error;
+        if error.abs() > BULK {
+            let caution = Caution::StiffnessError { error };
+            warnings.push(self.finding(&path.key("modulus"), caution));
+        }
+        // Compared with the bulk stiffness that the body has.
+        let error = (1.0 + constants.shear_error) / (1.0 + error) - 1.0;
+        if error < -SHEAR {
+            let caution = Caution::ShearStiffness { error };
+            warnings.push(self.finding(&self.horizon_key().into(), caution));
+        }
+    }
+
     /// What is odd about a pre-crack that cuts no bond.
     pub(super) fn useless_crack(crack: &Crack, cloud: &PointCloud) -> Caution {
         let dimension = cloud.dimension();

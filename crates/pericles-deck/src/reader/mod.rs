@@ -186,7 +186,7 @@ impl Record {
         }
     }
 
-    /// Whether the deck gives a value; defaults are recorded without a place.
+    /// Whether the deck gives a value, instead of leaving it to its default.
     pub(crate) fn is_given(&self, path: &Path) -> bool {
         self.places.contains_key(path)
     }

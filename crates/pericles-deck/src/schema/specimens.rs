@@ -61,6 +61,7 @@ volume_correction = "linear"
 surface_correction = "volume"
 influence = { function = "constant", acts_on = "displacement" }
 fracture_energy = 1
+fracture_calibration = "lattice"
 no_fail = "top"
 bonds = "list"
 damage = { measure = "count", count_precut = true }
@@ -85,6 +86,8 @@ velocity = [0, { expression = "x" }]
 random_velocity = { generator = "splitmix64", radius = 1, seed = 1 }
 [[initial]]
 random_velocity = { radius = 1 }
+[[initial]]
+file = "state.txt"
 [[prescribe]]
 set = "top"
 velocity = [0, "free"]

@@ -5,7 +5,9 @@ mod common;
 
 mod conditions;
 mod ends;
+mod initial;
 mod plate;
+mod plausible;
 mod points;
 mod schemes;
 mod sense;

@@ -119,10 +119,10 @@ fn check(
     }
     let [low, high] = extent(cloud, face.axis);
     let (thickness, most) = (profile.thickness, high - low);
-    if !(thickness >= cloud.spacing() && thickness < most) {
+    let cell = cloud.cell_side(face.axis);
+    if !(thickness >= cell && thickness < most) {
         return Err(format!(
-            "its thickness at {name} is {thickness:e} m; allowed: from a cell, {:e} m, to less than the body, {most:e} m",
-            cloud.spacing()
+            "its thickness at {name} is {thickness:e} m; allowed: from a cell, {cell:e} m, to less than the body, {most:e} m"
         ));
     }
     let (phase, limit) = (frequency.unwrap_or(0.0) * dt, profile.stability_limit(dt));
@@ -138,7 +138,7 @@ fn check(
 
 /// Where a body begins and ends along an axis, m.
 fn extent(cloud: &PointCloud, axis: usize) -> [f64; 2] {
-    let (axis, half) = (cloud.axis(axis), 0.5 * cloud.spacing());
+    let (axis, half) = (cloud.axis(axis), 0.5 * cloud.cell_side(axis));
     let low = axis.iter().fold(f64::INFINITY, |a, x| a.min(*x));
     let high = axis.iter().fold(f64::NEG_INFINITY, |a, x| a.max(*x));
     [low - half, high + half]

@@ -137,8 +137,11 @@ mod tests {
             micromodulus,
             critical_stretch,
             fracture_energy: f64::NAN,
+            fracture_calibration: None,
+            crack_planes: Vec::new(),
             young: f64::NAN,
             stiffness_error: 0.0,
+            shear_error: 0.0,
         }
     }
 

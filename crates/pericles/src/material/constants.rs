@@ -4,112 +4,13 @@ use std::f64::consts::PI;
 
 use crate::error::{PericlesError, Result, positive};
 use crate::family::VolumeCorrection;
-use crate::kernel::Influence;
+use crate::kernel::{ActsOn, Influence};
 use crate::space::PointCloud;
 
 use super::PairLaw;
-
-/// The state of stress, which fixes Poisson's ratio of a bond-based material.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StressState {
-    /// A bar under axial stress.
-    Uniaxial,
-    /// A thin plate.
-    PlaneStress,
-    /// A slice of a long body.
-    PlaneStrain,
-    /// A body in space.
-    Spatial,
-}
-
-impl StressState {
-    /// Dimension of the bodies in this state.
-    pub fn dimension(self) -> usize {
-        match self {
-            Self::Uniaxial => 1,
-            Self::PlaneStress | Self::PlaneStrain => 2,
-            Self::Spatial => 3,
-        }
-    }
-
-    /// Poisson's ratio of the bond-based material; none for a bar.
-    pub fn poisson_ratio(self) -> Option<f64> {
-        match self {
-            Self::Uniaxial => None,
-            Self::PlaneStress => Some(1.0 / 3.0),
-            Self::PlaneStrain | Self::Spatial => Some(0.25),
-        }
-    }
-
-    /// ρ c² of longitudinal waves for a Young's modulus, Pa: 1, 9/8 (plane stress) and 6/5 of it.
-    pub fn longitudinal_modulus(self, young: f64) -> f64 {
-        match self {
-            Self::Uniaxial => young,
-            Self::PlaneStress => young * 9.0 / 8.0,
-            Self::PlaneStrain | Self::Spatial => young * 6.0 / 5.0,
-        }
-    }
-
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniaxial => "a bar",
-            Self::PlaneStress => "plane stress",
-            Self::PlaneStrain => "plane strain",
-            Self::Spatial => "three dimensions",
-        }
-    }
-
-    /// Checks a Poisson's ratio given by the user.
-    pub fn check_poisson_ratio(self, given: f64) -> Result<()> {
-        match self.poisson_ratio() {
-            // 0.33 and 0.333 mean one third.
-            Some(fixed) if (given - fixed).abs() > 5e-3 || !given.is_finite() => {
-                Err(PericlesError::PoissonRatio {
-                    given,
-                    state: self.name(),
-                    fixed,
-                })
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-/// The elastic constant a user gives; the other follows from the fixed Poisson's ratio.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ElasticModulus {
-    /// Young's modulus E, Pa.
-    Young(f64),
-    /// Bulk modulus K, Pa (K = E / (3 (1 − 2ν)); not for bars).
-    Bulk(f64),
-    /// Shear modulus G, Pa (G = E / (2 (1 + ν)); not for bars).
-    Shear(f64),
-}
-
-impl ElasticModulus {
-    /// Young's modulus, Pa.
-    pub fn young(self, state: StressState) -> Result<f64> {
-        let ratio = |what| {
-            state.poisson_ratio().ok_or(PericlesError::WrongDimension {
-                what,
-                needed: "2 or 3; a bar takes Young's modulus",
-                dimension: 1,
-            })
-        };
-        match self {
-            Self::Young(modulus) => positive("Young's modulus", modulus),
-            Self::Bulk(modulus) => {
-                let nu = ratio("a bulk modulus")?;
-                Ok(positive("the bulk modulus", modulus)? * 3.0 * (1.0 - 2.0 * nu))
-            }
-            Self::Shear(modulus) => {
-                let nu = ratio("a shear modulus")?;
-                Ok(positive("the shear modulus", modulus)? * 2.0 * (1.0 + nu))
-            }
-        }
-    }
-}
+use super::crack_planes::{CrackPlane, FractureCalibration};
+use super::lattice::{Cells, LatticeSums};
+use super::modulus::{ElasticModulus, StressState};
 
 /// From which moments the constant c follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -120,8 +21,25 @@ pub enum Calibration {
     /// The sums over the lattice's bonds, so that the bulk modulus of the grid is exact. A table per class is always taken so: it has no
     /// integrals.
     Lattice,
-    /// The integrals of α ≡ 1 whatever α is: for functions made to carry the modulus themselves.
+    /// The integrals of the constant function, g ≡ 1, whatever g is: for functions made to carry the modulus themselves. What the function acts
+    /// on counts: α ≡ 1 for the stretch, α = r for the relative displacement.
     Unmodified,
+}
+
+impl Calibration {
+    /// The moment that E is divided by, for a body without a table per class; `lattice` is the lattice's.
+    fn moment(self, dimension: usize, horizon: f64, influence: &Influence, lattice: f64) -> f64 {
+        match self {
+            Self::Continuum => influence.moment(dimension as f64, horizon),
+            Self::Lattice => lattice,
+            Self::Unmodified => {
+                // ∫₀^δ r^dimension dr, with one power more where α = r g.
+                let shift = i32::from(influence.acts_on == ActsOn::Displacement);
+                let power = dimension as i32 + 1 + shift;
+                horizon.powi(power) / f64::from(power)
+            }
+        }
+    }
 }
 
 /// The modulus with the way it enters.
@@ -140,8 +58,13 @@ pub enum Fracture {
     Unbreakable,
     /// Beyond this stretch.
     CriticalStretch(f64),
-    /// Beyond the stretch that makes a unit of crack surface cost this energy, J/m².
-    Energy(f64),
+    /// Beyond the stretch for which a unit area of crack costs a given energy.
+    Energy {
+        /// The fracture energy G, J/m².
+        energy: f64,
+        /// How the critical stretch follows from it.
+        calibration: FractureCalibration,
+    },
 }
 
 /// A bond-based material as a user describes it.
@@ -170,16 +93,33 @@ pub struct BondConstants {
     pub micromodulus: f64,
     /// Critical stretch s₀; infinite if bonds never break.
     pub critical_stretch: f64,
-    /// Fracture energy that belongs to s₀, J/m²; infinite if bonds never break.
+    /// Fracture energy that belongs to s₀, J/m²: the energy asked for; where the critical stretch is given, that of the continuum. Infinite if bonds
+    /// never break.
     pub fracture_energy: f64,
+    /// How s₀ follows from the fracture energy; none if no fracture energy is given. A body without a lattice always has the continuum's.
+    pub fracture_calibration: Option<FractureCalibration>,
+    /// What cracks along planes of the lattice cost; empty if bonds never break, and for bodies without a lattice.
+    pub crack_planes: Vec<CrackPlane>,
     /// Young's modulus, Pa.
     pub young: f64,
     /// Bulk stiffness of the grid's interior over the continuum's, less one.
     pub stiffness_error: f64,
+    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one; 0 for a bar.
+    pub shear_error: f64,
+}
+
+/// The factor of c s₀² m_(dimension + 1) in the fracture energy of the continuum.
+fn crack_factor(state: StressState, section: f64) -> f64 {
+    match state {
+        StressState::Uniaxial => 0.5 * section,
+        StressState::PlaneStress | StressState::PlaneStrain => section,
+        StressState::Spatial => 0.5 * PI,
+    }
 }
 
 impl BondMaterial {
-    /// The constants for bonds of `cloud`.
+    /// The constants for bonds of `cloud`. Cells that are equal boxes make a lattice, whatever their sides; the sums over other points are replaced
+    /// by those over a cubic lattice of their mean spacing.
     ///
     /// # Errors
     /// Non-positive constants, a bad influence function, a stress state of another dimension than the cloud's, a signed influence
@@ -194,55 +134,46 @@ impl BondMaterial {
             });
         }
         self.check_classes(cloud)?;
-        self.constants_on(cloud.spacing(), cloud.section(), state)
+        match cloud.cell_sides() {
+            Some(sides) => self.constants_on(sides, cloud.section(), state),
+            None => {
+                let sides = vec![cloud.spacing(); dimension];
+                let without_lattice = Self {
+                    fracture: self.fracture.of_the_continuum(),
+                    ..self.clone()
+                };
+                let constants = without_lattice.constants_on(&sides, cloud.section(), state)?;
+                Ok(BondConstants {
+                    crack_planes: Vec::new(),
+                    ..constants
+                })
+            }
+        }
     }
 
-    /// The constants for bonds of a grid of this spacing (m) and section (m² in 1D, m in 2D, 1 in 3D).
+    /// The constants for bonds of a lattice whose cells have these sides (m, one per axis) and section (m² in 1D, m in 2D, 1 in 3D).
     ///
     /// # Errors
     /// Those of [`BondMaterial::constants`].
+    ///
+    /// # Panics
+    /// If there is not one side for each axis.
     pub fn constants_on(
         &self,
-        spacing: f64,
+        sides: &[f64],
         section: f64,
         state: StressState,
     ) -> Result<BondConstants> {
         let dimension = state.dimension();
-        positive("the density", self.density)?;
-        positive("the horizon", self.horizon)?;
-        self.check_reach(dimension, spacing)?;
-        self.influence.check(dimension, self.horizon)?;
-        if self.influence.is_signed(self.horizon) && self.fracture != Fracture::Unbreakable {
-            return Err(PericlesError::BadInfluence {
-                reason: "a function with negative values cannot be used with bonds that break: a negative bond gains energy as it \
-                         stretches; leave out the fracture energy and critical stretch, or use a positive function"
-                    .into(),
-            });
-        }
+        assert_eq!(sides.len(), dimension, "one side for each axis");
+        let cells = Cells::new(sides);
+        let sums = self.checked_sums(cells)?;
         let young = self.modulus.value.young(state)?;
-        let moment = |q: usize| self.influence.moment(q as f64, self.horizon);
-        let integral = moment(dimension);
-        let lattice = self.lattice_moment(dimension, spacing);
-        if lattice <= 0.0 && self.influence.is_signed(self.horizon) {
-            return Err(PericlesError::BadInfluence {
-                reason: "its modulus, the sum of α |ξ| over the lattice's bonds, must be positive"
-                    .into(),
-            });
-        }
-        if lattice <= 0.0 {
-            return Err(PericlesError::HorizonTooSmall {
-                horizon: self.horizon,
-                spacing,
-            });
-        }
-        let modulus_moment = match self.modulus.calibration {
-            _ if self.class_table().is_some() => lattice,
-            Calibration::Continuum => integral,
-            Calibration::Lattice => lattice,
-            // ∫₀^δ r^dimension dr
-            Calibration::Unmodified => {
-                let power = dimension as i32 + 1;
-                self.horizon.powi(power) / f64::from(power)
+        let modulus_moment = match self.class_table() {
+            Some(_) => sums.moment,
+            None => {
+                let calibration = self.modulus.calibration;
+                calibration.moment(dimension, self.horizon, &self.influence, sums.moment)
             }
         };
         let micromodulus = match state {
@@ -251,26 +182,76 @@ impl BondMaterial {
             StressState::PlaneStrain => 16.0 * young / (5.0 * PI * section * modulus_moment),
             StressState::Spatial => 3.0 * young / (PI * modulus_moment),
         };
-        // G₀ = surface · s₀²
-        let surface = micromodulus
-            * moment(dimension + 1)
-            * match state {
-                StressState::Uniaxial => 0.5 * section,
-                StressState::PlaneStress | StressState::PlaneStrain => section,
-                StressState::Spatial => 0.5 * PI,
-            };
-        let critical_stretch = match self.fracture {
-            Fracture::Unbreakable => f64::INFINITY,
-            Fracture::CriticalStretch(stretch) => positive("the critical stretch", stretch)?,
-            Fracture::Energy(energy) => (positive("the fracture energy", energy)? / surface).sqrt(),
+        // Energies of a unit area of crack over s₀².
+        let continuum = micromodulus
+            * self.influence.moment((dimension + 1) as f64, self.horizon)
+            * crack_factor(state, section);
+        let planes = match self.fracture {
+            Fracture::Unbreakable => Vec::new(),
+            _ => self.crack_planes(cells, micromodulus * section),
         };
+        let (critical_stretch, fracture_energy, fracture_calibration) = match self.fracture {
+            Fracture::Unbreakable => (f64::INFINITY, f64::INFINITY, None),
+            Fracture::CriticalStretch(stretch) => {
+                let stretch = positive("the critical stretch", stretch)?;
+                (stretch, continuum * stretch * stretch, None)
+            }
+            Fracture::Energy {
+                energy,
+                calibration,
+            } => {
+                let unit = match calibration {
+                    FractureCalibration::Lattice => CrackPlane::mean(&planes),
+                    FractureCalibration::Continuum => continuum,
+                };
+                let stretch = (positive("the fracture energy", energy)? / unit).sqrt();
+                (stretch, unit * stretch * stretch, Some(calibration))
+            }
+        };
+        let square = critical_stretch * critical_stretch;
         Ok(BondConstants {
             micromodulus,
             critical_stretch,
-            fracture_energy: surface * critical_stretch * critical_stretch,
+            fracture_energy,
+            fracture_calibration,
+            crack_planes: planes
+                .into_iter()
+                .map(|plane| plane.scaled(square))
+                .collect(),
             young,
-            stiffness_error: lattice / modulus_moment - 1.0,
+            stiffness_error: sums.moment / modulus_moment - 1.0,
+            shear_error: sums.shear_moment / modulus_moment - 1.0,
         })
+    }
+
+    /// The sums over a lattice, unless the material has no constants there.
+    fn checked_sums(&self, cells: Cells<'_>) -> Result<LatticeSums> {
+        positive("the density", self.density)?;
+        positive("the horizon", self.horizon)?;
+        self.check_reach(cells)?;
+        self.influence.check(cells.sides().len(), self.horizon)?;
+        let signed = self.influence.is_signed(self.horizon);
+        let refuse = |reason: &str| {
+            Err(PericlesError::BadInfluence {
+                reason: reason.into(),
+            })
+        };
+        if signed && self.fracture != Fracture::Unbreakable {
+            return refuse(
+                "a function with negative values cannot be used with bonds that break: a negative bond gains energy as it \
+                 stretches; leave out the fracture energy and critical stretch, or use a positive function",
+            );
+        }
+        match self.lattice_sums(cells) {
+            sums if sums.moment > 0.0 => Ok(sums),
+            _ if signed => {
+                refuse("its modulus, the sum of α |ξ| over the lattice's bonds, must be positive")
+            }
+            _ => Err(PericlesError::HorizonTooSmall {
+                horizon: self.horizon,
+                spacing: cells.size(),
+            }),
+        }
     }
 }
 
@@ -306,7 +287,10 @@ mod tests {
             horizon: 3e-3,
             influence: Influence::default(),
             volume_correction: VolumeCorrection::None,
-            fracture: Fracture::Energy(energy),
+            fracture: Fracture::Energy {
+                energy,
+                calibration: FractureCalibration::Continuum,
+            },
         }
     }
 
@@ -425,20 +409,5 @@ mod tests {
                 );
             }
         }
-    }
-
-    #[test]
-    fn poisson_ratios() {
-        assert!(StressState::PlaneStress.check_poisson_ratio(0.33).is_ok());
-        assert!(StressState::PlaneStress.check_poisson_ratio(0.25).is_err());
-        assert!(StressState::Spatial.check_poisson_ratio(0.3).is_err());
-        let young = |m: ElasticModulus, s| m.young(s).unwrap();
-        assert!((young(ElasticModulus::Bulk(1.0), StressState::Spatial) - 1.5).abs() < 1e-15);
-        assert!((young(ElasticModulus::Shear(2.0), StressState::PlaneStrain) - 5.0).abs() < 1e-15);
-        assert!(
-            ElasticModulus::Bulk(1.0)
-                .young(StressState::Uniaxial)
-                .is_err()
-        );
     }
 }

@@ -8,36 +8,108 @@ use crate::error::{PericlesError, Result};
 use crate::kernel::{ClassOffset, ClassTable, InfluenceFunction, class_of};
 use crate::space::PointCloud;
 
+/// The cells of a regular lattice: boxes with one point each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cells<'a> {
+    /// Length of a cell along each axis, m: one to three numbers.
+    sides: &'a [f64],
+}
+
+impl<'a> Cells<'a> {
+    /// Cells with the given sides, m; as many as the body has dimensions.
+    pub(super) fn new(sides: &'a [f64]) -> Self {
+        Self { sides }
+    }
+
+    pub(super) fn sides(self) -> &'a [f64] {
+        self.sides
+    }
+
+    /// Whether all sides are the same.
+    pub(super) fn is_cubic(self) -> bool {
+        self.sides.iter().all(|side| *side == self.sides[0])
+    }
+
+    /// The size of a cell that volume corrections use, m: the side of the square or cube of the same volume.
+    pub(super) fn size(self) -> f64 {
+        if self.is_cubic() {
+            return self.sides[0];
+        }
+        let product: f64 = self.sides.iter().product();
+        product.powf(1.0 / self.sides.len() as f64)
+    }
+
+    /// Product of the sides: m, m² or m³.
+    pub(super) fn volume(self) -> f64 {
+        self.sides.iter().product()
+    }
+}
+
+/// Sums over the bonds of an interior point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LatticeSums {
+    /// Σ κ α r ΠΔx over 2, 2π, 4π: what resists a uniform dilation.
+    pub(super) moment: f64,
+    /// The same with n_a² n_b² over its mean in all directions, the mean of all pairs of axes: what resists a shear along the axes.
+    pub(super) shear_moment: f64,
+}
+
 impl BondMaterial {
-    /// The sum over an interior point's bonds that becomes m_dimension as the spacing goes to zero: Σ κ α r Δx^D over 2, 2π, 4π.
-    pub(super) fn lattice_moment(&self, dimension: usize, spacing: f64) -> f64 {
-        let mut sum = 0.0;
-        self.for_each_offset(dimension, spacing, |_, xi, r| {
-            let kappa = self.volume_correction.factor(r, self.horizon, spacing);
-            sum += kappa * self.influence.alpha_of(xi, self.horizon) * r;
+    /// The sums over an interior point's bonds that become m_dimension as the spacing goes to zero.
+    pub(super) fn lattice_sums(&self, cells: Cells<'_>) -> LatticeSums {
+        /// The mean of n_a² n_b² over all directions n, for two different axes.
+        const ISOTROPIC: [f64; 3] = [1.0, 1.0 / 8.0, 1.0 / 15.0];
+        let dimension = cells.sides.len();
+        let (mut bulk, mut shear, size) = (0.0, 0.0, cells.size());
+        self.for_each_offset(cells, |_, xi, r| {
+            let kappa = self.volume_correction.factor(r, self.horizon, size);
+            let weight = kappa * self.influence.alpha_of(xi, self.horizon) * r;
+            bulk += weight;
+            let [x, y, z] = xi.map(|x| (x / r) * (x / r));
+            shear += weight * (x * y + y * z + z * x);
         });
-        sum * spacing.powi(dimension as i32) / [2.0, 2.0 * PI, 4.0 * PI][dimension - 1]
+        let pairs = [1.0, 1.0, 3.0][dimension - 1];
+        let average = |sum: f64| sum * cells.volume() / [2.0, 2.0 * PI, 4.0 * PI][dimension - 1];
+        LatticeSums {
+            moment: average(bulk),
+            // A bar has no shear.
+            shear_moment: match dimension {
+                1 => average(bulk),
+                _ => average(shear) / (pairs * ISOTROPIC[dimension - 1]),
+            },
+        }
     }
 
     /// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
     pub(super) fn for_each_offset(
         &self,
-        dimension: usize,
-        spacing: f64,
+        cells: Cells<'_>,
         mut visit: impl FnMut([i32; 3], [f64; 3], f64),
     ) {
-        let reach = self.volume_correction.reach(self.horizon, spacing);
-        let n = (reach / spacing).floor() as i32;
-        let range = |active: bool| if active { -n..=n } else { 0..=0 };
-        for z in range(dimension > 2) {
-            for y in range(dimension > 1) {
-                for x in range(true) {
-                    // Whole numbers, but squares of large ones only fit a double.
-                    let square = [x, y, z].map(|c| f64::from(c) * f64::from(c));
-                    let r = square.iter().sum::<f64>().sqrt() * spacing;
+        let sides = cells.sides;
+        let reach = self.volume_correction.reach(self.horizon, cells.size());
+        let side = |c: usize| sides.get(c).copied().unwrap_or(0.0);
+        let range = |c: usize| match sides.get(c) {
+            Some(side) => {
+                let n = (reach / side).floor() as i32;
+                -n..=n
+            }
+            None => 0..=0,
+        };
+        // In units of the first side, so that lengths on square and cubic lattices are roots of whole numbers, exactly.
+        let shape: [f64; 3] = std::array::from_fn(|c| side(c) / sides[0]);
+        for z in range(2) {
+            for y in range(1) {
+                for x in range(0) {
+                    let offset = [x, y, z];
+                    let square: f64 = (0..3)
+                        .map(|c| f64::from(offset[c]) * shape[c])
+                        .map(|steps| steps * steps)
+                        .sum();
+                    let r = square.sqrt() * sides[0];
                     if r > 0.0 && r <= reach {
-                        let xi = [x, y, z].map(|c| f64::from(c) * spacing);
-                        visit([x, y, z], xi, r);
+                        let xi = std::array::from_fn(|c| f64::from(offset[c]) * side(c));
+                        visit(offset, xi, r);
                     }
                 }
             }
@@ -45,17 +117,18 @@ impl BondMaterial {
     }
 
     /// Refuses horizons with so many neighbours that sums over them do not end.
-    pub(super) fn check_reach(&self, dimension: usize, spacing: f64) -> Result<()> {
+    pub(super) fn check_reach(&self, cells: Cells<'_>) -> Result<()> {
         /// A second's work, and far more bonds than any body can have.
         const MOST: f64 = 1e8;
-        let reach = self.volume_correction.reach(self.horizon, spacing);
-        let neighbours = (2.0 * (reach / spacing).floor() + 1.0).powi(dimension as i32);
+        let reach = self.volume_correction.reach(self.horizon, cells.size());
+        let along = |side: &f64| 2.0 * (reach / side).floor() + 1.0;
+        let neighbours = cells.sides.iter().map(along).product();
         if neighbours <= MOST {
             return Ok(());
         }
         Err(PericlesError::HorizonTooLarge {
             horizon: self.horizon,
-            spacing,
+            spacing: cells.size(),
             neighbours,
             most: MOST,
         })
@@ -84,9 +157,11 @@ impl BondMaterial {
                 table.spacing()
             ));
         }
-        self.check_reach(cloud.dimension(), spacing)?;
+        let sides = vec![spacing; cloud.dimension()];
+        let cells = Cells::new(&sides);
+        self.check_reach(cells)?;
         let mut within = BTreeSet::new();
-        self.for_each_offset(cloud.dimension(), spacing, |offset, _, _| {
+        self.for_each_offset(cells, |offset, _, _| {
             within.insert(class_of(offset));
         });
         let name = |class: ClassOffset| format!("({}, {}, {})", class[0], class[1], class[2]);

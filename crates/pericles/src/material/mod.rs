@@ -11,23 +11,27 @@
 //! | plane strain, thickness h | 16E/(5π h m₂) | 1/4 | h c s₀² m₃ |
 //! | 3D | 9K/(2π m₃), K = 2E/3 | 1/4 | (π/2) c s₀² m₄ |
 //!
+//! On a grid sums over a point's bonds take the place of the integrals if asked for: [`Calibration`] for c, [`FractureCalibration`] for s₀.
+//!
 //! Units: E, K in Pa; c in N/m⁶ for a dimensionless α; G₀ in J/m².
 
 mod composite;
 mod constants;
+mod crack_planes;
 mod lattice;
 mod law;
+mod modulus;
 mod polynomial;
 mod power;
 mod surface_correction;
 mod treatment;
 
 pub use composite::{InterfaceRule, PairClasses};
-pub use constants::{
-    BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
-};
+pub use constants::{BondConstants, BondMaterial, Calibration, Fracture, Modulus};
+pub use crack_planes::{CrackPlane, FractureCalibration};
 pub use law::{BondStretch, CubicLaw, LinearBond, PairForce, PairLaw};
+pub use modulus::{ElasticModulus, StressState};
 pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};
-pub use surface_correction::SurfaceCorrection;
+pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

@@ -10,7 +10,7 @@ use crate::operator::fast_law::FastLaw;
 
 /// A body of several materials, or with corrected surfaces; always kept as a list.
 ///
-/// The force of a bond is c_ab · ½(g_i + g_j) · ½(k_i + k_j) · α κ V_j s n with the constant c_ab of the materials of its ends ([`PairClasses`]), the factors g of
+/// The force of a bond is c_ab · g · ½(k_i + k_j) · α κ V_j s n with the constant c_ab of the materials of its ends ([`PairClasses`]), the factor g of
 /// [`SurfaceCorrection`] and the relative stiffness k of [`BondBody::stiffness`]. Law, horizon, influence function and partial volumes are those of the body's
 /// material for all bonds.
 #[derive(Debug, Clone)]
@@ -91,9 +91,9 @@ impl CompositeBody<'_> {
         } = self.body;
         let (bonds, cuts) = self.body.families()?;
         let factors = self.correction.factors(cloud, &bonds, material);
-        let mean = |of_point: &[f64], i: usize, j: usize| match of_point {
+        let inclusion = |i: usize, j: usize| match stiffness {
             [] => 1.0,
-            _ => 0.5 * (of_point[i] + of_point[j]),
+            _ => 0.5 * (stiffness[i] + stiffness[j]),
         };
         let stiffness_of_pair = |bonds: &BondList, i: usize, j: usize| {
             let xi = bonds.vector(cloud, i, j);
@@ -102,7 +102,7 @@ impl CompositeBody<'_> {
                 Some(classes) => classes.micromodulus(i, j),
                 None => constants.micromodulus,
             };
-            let relative = mean(stiffness, i, j) * mean(&factors, i, j);
+            let relative = inclusion(i, j) * factors.of_bond(i, j, xi);
             relative * micromodulus * alpha * bonds.volume_factor(cloud, i, j)
         };
         let breaking = Breaking {

@@ -58,7 +58,7 @@ impl GradedBody<'_> {
         let cloud = self.cloud;
         // A table per class names the bonds of one lattice, which this body is not.
         self.material.constants(cloud, self.state)?;
-        if matches!(self.material.fracture, Fracture::Energy(_)) {
+        if matches!(self.material.fracture, Fracture::Energy { .. }) {
             return Err(PericlesError::Graded {
                 what: "a fracture energy",
                 reason: "it belongs to another critical stretch for each horizon; give critical_stretch",
@@ -70,8 +70,8 @@ impl GradedBody<'_> {
                 horizon: self.material.horizon / ratio,
                 ..self.material.clone()
             };
-            let constants =
-                own.constants_on(cloud.spacing() / ratio, cloud.section(), self.state)?;
+            let sides = vec![cloud.spacing() / ratio; cloud.dimension()];
+            let constants = own.constants_on(&sides, cloud.section(), self.state)?;
             Ok(EndLaw {
                 horizon: own.horizon,
                 micromodulus: constants.micromodulus,

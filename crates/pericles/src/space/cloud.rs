@@ -45,6 +45,8 @@ pub struct PointCloud {
     section: f64,
     spacing: f64,
     lattice: Option<Lattice>,
+    /// Sides of the cells, m, if all are equal boxes.
+    cell_sides: Option<Point>,
     periodic: bool,
     /// The user's numbers of the points; empty if they are the points' own.
     user_numbers: Vec<u32>,
@@ -117,6 +119,7 @@ impl PointCloud {
             section,
             spacing,
             lattice: None,
+            cell_sides: None,
             periodic: false,
             user_numbers: Vec::new(),
             blocks: Vec::new(),
@@ -176,8 +179,17 @@ impl PointCloud {
         let spacing = Some(lattice.spacing);
         let mut cloud =
             Self::with_spacing(dimension, positions, vec![volume; n], section, spacing)?;
+        cloud.cell_sides = Some([lattice.spacing; 3]);
         cloud.lattice = Some(lattice);
         Ok(cloud)
+    }
+
+    /// The same points as centres of equal boxes with these sides, m.
+    pub(super) fn with_cell_sides(self, sides: Point) -> Self {
+        Self {
+            cell_sides: Some(sides),
+            ..self
+        }
     }
 
     /// A cloud of cells of several sizes; the spacing is that of the largest.
@@ -259,6 +271,21 @@ impl PointCloud {
         }
     }
 
+    /// The sides of the cells along the axes, m, one for each dimension, if all cells are equal boxes side by side; none for listed points,
+    /// quadrature nodes, surfaces and bodies with cells of several sizes.
+    pub fn cell_sides(&self) -> Option<&[f64]> {
+        let sides = self.cell_sides.as_ref()?;
+        Some(&sides[..self.dimension])
+    }
+
+    /// The side of a cell along an axis, m: exact for equal boxes, else the spacing.
+    pub fn cell_side(&self, axis: usize) -> f64 {
+        match &self.cell_sides {
+            Some(sides) => sides[axis],
+            None => self.spacing,
+        }
+    }
+
     /// The lattice, if the points lie on one.
     pub fn lattice(&self) -> Option<&Lattice> {
         self.lattice.as_ref()
@@ -283,7 +310,8 @@ impl PointCloud {
         for c in 0..self.dimension {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for (i, &x) in self.axis(c).iter().enumerate() {
-                let half = 0.5 * self.cell_size(i);
+                let side = self.cell_sides.map(|sides| sides[c]);
+                let half = 0.5 * side.unwrap_or_else(|| self.cell_size(i));
                 low = low.min(x - half);
                 high = high.max(x + half);
             }

@@ -27,7 +27,9 @@ pub fn rectangular_cells(
         .flat_map(|c| places.iter().map(move |place| place[c]))
         .collect();
     let volume = section * spacing.iter().product::<f64>();
-    PointCloud::new(dimension, positions, vec![volume; places.len()], section)
+    let cloud = PointCloud::new(dimension, positions, vec![volume; places.len()], section)?;
+    let sides = std::array::from_fn(|c| spacing.get(c).copied().unwrap_or(1.0));
+    Ok(cloud.with_cell_sides(sides))
 }
 
 /// The numbers of the holes without a centre of these cells: they take nothing from the body.
@@ -167,6 +169,12 @@ mod tests {
         assert!(cloud.lattice().is_none());
         assert!((cloud.volumes()[0] - 0.05).abs() < 1e-16);
         assert!((cloud.spacing() - 0.025f64.sqrt()).abs() < 1e-15);
+        assert_eq!(cloud.cell_sides(), Some(&[0.25, 0.1][..]));
+        // The box that the cells fill.
+        let [low, high] = cloud.bounds();
+        for c in 0..2 {
+            assert!(low[c].abs() < 1e-15 && (high[c] - 1.0).abs() < 1e-15);
+        }
         assert!((cloud.point(5)[0] - 0.375).abs() < 1e-15);
         assert!((cloud.point(5)[1] - 0.15).abs() < 1e-15);
         assert!(rectangular_cells([0.0; 3], &[1.0, 1.0], &[0.25, 0.3], 1.0, &[]).is_err());

@@ -133,13 +133,13 @@ fn thick_enough(
         });
     }
     let reach = reach.sqrt();
-    let half = 0.5 * cloud.spacing();
     for c in 0..cloud.dimension() {
+        let half = 0.5 * cloud.cell_side(c);
         let axis = cloud.axis(c);
         let own = span(axis, &mut points.iter().map(|&i| i as usize));
         let body = span(axis, &mut (0..n));
         let ends = own[0] - body[0] < half || body[1] - own[1] < half;
-        let extent = own[1] - own[0] + cloud.spacing();
+        let extent = own[1] - own[0] + cloud.cell_side(c);
         if !ends && extent < reach * (1.0 - 1e-9) {
             return Err(PericlesError::FineRegionThin {
                 region,

@@ -5,7 +5,8 @@ use pericles::analysis::tuning::{Method, influence_alebrahim, polygon};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+    BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, PairLaw,
+    StressState,
 };
 use pericles::space::{Grid, Shape};
 
@@ -112,7 +113,10 @@ fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
                     acts_on: ActsOn::Stretch,
                 },
                 volume_correction: VolumeCorrection::None,
-                fracture: Fracture::Energy(glass.energy),
+                fracture: Fracture::Energy {
+                    energy: glass.energy,
+                    calibration: FractureCalibration::Continuum,
+                },
             };
             let found = material.constants(&cloud, StressState::PlaneStrain)?;
             // The table's modulus is exact on the lattice: c is that of α = 1.

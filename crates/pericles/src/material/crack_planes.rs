@@ -1,0 +1,141 @@
+//! What a crack along a plane of the lattice costs.
+
+use std::fmt::{self, Display};
+
+use super::lattice::Cells;
+use super::{BondMaterial, Fracture};
+
+/// How the critical stretch follows from the fracture energy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FractureCalibration {
+    /// The mean over the crack planes of the lattice costs the energy asked for ([`CrackPlane::mean`]).
+    #[default]
+    Lattice,
+    /// The integrals of the continuum; on a grid a crack costs several per cent more or less.
+    Continuum,
+}
+
+impl FractureCalibration {
+    /// The word for it in decks and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lattice => "lattice",
+            Self::Continuum => "continuum",
+        }
+    }
+}
+
+impl Fracture {
+    /// The same for a body without a lattice: only the continuum has integrals there.
+    pub(super) fn of_the_continuum(self) -> Self {
+        match self {
+            Self::Energy { energy, .. } => Self::Energy {
+                energy,
+                calibration: FractureCalibration::Continuum,
+            },
+            other => other,
+        }
+    }
+}
+
+/// A plane of the lattice with the energy that a crack along it takes.
+///
+/// The bonds that join the two sides of a plane with the unit normal n, each broken at the critical stretch, take per area
+///
+/// G = ½ c s₀² V Σ κ α |ξ| (ξ·n), over the bonds ξ of a point with ξ·n > 0,
+///
+/// with the volume V of a cell: a bond ξ crosses a unit area ξ·n / V times. The sum is exact for planes between rows of points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrackPlane {
+    /// Miller indices, each 0 or 1, one for each axis: the normal is (h/Δx, k/Δy, l/Δz) over its length.
+    indices: Vec<u8>,
+    /// J/m².
+    energy: f64,
+}
+
+impl CrackPlane {
+    /// The energy of a unit area, J/m².
+    pub fn energy(&self) -> f64 {
+        self.energy
+    }
+
+    /// The mean of the families of planes, J/m²: (10), (11) in 2D, (100), (110), (111) in 3D, each with the same weight. Planes of one family that
+    /// differ, on cells of unequal sides, share the weight of their family.
+    pub fn mean(planes: &[Self]) -> f64 {
+        let order = |plane: &Self| plane.indices.iter().filter(|index| **index > 0).count();
+        let families: Vec<f64> = (1..=3)
+            .filter_map(|number| {
+                let family: Vec<f64> = planes
+                    .iter()
+                    .filter(|plane| order(plane) == number)
+                    .map(|plane| plane.energy)
+                    .collect();
+                let sum: f64 = family.iter().sum();
+                (!family.is_empty()).then(|| sum / family.len() as f64)
+            })
+            .collect();
+        families.iter().sum::<f64>() / families.len() as f64
+    }
+
+    /// The same plane with its energy times a factor.
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self {
+            energy: factor * self.energy,
+            ..self
+        }
+    }
+
+    /// The planes of a lattice with indices of 0 and 1, those of square and cubic lattices once for each family; energies are still to be found.
+    fn all(cells: Cells<'_>) -> Vec<Self> {
+        let dimension = cells.sides().len();
+        let mut planes: Vec<Self> = (1..1u8 << dimension)
+            .map(|bits| Self {
+                indices: (0..dimension).map(|c| bits >> c & 1).collect(),
+                energy: 0.0,
+            })
+            .filter(|plane| !cells.is_cubic() || plane.indices.is_sorted_by(|a, b| a >= b))
+            .collect();
+        planes.sort_by_key(|plane| plane.indices.iter().sum::<u8>());
+        planes
+    }
+}
+
+/// Such as (110).
+impl Display for CrackPlane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "(")?;
+        self.indices
+            .iter()
+            .try_for_each(|index| write!(f, "{index}"))?;
+        write!(f, ")")
+    }
+}
+
+impl BondMaterial {
+    /// The planes of a lattice with the energy of a crack at s₀ = 1, J/m². `stiffness` is the constant c times the section.
+    pub(super) fn crack_planes(&self, cells: Cells<'_>, stiffness: f64) -> Vec<CrackPlane> {
+        let mut planes = CrackPlane::all(cells);
+        let size = cells.size();
+        self.for_each_offset(cells, |offset, xi, r| {
+            let kappa = self.volume_correction.factor(r, self.horizon, size);
+            let weight = kappa * self.influence.alpha_of(xi, self.horizon) * r;
+            for plane in &mut planes {
+                // The planes between the ends of the bond.
+                let indices = plane.indices.iter().zip(offset);
+                let crossed: i32 = indices
+                    .map(|(index, steps)| i32::from(*index) * steps)
+                    .sum();
+                plane.energy += weight * f64::from(crossed.max(0));
+            }
+        });
+        for plane in &mut planes {
+            // ξ·n is the number of planes crossed times their distance.
+            let normal = plane.indices.iter().zip(cells.sides());
+            let square: f64 = normal
+                .map(|(index, side)| (f64::from(*index) / side).powi(2))
+                .sum();
+            plane.energy *= 0.5 * stiffness * cells.volume() / square.sqrt();
+        }
+        planes
+    }
+}
