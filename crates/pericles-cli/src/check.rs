@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use pericles::family::geodesic::Ball;
+use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, Calibration, ElasticWaves, SurfaceBond};
+use pericles::observe::Probe;
 use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, KernelQuality, Model, Scheme, SurfaceDeck, VertexAreas};
 use serde::Serialize;
@@ -38,6 +40,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         console::note(format_args!("warning: {warning}"));
     }
     let mut lines = body(&deck, &facts);
+    lines.extend(neighbours(&model));
     match &deck.surface {
         Some(surface) => lines.extend(surface_material(surface)),
         None => lines.extend(material(&deck, &facts, &model.parts)),
@@ -56,6 +59,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 .with("loads_not_listed", more),
         );
     }
+    lines.extend(probes(&model));
     for end in &facts.ends {
         lines.push(Line::new("absorbing end", end.line()));
     }
@@ -167,7 +171,10 @@ fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
             ),
         )
         .with("directed_bonds_per_point", per_point),
-        Line::new("memory", format!("about {}", bytes(facts.memory_estimate))),
+        Line::new(
+            "memory",
+            format!("about {} at the peak", bytes(facts.memory_estimate)),
+        ),
         Line::new(
             "spacing, horizon",
             format!(
@@ -186,14 +193,64 @@ fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
     lines
 }
 
+/// The fewest, mean and most neighbours of a point, where the operator knows them one by one.
+fn neighbours(model: &Model) -> Option<Line> {
+    let zoned = model.system.operator().as_zoned()?;
+    let count_of = |i: usize| {
+        let mut count = 0u64;
+        zoned.neighbours(i, &mut |_| count += 1);
+        count
+    };
+    let counts = (0..model.cloud.len()).map(count_of);
+    let (least, most, sum) = counts.fold((u64::MAX, 0, 0), |(least, most, sum), n| {
+        (least.min(n), most.max(n), sum + n)
+    });
+    let mean = sum as f64 / model.cloud.len() as f64;
+    let text = format!(
+        "{} to {} per point, {} on average",
+        count(least),
+        count(most),
+        significant(mean, 3)
+    );
+    let value = json!({ "least": least, "mean": mean, "most": most });
+    Some(Line::new("neighbours", text).with("neighbours", value))
+}
+
+/// Where the probes read: at a point, or the mean over a set.
+fn probes(model: &Model) -> Vec<Line> {
+    let line = |probe: &Probe| {
+        let mut value = json!({ "name": probe.name, "points": probe.points.len() });
+        let text = match probe.points[..] {
+            [point] => {
+                let place = model.cloud.point(point as usize);
+                let place = &place[..model.cloud.dimension()];
+                let shown: Vec<String> = place.iter().map(|x| quantity(*x, "m")).collect();
+                value["place"] = json!(place);
+                format!("{} at ({})", probe.name, shown.join(", "))
+            }
+            _ => format!(
+                "{}: mean over {} points",
+                probe.name,
+                count(probe.points.len() as u64)
+            ),
+        };
+        Line::new("probe", text).with_entry("probes", value)
+    };
+    model.probes.iter().map(line).collect()
+}
+
 fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     let mut lines = vec![
         Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
         Line::new(
             "bond constant c",
             format!(
-                "{:.6e} (SI, of the force density c α s)",
-                facts.micromodulus
+                "{:.6e} (SI, of the force density c α {})",
+                facts.micromodulus,
+                match deck.material.bonds.influence.acts_on {
+                    ActsOn::Stretch => "s",
+                    ActsOn::Displacement => "η",
+                }
             ),
         ),
         Line::new("stiffness error", stiffness_error(deck, facts)),
@@ -226,11 +283,12 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     }
     let density = deck.material.bonds.density;
     let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
-    let mut waves = format!("pressure {:.0} m/s", speeds.pressure);
+    let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
-            ", shear {:.0} m/s, Rayleigh {:.0} m/s",
-            transverse.shear, transverse.rayleigh
+            ", shear {} m/s, Rayleigh {} m/s",
+            speed(transverse.shear),
+            speed(transverse.rayleigh)
         );
     }
     lines.push(Line::new("waves", waves).with(
@@ -242,6 +300,14 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
         }),
     ));
     lines
+}
+
+/// A speed with whole metres per second, or with three digits where it is small.
+fn speed(speed: f64) -> String {
+    match speed.abs() >= 100.0 {
+        true if speed < 1e7 => format!("{speed:.0}"),
+        _ => significant(speed, 3),
+    }
 }
 
 /// How far the grid's interior is from the stiffness asked for, and what can be done about it.

@@ -260,9 +260,19 @@ impl CliError {
             return match self {
                 // One by one: the error as a whole would list them all a second time.
                 Self::Deck(error) if !error.problems().is_empty() => {
-                    error.problems().iter().for_each(|problem| {
-                        console::note_in_colour(format_args!("{}", Drawn(problem)))
-                    })
+                    /// Lines that are longer fill the screen.
+                    const LONGEST: usize = 500;
+                    for problem in error.problems().iter().take(DeckError::SHOWN) {
+                        if problem.location().line_length() > LONGEST {
+                            console::note(format_args!("error: {}", problem.line()));
+                        } else {
+                            console::note_in_colour(format_args!("{}", Drawn(problem)));
+                        }
+                    }
+                    let left = error.problems().len().saturating_sub(DeckError::SHOWN);
+                    if left > 0 {
+                        console::note(format_args!("and {left} more problems"));
+                    }
                 }
                 other => console::note_in_colour(format_args!("{}", Drawn(other))),
             };

@@ -63,7 +63,7 @@ pub(crate) struct Facts {
     pub(crate) highest_frequency: Option<f64>,
     pub(crate) frequency_converged: Option<bool>,
     pub(crate) stable_step: Option<f64>,
-    /// Points, state, bonds and histories, bytes.
+    /// The estimated peak, files and pictures not counted, bytes.
     pub(crate) memory_estimate: u64,
     pub(crate) scheme: &'static str,
     /// None for schemes with one time step.
@@ -182,9 +182,6 @@ impl Facts {
         let directed_bonds = operator.directed_bonds();
         let constants = &model.constants;
         let finite = |x: f64| x.is_finite().then_some(x);
-        // Position and volume, then displacement, velocity and acceleration.
-        let ends: usize = model.ends.iter().map(|(_, end)| end.bytes).sum();
-        let numbers = points * (dimension + 1) + 3 * points * dimension;
         Self {
             dimension,
             points,
@@ -219,7 +216,7 @@ impl Facts {
             highest_frequency: model.frequency.map(|f| f.estimate),
             frequency_converged: model.frequency.map(|f| f.converged),
             stable_step: model.stable_step(),
-            memory_estimate: (operator.bytes() + numbers * size_of::<f64>() + ends) as u64,
+            memory_estimate: deck.memory_estimate(model),
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
             loads: model

@@ -16,7 +16,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::line::Line;
-use crate::units::{percent, quantity, significant};
+use crate::units::{count, percent, quantity, significant};
 
 /// What is known of two time steps before the first; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -25,6 +25,10 @@ pub(crate) struct RefinementFacts {
     pub(crate) ratio: u32,
     /// Fraction φ of fine points at the start.
     pub(crate) fine_fraction: f64,
+    /// Points with the fine step, points with the coarse step, and those of the latter that have fine neighbours, at the start.
+    pub(crate) fine_points: u64,
+    pub(crate) coarse_points: u64,
+    pub(crate) border_points: u64,
     /// Whether the fine region follows damage.
     pub(crate) follows_damage: bool,
     /// The highest frequency of the whole body; that of the model limits the coarse step.
@@ -71,6 +75,9 @@ impl RefinementFacts {
         Some(Self {
             ratio: report.ratio,
             fine_fraction: report.mean_fraction,
+            fine_points: report.fine_points,
+            coarse_points: report.points - report.fine_points,
+            border_points: report.border_points,
             follows_damage: matches!(
                 fine_region(&deck.time.scheme),
                 Some(FineRegion::Adaptive(_))
@@ -253,6 +260,12 @@ pub(crate) fn lines(
         quantity(fine_dt, "s"),
         percent(facts.fine_fraction),
     );
+    let zones = format!(
+        "{} points with the fine step, {} with the coarse step, {} of them next to fine ones",
+        count(facts.fine_points),
+        count(facts.coarse_points),
+        count(facts.border_points),
+    );
     let over_uniform = comparison.uniform / comparison.seconds;
     let over_verlet = comparison.verlet / comparison.seconds;
     let cost = format!(
@@ -265,6 +278,7 @@ pub(crate) fn lines(
     );
     vec![
         Line::new("two time steps", steps).with("dt_fine", fine_dt),
+        Line::new("their zones", zones),
         Line::new("their cost", cost).with(
             "refinement_by_clock",
             json!({ "speed_up": over_uniform, "speed_up_over_verlet": over_verlet }),

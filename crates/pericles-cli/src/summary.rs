@@ -25,9 +25,9 @@ pub(crate) fn opening(report: &Report, folder: &Path) {
 ///
 /// # Errors
 /// A standard output that cannot be written.
-pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
+pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), CliError> {
     let (model, progress) = (&report.model, &report.progress);
-    let folder = folder.display();
+    let folder = place.display();
     let word = match report.status {
         Status::Finished => "finished",
         _ => "stopped",
@@ -66,8 +66,17 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
     if report.status == Status::Stopped {
         console::print(format_args!("go on with: pericles resume {folder}"))?;
     }
+    let files = [
+        ("history.csv", "history.csv"),
+        ("fields.pvd", "fields.pvd (ParaView)"),
+        ("pictures", "pictures"),
+        ("run.json", "run.json"),
+    ];
+    let written = files.iter().filter(|(file, _)| place.join(file).exists());
+    let written: Vec<&str> = written.map(|(_, words)| *words).collect();
     console::print(format_args!(
-        "results in {folder}: history.csv, fields.pvd (ParaView), run.json …; what there is says: pericles info {folder}"
+        "Results in {folder}: {}. List them with `pericles info {folder}`.",
+        written.join(", ")
     ))
 }
 

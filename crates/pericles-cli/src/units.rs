@@ -55,25 +55,7 @@ pub(crate) fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio, 2))
 }
 
-/// A number with so many significant digits, without an exponent where that is readable.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
-        .parse()
-        .unwrap_or(value);
-    let size = rounded.abs();
-    if (1e-4..1e7).contains(&size) {
-        let decimals = (digits as f64 - 1.0 - size.log10().floor()).clamp(0.0, 12.0);
-        format!("{rounded:.*}", decimals as usize)
-    } else {
-        format!("{rounded:.*e}", digits.saturating_sub(1))
-    }
-}
-
-/// A quantity with three digits and a prefix: `46.0 µs`.
-pub(crate) use pericles_io::quantity;
+pub(crate) use pericles::units::{quantity, significant};
 
 #[cfg(test)]
 mod tests {
@@ -103,15 +85,5 @@ mod tests {
         assert_eq!(percent(-0.5), "-50 %");
         assert_eq!(bytes(999), "999 B");
         assert_eq!(bytes(51_234_567), "51.2 MB");
-    }
-
-    #[test]
-    fn significant_digits() {
-        assert_eq!(significant(0.001_808_7, 4), "0.001809");
-        assert_eq!(significant(1541.3, 3), "1540");
-        assert_eq!(significant(9.996, 3), "10.0");
-        assert_eq!(significant(7.2e10, 3), "7.20e10");
-        assert_eq!(significant(-3.0e-9, 2), "-3.0e-9");
-        assert_eq!(significant(f64::NAN, 2), "NaN");
     }
 }

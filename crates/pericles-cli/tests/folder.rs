@@ -157,7 +157,7 @@ fn quiet_says_nothing_and_plain_lines_replace_the_bar() {
     let (out, err) = (text(&loud.stdout), text(&loud.stderr));
     assert_eq!(err.matches(" %  step ").count(), 9, "{err}");
     assert!(out.contains("finished after step 400 of 400"), "{out}");
-    assert!(out.contains("results in ./plate-2"), "{out}");
+    assert!(out.contains("Results in ./plate-2"), "{out}");
 }
 
 #[test]

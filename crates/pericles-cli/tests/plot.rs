@@ -84,7 +84,7 @@ fn a_run_draws_its_histories_when_it_ends() {
     let place = with_plate();
     let said = text(&succeed(place.path(), "run plate.toml --chart --out a").stdout);
     let [before, after] =
-        ["results in a", "energy: * kinetic energy"].map(|words| said.find(words));
+        ["Results in a", "energy: * kinetic energy"].map(|words| said.find(words));
     assert!(before.is_some() && before < after, "{said}");
     let said = text(&succeed(place.path(), "run plate.toml --out b").stdout);
     assert!(!said.contains("* kinetic energy"), "{said}");

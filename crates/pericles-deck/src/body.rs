@@ -334,6 +334,18 @@ fn size(table: &Table<'_>, kind: Kind) -> Option<Vec<f64>> {
     } else {
         table.required("size")?
     };
+    let other = match (dimension, item.list_length()) {
+        (1 | 3, Some(2)) => Some("\"plate\""),
+        (1 | 2, Some(3)) => Some("\"block\""),
+        (2 | 3, Some(1)) => Some("\"bar\""),
+        _ => None,
+    };
+    if let Some(other) = other {
+        item.wrong_length(&format!(
+            "{dimension} entries, one for each dimension of the body; a body with so many sides is shape = {other}"
+        ));
+        return None;
+    }
     let items = item.components(Some(dimension), &Quantity::Length.expected())?;
     let sides: Vec<Option<f64>> = items
         .iter()

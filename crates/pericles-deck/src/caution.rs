@@ -2,6 +2,7 @@
 
 use miette::Severity;
 use pericles::space::surface::SurfaceCaution;
+use pericles::units::{quantity, significant};
 
 use crate::build::AreaDoubt;
 use crate::finding::Subject;
@@ -57,6 +58,62 @@ pub enum Caution {
         /// Of the pressure wave, m/s.
         speed: f64,
     },
+    /// A modulus of no solid.
+    #[error(
+        "Young's modulus is {} at a density of {}: softer than any solid of this density",
+        quantity(*modulus, "Pa"), quantity(*density, "kg/m³")
+    )]
+    SoftSolid {
+        /// Young's modulus, Pa.
+        modulus: f64,
+        /// Density, kg/m³.
+        density: f64,
+    },
+    /// A density of no solid.
+    #[error("the density is {} kg/m³, more than that of any solid", significant(*density, 4))]
+    HeavySolid {
+        /// Density, kg/m³.
+        density: f64,
+    },
+    /// A spacing below the distance of atoms.
+    #[error("the spacing is {}, less than the distance of atoms", quantity(*spacing, "m"))]
+    TinySpacing {
+        /// Spacing, m.
+        spacing: f64,
+    },
+    /// Two listed points much closer than the others.
+    #[error(
+        "points {} and {} of the list (counted from 1) are {} apart, the mean spacing is {}",
+        points[0], points[1], quantity(*distance, "m"), quantity(*spacing, "m")
+    )]
+    ClosePoints {
+        /// Their numbers in the list, from 1.
+        points: [usize; 2],
+        /// Their distance, m.
+        distance: f64,
+        /// Mean spacing of the points, m.
+        spacing: f64,
+    },
+    /// A coordinate of listed points beyond the body's dimension.
+    #[error("all points have {axis} = {}; this coordinate is not used", quantity(*value, "m"))]
+    UnusedCoordinate {
+        /// The axis.
+        axis: char,
+        /// Its value, m.
+        value: f64,
+    },
+    /// A hole that takes nothing from the body.
+    #[error("this hole contains no cell centre of the body: nothing is cut out")]
+    IdleHole,
+    /// A key that only breaking bonds give a meaning.
+    #[error("`{key}` has no effect: the bonds of this body never break")]
+    NothingBreaks {
+        /// The key.
+        key: &'static str,
+    },
+    /// A run in which nothing happens.
+    #[error("nothing acts on the body: it starts at rest, without loads and prescribed motion")]
+    NothingActs,
     /// Classes of bonds without stiffness at an absorbing end.
     #[error(
         "bonds over more than {reach} of {given} spacings have no stiffness: the exterior of the absorbing ends has none there either"
@@ -293,6 +350,22 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => {
                 "places are in m unless they carry a unit; `origin` moves a body"
             }
+            Self::SoftSolid { .. } => "is the modulus in Pa? \"70 GPa\" carries its unit",
+            Self::HeavySolid { .. } => "is it in kg/m³? \"7.85 g/cm3\" carries its unit",
+            Self::TinySpacing { .. } => "is it in m? \"1 mm\" carries its unit",
+            Self::ClosePoints { .. } => {
+                "remove one of them if it is a duplicate: the bond between them limits the time step"
+            }
+            Self::UnusedCoordinate { .. } => {
+                "set the coordinate to 0, or give `dimension` so that all coordinates are used"
+            }
+            Self::IdleHole => {
+                "check its place and its size, which must exceed the spacing; lengths without a unit are in m"
+            }
+            Self::NothingBreaks { .. } => {
+                "give `fracture_energy` or `critical_stretch`, or leave the key out"
+            }
+            Self::NothingActs => "add [[load]], [[prescribe]] or [[initial]]",
             Self::StiffnessError { .. } => {
                 "modulus = \"lattice\" gives the modulus on this grid; or take a horizon of three spacings and more"
             }
@@ -363,6 +436,13 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "in pieces",
             Self::LargeStretch { .. } => "very strong",
+            Self::SoftSolid { .. } => "very soft",
+            Self::HeavySolid { .. } => "very heavy",
+            Self::TinySpacing { .. } => "very small",
+            Self::ClosePoints { .. } => "very close points",
+            Self::UnusedCoordinate { .. } => "not used",
+            Self::IdleHole | Self::NothingBreaks { .. } => "no effect",
+            Self::NothingActs => "at rest",
             Self::StiffnessError { .. } => "another stiffness",
             Self::ShearStiffness { .. } => "little shear stiffness",
             Self::FastWaves { .. } => "very light",

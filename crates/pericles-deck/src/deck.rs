@@ -193,7 +193,7 @@ impl Deck {
             .and_then(|item| time::read(item.table()?, &names));
         let output = root.table_or_empty("output").and_then(|table| {
             let driven = prescribe.iter().flatten().any(Prescribe::moves);
-            output::read(table, frame.dimension, driven)
+            output::read(table, frame.dimension, driven, body.surface.is_some())
         });
         let checkpoint = root
             .table_or_empty("checkpoint")

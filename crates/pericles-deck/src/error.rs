@@ -31,6 +31,9 @@ pub enum DeckError {
 }
 
 impl DeckError {
+    /// A message names so many problems; of more it gives the number.
+    pub const SHOWN: usize = 50;
+
     /// A refusal; problems are put into the order of the text.
     pub(crate) fn refused(mut problems: Vec<Problem>) -> Self {
         problems.sort_by_key(|problem| problem.location().order());
@@ -84,11 +87,14 @@ fn listed(problems: &[Problem]) -> String {
     match problems {
         [problem] => problem.line(),
         several => {
-            let lines: Vec<String> = several
-                .iter()
-                .map(|problem| format!("\n  {}", problem.line()))
-                .collect();
-            format!("{} problems{}", several.len(), lines.concat())
+            let shown = several.iter().take(DeckError::SHOWN);
+            let mut text = format!("{} problems", several.len());
+            text.extend(shown.map(|problem| format!("\n  {}", problem.line())));
+            let left = several.len().saturating_sub(DeckError::SHOWN);
+            if left > 0 {
+                text += &format!("\n  and {left} more");
+            }
+            text
         }
     }
 }

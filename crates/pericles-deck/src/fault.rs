@@ -2,6 +2,7 @@
 
 use miette::Severity;
 use pericles::PericlesError;
+use pericles::units::quantity;
 
 use crate::build::bytes;
 use crate::finding::Subject;
@@ -17,7 +18,7 @@ pub enum Fault {
         message: String,
     },
     /// A key that does not belong here.
-    #[error("unknown key `{key}` in {table}")]
+    #[error("unknown key `{}` in {table}", shortened(key))]
     UnknownKey {
         /// The key.
         key: String,
@@ -93,7 +94,7 @@ pub enum Fault {
         value: String,
     },
     /// An expression that cannot be read.
-    #[error("the expression `{text}` cannot be used: {reason}")]
+    #[error("the expression `{}` cannot be used: {reason}", shortened(text))]
     BadExpression {
         /// The expression.
         text: String,
@@ -127,7 +128,7 @@ pub enum Fault {
         reason: String,
     },
     /// A condition that cannot be read.
-    #[error("the condition `{text}` cannot be used: {reason}")]
+    #[error("the condition `{}` cannot be used: {reason}", shortened(text))]
     BadCondition {
         /// The condition.
         text: String,
@@ -167,13 +168,16 @@ pub enum Fault {
         section: Option<&'static str>,
     },
     /// A course over time for an expression that has its own.
-    #[error("`{text}` depends on time by itself and takes no function of time besides")]
+    #[error(
+        "`{}` depends on time already and takes no time function",
+        shortened(text)
+    )]
     TwoCourses {
         /// The expression.
         text: String,
     },
     /// A unit that does not exist.
-    #[error("unknown unit `{unit}` in `{value}`")]
+    #[error("unknown unit `{}` in `{value}`", shortened(unit))]
     UnknownUnit {
         /// The value as written.
         value: String,
@@ -225,7 +229,7 @@ pub enum Fault {
         allowed: String,
     },
     /// A name that cannot be used.
-    #[error("the name `{name}` cannot be used: {reason}")]
+    #[error("the name `{}` cannot be used: {reason}", shortened(name))]
     BadName {
         /// The name.
         name: String,
@@ -238,7 +242,7 @@ pub enum Fault {
     #[error("every component is free: nothing is prescribed")]
     NothingPrescribed,
     /// An override that cannot be applied.
-    #[error("the override `{text}` cannot be applied: {reason}")]
+    #[error("the override `{}` cannot be applied: {reason}", shortened(text))]
     BadOverride {
         /// The override.
         text: String,
@@ -260,7 +264,7 @@ pub enum Fault {
         earlier: usize,
     },
     /// A set without points.
-    #[error("the set `{set}` selects no point")]
+    #[error("the set `{}` selects no point", shortened(set))]
     EmptySet {
         /// The set.
         set: String,
@@ -271,11 +275,48 @@ pub enum Fault {
         /// Its name.
         part: String,
     },
+    /// A set with the fine time step that bonds reach across.
+    #[error(
+        "the fine set `{set}` is {} thick along {axis}; it must be at least as thick as its longest bond, {}, or bonds of points with the coarse step pass over it",
+        quantity(*extent, "m"), quantity(*reach, "m")
+    )]
+    ThinFineSet {
+        /// The set.
+        set: String,
+        /// Its extent, m.
+        extent: f64,
+        /// Along this axis.
+        axis: char,
+        /// Length of its longest bond, m.
+        reach: f64,
+    },
+    /// Two sets with the fine time step that share points.
+    #[error("the fine sets `{first}` and `{second}` share points, such as point {point}")]
+    FineSetsOverlap {
+        /// One set.
+        first: String,
+        /// The other.
+        second: String,
+        /// A shared point, in the user's numbering.
+        point: usize,
+    },
     /// A load whose area cannot be guessed.
     #[error("the area that the traction acts on cannot be told: {reason}")]
     UnknownArea {
         /// Why.
         reason: &'static str,
+    },
+    /// Stress or strain of bonds that are not listed.
+    #[error("the fields Stress and Strain are not available here: {reason}")]
+    NoTensors {
+        /// Why.
+        reason: &'static str,
+    },
+    /// A periodic body with what periodic bodies cannot have.
+    #[error("a periodic body cannot have {}", conflicts.join(", "))]
+    NotPeriodic {
+        /// The keys that stand against it.
+        conflicts: Vec<String>,
     },
     /// An exact solution of another problem.
     #[error("this exact solution does not belong to this deck: {reason}")]
@@ -387,6 +428,10 @@ impl Subject for Fault {
             Self::PrescribedTwice { .. } => {
                 "give other points, say \"free\" along this axis, or leave one of the two out".into()
             }
+            Self::ThinFineSet { .. } => {
+                "make the set thicker along this axis, or extend it to the face of the body".into()
+            }
+            Self::FineSetsOverlap { .. } => "define one set that is the union of both".into(),
             Self::EmptyPart { .. } => "its set or blocks have none, or later parts have taken them".into(),
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
@@ -398,6 +443,12 @@ impl Subject for Fault {
                 "reaction_below needs a set that a [[prescribe]] holds, damage_above a material that can break".into()
             }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
+            Self::NoTensors { .. } => "leave these fields out".into(),
+            Self::NotPeriodic { .. } => {
+                "a periodic body needs model = \"linear\" and bonds that never break, without pre-cracks, inclusions, parts and surface correction; \
+                 `bonds` is then left out, \"fastest\", \"convolution\" or \"spectral\""
+                    .into()
+            }
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::EmptyWindow { .. } => {
                 "give a larger window, or move the centre of the exact solution into the body".into()
@@ -470,7 +521,11 @@ impl Subject for Fault {
             Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
             Self::LostValue { .. } => "not finite",
             Self::NeverStops { .. } => "never met",
+            Self::ThinFineSet { .. } => "too thin",
+            Self::FineSetsOverlap { .. } => "overlap",
             Self::UnknownArea { .. } => "which area?",
+            Self::NoTensors { .. } => "not available",
+            Self::NotPeriodic { .. } => "not with periodic faces",
             Self::NoExactSolution { .. } => "of another problem",
             Self::EmptyWindow { .. } => "no point",
             Self::LongSum { .. } => "too many terms",
@@ -497,6 +552,15 @@ fn count(number: f64) -> String {
         grouped.push(digit);
     }
     grouped
+}
+
+/// A text as messages quote it: the beginning of a long one.
+pub(crate) fn shortened(text: &str) -> String {
+    const LONGEST: usize = 60;
+    match text.char_indices().nth(LONGEST) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}…", &text[..end]),
+    }
 }
 
 /// `a`, `b` and `c`

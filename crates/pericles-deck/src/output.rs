@@ -93,9 +93,18 @@ impl Default for Checkpoint {
     }
 }
 
-/// `driven`: whether supports move.
-pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> Option<Output> {
-    let (fields, names) = fields(&table, dimension);
+/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default.
+pub(crate) fn read(
+    table: Table<'_>,
+    dimension: Option<usize>,
+    driven: bool,
+    surface: bool,
+) -> Option<Output> {
+    let mut usual = Field::USUAL.to_vec();
+    if surface {
+        usual.push(Field::KineticEnergyDensity);
+    }
+    let (fields, names) = fields(&table, dimension, usual);
     let (history, extremes) = history(&table, dimension);
     let cracks = cracks(&table, history);
     let fragments = fragments(&table);
@@ -174,8 +183,12 @@ fn history(
 }
 
 /// When field files are written, and which fields.
-fn fields(table: &Table<'_>, dimension: Option<usize>) -> (Option<Schedule>, Option<Vec<Field>>) {
-    let usual = Some(Field::USUAL.to_vec());
+fn fields(
+    table: &Table<'_>,
+    dimension: Option<usize>,
+    usual: Vec<Field>,
+) -> (Option<Schedule>, Option<Vec<Field>>) {
+    let usual = Some(usual);
     if is_never(table, "fields") {
         return (Some(Schedule::Never), usual);
     }
@@ -348,7 +361,7 @@ fn quantity(field: Field) -> Quantity {
         Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
         Field::Stress => Quantity::Traction,
         Field::Damage | Field::Strain => Quantity::Number,
-        Field::StrainEnergyDensity => Quantity::EnergyDensity,
+        Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
         Field::Volume => Quantity::Number,
     }
 }

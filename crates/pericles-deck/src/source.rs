@@ -16,6 +16,8 @@ pub(crate) struct Place {
 #[derive(Debug, Clone)]
 pub struct Location {
     text: Arc<NamedSource<String>>,
+    /// Length of the line, bytes.
+    line_length: usize,
     source: usize,
     start: usize,
     length: usize,
@@ -37,6 +39,11 @@ impl Location {
     /// The column in characters, from 1.
     pub fn column(&self) -> usize {
         self.column
+    }
+
+    /// The length of the line in bytes: very long lines are better not shown.
+    pub fn line_length(&self) -> usize {
+        self.line_length
     }
 
     /// The stretch in bytes.
@@ -76,21 +83,24 @@ impl std::fmt::Display for Location {
 #[derive(Debug, Clone)]
 pub(crate) struct Sources(Vec<Source>);
 
-/// A text with its name.
+/// A text with its name, and the places where its lines start, so that a place is found without reading all that stands before it.
 #[derive(Debug, Clone)]
 struct Source {
     name: String,
     text: String,
     /// Both as reports show them: control characters, which terminals may take for commands, are others of the same length.
     shown: Arc<NamedSource<String>>,
+    lines: Arc<[usize]>,
 }
 
 impl Source {
     fn new(name: &str, text: &str) -> Self {
+        let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
         Self {
             name: name.to_owned(),
             text: text.to_owned(),
             shown: Arc::new(NamedSource::new(visible(name), visible(text))),
+            lines: std::iter::once(0).chain(breaks).collect(),
         }
     }
 }
@@ -139,7 +149,9 @@ impl Sources {
 
     pub(crate) fn locate(&self, place: Place) -> Location {
         let source = place.source.min(self.0.len() - 1);
-        let text = Arc::clone(&self.0[source].shown);
+        let Source {
+            shown: text, lines, ..
+        } = &self.0[source];
         let inner = text.inner();
         let floor = |mut at: usize| {
             at = at.min(inner.len());
@@ -149,15 +161,17 @@ impl Sources {
             at
         };
         let (start, end) = (floor(place.start), floor(place.end));
-        let before = &inner[..start];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = lines.partition_point(|&line| line <= start);
+        let line_start = lines[line - 1];
+        let line_end = lines.get(line).copied().unwrap_or(inner.len());
         Location {
             source,
             start,
             length: end.saturating_sub(start),
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-            text,
+            line,
+            line_length: line_end - line_start,
+            column: inner[line_start..start].chars().count() + 1,
+            text: Arc::clone(text),
         }
     }
 }

@@ -171,6 +171,9 @@ const WRONG: &[Wrong] = &[
     wrong("spacing = \"0.25 mm\"\nplane", "periodic = true\nspacing = [\"0.25 mm\", \"0.2 mm\"]\nplane", (6, 1), "periodic", &["no place", "of equal cells"]),
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["only cells of one size"]),
     wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no cells of one size"]),
+    // Sizes and spacings.
+    wrong("size = [\"100 mm\", \"40 mm\"]", "size = [\"100 mm\", \"40 mm\", 1]", (5, 8), "[\"100 mm", &["has 3 entries", "a body with so many sides is shape = \"block\""]),
+    wrong("size = [\"100 mm\", \"40 mm\"]", "size = [1]", (5, 8), "[1]", &["shape = \"bar\""]),
     // Kinds.
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where this is needed: a list with one entry per dimension", "0.25 mm"]),
     wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where this is needed: a length such as \"0.25 mm\""]),
@@ -232,9 +235,9 @@ const WRONG: &[Wrong] = &[
 #[rustfmt::skip]
 const WRONG_WAVES: &[Wrong] = &[
     wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" does not fit this body", "body.periodic = true"]),
-    wrong("bonds = \"spectral\"", "bonds = \"list\"", (14, 9), "\"list\"", &["periodic faces", "\"convolution\""]),
+    wrong("bonds = \"spectral\"", "bonds = \"list\"", (6, 12), "true", &["a periodic body cannot have bonds = \"list\"", "\"convolution\" or \"spectral\""]),
     wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["belongs to model = \"linear\""]),
-    wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["couple all plane waves"]),
+    wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (6, 12), "true", &["a periodic body cannot have bonds that break", "model = \"linear\""]),
     wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` has no place in [body]", "with two ends"]),
     wrong("shape = \"bar\"\nlength = 20\norigin = -10", "shape = \"plate\"\nsize = [20, 20]\nplane = \"strain\"\nquadrature = \"gauss\"", (5, 1), "quadrature", &["only the cells of a bar"]),
     wrong("periodic = true", "periodic = true\nhole = [{ box = { max = 0 } }]", (6, 1), "periodic", &["`periodic` has no place in [body]", "without holes"]),
@@ -246,8 +249,8 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("scheme = \"trigonometric\"", "scheme = \"implicit-midpoint\"\nfunctions = \"chebyshev\"", (26, 1), "functions", &["belongs to scheme = \"trigonometric\""]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nfunctions = \"fast\"", (26, 13), "\"fast\"", &["did you mean `fastest`?"]),
     wrong("dt = 0.5\nscheme = \"trigonometric\"", "dt = 1.5\nscheme = \"velocity-verlet\"", (24, 6), "1.5", &["the time step 1.5e0 s is unstable", "allow_unstable"]),
-    wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (14, 9), "\"convolution\"", &["pre-cracks cut single bonds"]),
-    wrong("bonds = \"spectral\"\n", "[[material.inclusion]]\nset = \"all\"\nstiffness = 2\n", (8, 1), "[material]", &["parts of other stiffness"]),
+    wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (6, 12), "true", &["a periodic body cannot have pre-cracks ([[crack]])"]),
+    wrong("bonds = \"spectral\"\n", "[[material.inclusion]]\nset = \"all\"\nstiffness = 2\n", (6, 12), "true", &["a periodic body cannot have [[material.inclusion]]", "without pre-cracks, inclusions"]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trapezoidal\"\nlinear_solver = \"lu\"", (26, 17), "\"lu\"", &["unknown linear solver `lu`", "\"direct\"", "\"conjugate-gradients\""]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nlinear_solver = \"direct\"", (26, 1), "linear_solver", &["belongs to scheme = \"implicit-midpoint\""]),
     wrong("model = \"linear\"", "model = \"linear\"\ntreatment = \"taylor-2\"", (10, 1), "treatment", &["belongs to model = \"green-strain\""]),
@@ -407,6 +410,80 @@ fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(), Dec
                 case.by
             );
         }
+    }
+}
+
+#[test]
+fn a_periodic_body_of_the_default_model_is_told_all_keys_that_work() {
+    let deck = r#"
+[body]
+shape = "bar"
+length = 10
+spacing = 1
+periodic = true
+[material]
+density = 1
+youngs_modulus = 1
+fracture_energy = 1
+surface_correction = "volume"
+horizon = 3
+[[crack]]
+section = 5
+[time]
+end = 1
+"#;
+    let deck = Deck::parse(deck, "ring.toml", &[]).unwrap();
+    let message = deck.build().map(|_| ()).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "ring.toml:6:12: a periodic body cannot have model = \"bond-stretch\", bonds that break (`fracture_energy`, `critical_stretch`), pre-cracks ([[crack]]), a surface \
+         correction; a periodic body needs model = \"linear\" and bonds that never break, without pre-cracks, inclusions, parts and surface correction; `bonds` is then left \
+         out, \"fastest\", \"convolution\" or \"spectral\""
+    );
+}
+
+#[test]
+fn many_problems_are_found_in_a_moment_and_counted() {
+    let began = std::time::Instant::now();
+    let mut keys: String = (0..40_000)
+        .map(|k| format!("unknown_{k} = {k}\n"))
+        .collect();
+    keys += RIGHT;
+    let error = refusal(&keys);
+    assert_eq!(error.problems().len(), 40_000);
+    let message = error.to_string();
+    assert!(message.ends_with("and 39950 more"), "{message}");
+    let loads: String = (0..40_000)
+        .map(|k| format!("[[load]]\nset = \"no_{k}\"\nbody_force = [1, 0]\n"))
+        .collect();
+    let error = refusal(&format!("{RIGHT}{loads}"));
+    assert_eq!(error.problems().len(), 40_000);
+    assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
+}
+
+#[test]
+fn long_texts_are_quoted_by_their_beginning() {
+    let long = "x+".repeat(500_000);
+    for (replace, by) in [
+        (
+            "traction = [0, \"12 MPa\"]",
+            format!("traction = [0, {{ expression = \"{long}\" }}]"),
+        ),
+        ("\"strain\"", format!("\"{long}\"")),
+        (
+            "set = \"top\"\nvelocity",
+            format!("set = \"{long}\"\nvelocity"),
+        ),
+        ("title =", format!("\"{long}\" =")),
+        ("\"0.75 mm\"", format!("\"1 {}\"", "m".repeat(100_000))),
+    ] {
+        let message = refusal(&RIGHT.replace(replace, &by)).to_string();
+        assert!(
+            message.len() < 2000,
+            "{} characters: {:.300}",
+            message.len(),
+            message
+        );
     }
 }
 

@@ -33,6 +33,18 @@ pub enum PointsError {
         /// What is wrong, and what is allowed.
         reason: String,
     },
+    /// A mesh, which lists nodes and elements but no points with volumes.
+    #[error(
+        "{} is a mesh ({format}), not a list of points; write a line `x y z block volume` for each element, with its centre in m and its volume in m³ \
+         (Python's meshio reads most meshes), or use a closed surface of triangles as shape = \"surface\"",
+        path.display()
+    )]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// Which format.
+        format: &'static str,
+    },
     /// A file without points.
     #[error("{}: it holds no point; each point is a line `x y z block volume`", path.display())]
     Empty {
@@ -41,7 +53,7 @@ pub enum PointsError {
     },
 }
 
-/// Reads the points of a body of this dimension. Coordinates beyond it must be the same for all points and are left out.
+/// Reads the points of a body of this dimension. Coordinates beyond it must be the same for all points; the body does not use them.
 ///
 /// # Errors
 /// A file that cannot be read, needs more than `memory` bytes or holds no point; the first line that is wrong, with what is allowed there.
@@ -67,14 +79,55 @@ pub fn parse_points(
     dimension: usize,
 ) -> Result<ListedPoints, PointsError> {
     let path = || name.as_ref().to_path_buf();
-    parse(content, dimension).map_err(|wrong| match wrong {
-        Some(Wrong { line, reason }) => PointsError::Line {
+    parse(content, dimension).map_err(|wrong| match (mesh_format(name.as_ref(), content), wrong) {
+        (Some(format), _) => PointsError::Mesh {
+            path: path(),
+            format,
+        },
+        (None, Some(Wrong { line, reason })) => PointsError::Line {
             path: path(),
             line,
             reason,
         },
-        None => PointsError::Empty { path: path() },
+        (None, None) => PointsError::Empty { path: path() },
     })
+}
+
+/// The format of a mesh, by the beginning of its content or the ending of its name.
+fn mesh_format(name: &Path, content: &[u8]) -> Option<&'static str> {
+    const BEGINNINGS: [(&[u8], &str); 7] = [
+        (b"$MeshFormat", "Gmsh"),
+        (b"*heading", "Abaqus"),
+        (b"*node", "Abaqus"),
+        (b"solid", "STL"),
+        (b"<?xml", "VTK"),
+        (b"<vtkfile", "VTK"),
+        (b"# vtk", "VTK"),
+    ];
+    const ENDINGS: [(&str, &str); 12] = [
+        ("msh", "Gmsh"),
+        ("inp", "Abaqus"),
+        ("stl", "STL"),
+        ("vtu", "VTK"),
+        ("vtp", "VTK"),
+        ("vtk", "VTK"),
+        ("obj", "Wavefront"),
+        ("ply", "PLY"),
+        ("off", "OFF"),
+        ("bdf", "Nastran"),
+        ("exo", "Exodus"),
+        ("g", "Exodus"),
+    ];
+    let start = content.trim_ascii_start();
+    let begins = |word: &[u8]| {
+        let start = start.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    let ending = name.extension()?.to_str()?.to_ascii_lowercase();
+    let by_content = BEGINNINGS.iter().find(|(word, _)| begins(word));
+    let by_content = by_content.map(|(_, format)| *format);
+    let by_name = ENDINGS.iter().find(|(word, _)| *word == ending);
+    by_content.or(by_name.map(|(_, format)| *format))
 }
 
 /// What is wrong with a line.
@@ -152,7 +205,7 @@ fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> 
     if lines.is_empty() {
         return Err(None);
     }
-    flatten(&mut points, dimension, &lines)?;
+    check_flat(&points, dimension, &lines)?;
     match points.first_twins() {
         None => Ok(points),
         Some((first, second)) => Err(Some(Wrong {
@@ -262,14 +315,14 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
     Ok(())
 }
 
-/// Leaves out the coordinates that the body does not have.
-fn flatten(
-    points: &mut ListedPoints,
+/// Refuses coordinates beyond the body's dimension that differ from point to point.
+fn check_flat(
+    points: &ListedPoints,
     dimension: usize,
     lines: &[usize],
 ) -> Result<(), Option<Wrong>> {
     let first = points.positions[0];
-    for (place, &line) in points.positions.iter_mut().zip(lines) {
+    for (place, &line) in points.positions.iter().zip(lines) {
         for c in dimension..3 {
             if place[c] != first[c] {
                 let axis = ["x", "y", "z"][c];
@@ -281,7 +334,6 @@ fn flatten(
                     ),
                 }));
             }
-            place[c] = 0.0;
         }
     }
     Ok(())
@@ -318,7 +370,13 @@ mod tests {
         assert_eq!(plane, read(commas, 2));
         assert_eq!(plane, read("0.5 0 1 1e-3\n1.5\t0\t2\t2e-3", 2));
         // A third coordinate that is the same everywhere is no third dimension.
-        assert_eq!(plane, read(peridigm, 2));
+        let flat = read(peridigm, 2);
+        assert_eq!(
+            flat.cloud(2, 1.0).unwrap().positions(),
+            plane.cloud(2, 1.0).unwrap().positions()
+        );
+        // It is kept, so that a warning can name it.
+        assert_eq!(flat.positions[0][2], 0.25);
     }
 
     #[test]
@@ -389,6 +447,28 @@ mod tests {
         }
         assert_eq!(parse(b"# nothing\n\n", 3), Err(None));
         assert!(parse(b"\xff\xfe\x00", 3).is_err());
+    }
+
+    #[test]
+    fn meshes_are_recognised() {
+        for (name, content, format) in [
+            ("a.msh", "$MeshFormat\n4.1 0 8\n", "Gmsh"),
+            (
+                "plate.inp",
+                "*Heading\n** by hand\n*Node\n1, 0, 0, 0\n",
+                "Abaqus",
+            ),
+            ("a.STL", "\0\0binary", "STL"),
+            ("a.txt", "solid part\nfacet normal 0 0 1\n", "STL"),
+            ("a.vtu", "<?xml version=\"1.0\"?>", "VTK"),
+        ] {
+            let error = parse_points(name, content.as_bytes(), 3).unwrap_err();
+            let message = error.to_string();
+            let says = format!("{name} is a mesh ({format}), not a list of points");
+            assert!(message.starts_with(&says), "{message}");
+        }
+        // A list of points may be called as it likes.
+        assert!(parse_points("a.inp", b"0 0 0 1 1\n", 3).is_ok());
     }
 
     #[test]

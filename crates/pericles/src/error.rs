@@ -1,6 +1,7 @@
 //! The one error type of the library.
 
 use crate::boundary::absorbing::AbsorbingError;
+use crate::units::{precise, quantity};
 
 /// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -22,9 +23,26 @@ pub enum PericlesError {
         /// The coordinate given.
         value: f64,
     },
+    /// Coordinates whose rounding is not small beside the spacing.
+    #[error(
+        "the body reaches {} from the origin, where double precision resolves {} only: too coarse for a spacing of {}; with this spacing places up to {} \
+         from the origin are possible; is a unit wrong?",
+        quantity(*farthest, "m"), quantity(*resolution, "m"), quantity(*spacing, "m"), quantity(*allowed, "m")
+    )]
+    Unresolved {
+        /// The largest coordinate in size, m.
+        farthest: f64,
+        /// The distance of neighbouring numbers there, m.
+        resolution: f64,
+        /// Distance of neighbouring points, m.
+        spacing: f64,
+        /// The largest coordinate allowed, m.
+        allowed: f64,
+    },
     /// A body's side is no whole number of cells.
     #[error(
-        "a side of {length} m is not a whole number of cells of {spacing} m; the nearest that are: {below} m and {above} m"
+        "a side of {} is not a whole number of cells of {}; the nearest sides that are: {} and {}{}",
+        precise(*length, "m"), precise(*spacing, "m"), precise(*below, "m"), precise(*above, "m"), spacings_that_fit(fitting)
     )]
     NotWholeCells {
         /// The side asked for, m.
@@ -35,6 +53,8 @@ pub enum PericlesError {
         below: f64,
         /// The next longer side that fits, m.
         above: f64,
+        /// Spacings near the one asked for that divide all sides, m.
+        fitting: Vec<f64>,
     },
     /// The shape, less its holes, contains no cell centre.
     #[error("the body has no points: no cell centre lies inside the shape and outside its holes")]
@@ -313,7 +333,8 @@ pub enum PericlesError {
     },
     /// A fine region that bonds reach across.
     #[error(
-        "fine region {region} is {extent:e} m thick along {axis}: it must be at least a horizon, {reach:e} m, or bonds of the coarse step pass over it"
+        "fine region {region} is {} thick along {axis}; it must be at least as thick as its longest bond, {}, or bonds of points with the coarse step pass over it",
+        quantity(*extent, "m"), quantity(*reach, "m")
     )]
     FineRegionThin {
         /// Which of the regions, from 0.
@@ -431,6 +452,18 @@ pub enum PericlesError {
 
 /// Result with [`PericlesError`].
 pub type Result<T> = std::result::Result<T, PericlesError>;
+
+/// The end of a message: spacings that divide all sides.
+fn spacings_that_fit(fitting: &[f64]) -> String {
+    let spacings: Vec<String> = fitting.iter().map(|dx| precise(*dx, "m")).collect();
+    match spacings.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; with these sides spacings of {} fit",
+            spacings.join(" and ")
+        ),
+    }
+}
 
 /// Checks that a quantity is positive and finite.
 pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64> {

@@ -70,6 +70,7 @@ pub mod space;
 mod stop;
 mod system;
 pub mod time;
+pub mod units;
 
 pub use accounts::{Completed, Ledger};
 pub use archive::{Archive, Saved, Values};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pericles::material::BondConstants;
+use pericles::material::{BondConstants, Fracture, PairLaw, SurfaceCorrection};
 use pericles::observe::TrackedCrack;
 use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody};
 use pericles::space::surface::Surface;
@@ -41,11 +41,12 @@ impl Deck {
         resources: &Resources<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<Assembled, DeckError> {
+        self.check_periodic()?;
         let GradedCloud {
             cloud,
             ratios,
             grid_of_point,
-        } = self.points(resources)?;
+        } = self.points(resources, warnings)?;
         let cloud = Arc::new(cloud);
         let sets = self.select(&cloud)?;
         let material = &self.material.bonds;
@@ -54,6 +55,7 @@ impl Deck {
             .map_err(|error| self.at_material(error))?;
         warnings.extend(self.judge_speed(&constants));
         warnings.extend(self.judge_classes(&constants));
+        warnings.extend(self.judge_solid(&constants));
         let no_fail = self.union_of(&sets, &self.material.no_fail)?;
         let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
         let Composition {
@@ -81,11 +83,12 @@ impl Deck {
         };
         let (bonds, cracks) = self.bonds(composite, grids, warnings)?;
         if self.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
-            let error = PericlesError::FormNotUsable {
-                form: bonds.form.name(),
-                reason: "stress and strain are sums over single bonds, which this form does not have; use \"list\" or \"grid\", or leave these fields out",
+            let reason = if self.body.periodic {
+                "periodic bodies keep no list of bonds"
+            } else {
+                "they are sums over single bonds; use bonds = \"list\", \"grid\" or \"fastest\""
             };
-            return Err(self.at("output", error));
+            return Err(self.at_path(&self.tensor_key(), Fault::NoTensors { reason }));
         }
         Ok(Assembled {
             surface: None,
@@ -138,6 +141,66 @@ impl Deck {
             parts: Vec::new(),
             cloud,
         })
+    }
+
+    /// Refuses everything at once that a periodic body cannot have.
+    fn check_periodic(&self) -> Result<(), DeckError> {
+        let material = &self.material;
+        let spectral = material.form == BondForm::Spectral;
+        let law = material.bonds.law;
+        let right_law = law == PairLaw::Linear || (law == PairLaw::GreenStrain && spectral);
+        let breaks = material.bonds.fracture != Fracture::Unbreakable;
+        let listed = matches!(
+            material.form,
+            BondForm::List | BondForm::Grid | BondForm::FloatGrid
+        );
+        let corrected = material.surface_correction != SurfaceCorrection::None;
+        let conflicts: Vec<String> = [
+            (
+                !right_law,
+                format!("model = {}", self.given("material.model")),
+            ),
+            (
+                breaks,
+                "bonds that break (`fracture_energy`, `critical_stretch`)".into(),
+            ),
+            (listed, format!("bonds = \"{}\"", material.form.name())),
+            (!self.cracks.is_empty(), "pre-cracks ([[crack]])".into()),
+            (
+                !material.inclusions.is_empty(),
+                "[[material.inclusion]]".into(),
+            ),
+            (!material.parts.is_empty(), "[[material.part]]".into()),
+            (corrected, "a surface correction".into()),
+        ]
+        .into_iter()
+        .filter_map(|(found, what)| found.then_some(what))
+        .collect();
+        if !self.body.periodic || conflicts.is_empty() {
+            return Ok(());
+        }
+        Err(self.at_path(&"body.periodic".into(), Fault::NotPeriodic { conflicts }))
+    }
+
+    /// The value of a key as the deck is read, defaults included.
+    fn given(&self, key: &str) -> String {
+        let value = self.record.value(&key.into());
+        value.map(ToString::to_string).unwrap_or_default()
+    }
+
+    /// The key that asks for stress or strain.
+    fn tensor_key(&self) -> Path {
+        match self
+            .output
+            .pictures
+            .iter()
+            .position(|picture| picture.field.is_tensor())
+        {
+            Some(k) if !self.output.names.iter().any(|field| field.is_tensor()) => {
+                Path::from("output.picture").index(k)
+            }
+            _ => "output.fields.names".into(),
+        }
     }
 
     fn select(&self, cloud: &PointCloud) -> Result<Sets, DeckError> {
@@ -227,11 +290,11 @@ impl Deck {
             self.graded_bonds(&composite, grids)?
         } else {
             let form = match self.material.form {
-                BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
-                    composite.fastest_bonds()
-                }
                 BondForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
                     BondForm::List
+                }
+                BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
+                    composite.fastest_bonds()
                 }
                 BondForm::FloatGrid if !self.time.scheme.bears_rounding() => {
                     return Err(self.at_material(PericlesError::FormNotUsable {

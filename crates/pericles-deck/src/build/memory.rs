@@ -16,7 +16,7 @@
 use pericles::operator::BondForm;
 use pericles::space::{GradedGrid, PointCloud, Shape};
 
-use super::Resources;
+use super::{Model, Resources};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -172,11 +172,7 @@ impl Deck {
 
     fn bytes_of_point(&self, dimension: usize, neighbours: f64) -> f64 {
         let transform = TRANSFORM * 2f64.powi(dimension as i32) * (dimension as f64).powi(2);
-        let listed = if self.keeps_every_bond() {
-            LISTED + KEPT
-        } else {
-            LISTED
-        };
+        let listed = self.bytes_of_listed_bond();
         let bonds = match self.material.form {
             BondForm::List => listed * neighbours,
             BondForm::Convolution | BondForm::Spectral => transform,
@@ -186,6 +182,34 @@ impl Deck {
             _ => listed * neighbours,
         };
         self.bytes_of_state(dimension) + bonds
+    }
+
+    /// The estimated peak of a run's memory, bytes: points with their state, bonds as they are found, transforms, histories of absorbing ends. Files and pictures
+    /// are not counted.
+    pub fn memory_estimate(&self, model: &Model) -> u64 {
+        let (points, dimension) = (model.cloud.len() as f64, model.cloud.dimension());
+        let operator = model.system.operator();
+        let bonds = operator.directed_bonds() as f64;
+        let list = self.bytes_of_listed_bond() * bonds;
+        let found = match (&self.surface, model.form) {
+            (Some(_), _) => VERTEX * points + GEODESIC * bonds,
+            (None, BondForm::List) => list,
+            // Whether every part of a static body has a support is found on a list of its bonds.
+            _ if matches!(self.time.scheme, Scheme::Relaxation(_)) => list,
+            _ => 0.0,
+        };
+        let ends: usize = model.ends.iter().map(|(_, end)| end.bytes).sum();
+        let kept = operator.bytes() as f64;
+        (points * self.bytes_of_state(dimension) + found.max(kept)) as u64 + ends as u64
+    }
+
+    /// Bytes of a bond of a list while families are found.
+    fn bytes_of_listed_bond(&self) -> f64 {
+        if self.keeps_every_bond() {
+            LISTED + KEPT
+        } else {
+            LISTED
+        }
     }
 
     /// Whether a stencil can serve all points.

@@ -13,6 +13,7 @@ mod graded;
 mod loads;
 mod memory;
 mod parts;
+mod plausible;
 mod points;
 mod resources;
 mod scheme;
@@ -163,6 +164,8 @@ impl Deck {
         let areas = self.add_loads(&mut system, &cloud, &sets, &mut warnings)?;
         self.add_motions(&mut system, &state, &sets)?;
         self.judge_conditions(&system, &mut warnings);
+        warnings.extend(self.judge_idle_keys(&system));
+        warnings.extend(self.judge_rest(&state));
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
         let integrator = self.integrator(&system, &sets)?;
         let ends = self.ends(&system, &state, &sets, &*integrator, &resources)?;
@@ -223,7 +226,7 @@ impl Deck {
                 let (surface, cloud) = self.surface_points(deck, &resources)?;
                 Ok((cloud, Some(surface)))
             }
-            None => Ok((self.points(&resources)?.cloud, None)),
+            None => Ok((self.points(&resources, &mut Vec::new())?.cloud, None)),
         }
     }
 

@@ -12,6 +12,7 @@ use super::step::Steps;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
+use crate::fault::Fault;
 use crate::finding::Warning;
 use crate::reader::Path;
 use crate::scheme::{FineRegion, FineStep, Interface, Scheme};
@@ -115,14 +116,53 @@ impl Deck {
     }
 
     fn at_scheme(&self, error: PericlesError) -> DeckError {
+        let error = match self.named_fine_sets(error) {
+            Ok(fault) => return self.at_path(&"time.fine".into(), fault),
+            Err(error) => error,
+        };
         let path: Path = match &error {
             PericlesError::StepRatio { .. } => "time.ratio".into(),
-            PericlesError::FineRegionEmpty { .. }
-            | PericlesError::FineRegionsOverlap { .. }
-            | PericlesError::FineRegionThin { .. } => "time.fine".into(),
+            PericlesError::FineRegionEmpty { .. } => "time.fine".into(),
             _ => "time.scheme".into(),
         };
         self.at_path(&path, error.into())
+    }
+
+    /// What is wrong with fine regions, with the names of their sets; other errors are handed back.
+    fn named_fine_sets(&self, error: PericlesError) -> Result<Fault, PericlesError> {
+        let fine = match &self.time.scheme {
+            Scheme::MultiTimeStep3 { fine, .. }
+            | Scheme::MultiTimeStep4 { fine, .. }
+            | Scheme::Respa { fine } => fine,
+            _ => return Err(error),
+        };
+        let FineRegion::Sets(names) = &fine.region else {
+            return Err(error);
+        };
+        let name = |region: usize| names[region].clone();
+        Ok(match error {
+            PericlesError::FineRegionThin {
+                region,
+                extent,
+                axis,
+                reach,
+            } => Fault::ThinFineSet {
+                set: name(region),
+                extent,
+                axis,
+                reach,
+            },
+            PericlesError::FineRegionsOverlap {
+                first,
+                second,
+                point,
+            } => Fault::FineSetsOverlap {
+                first: name(first),
+                second: name(second),
+                point,
+            },
+            other => return Err(other),
+        })
     }
 
     /// What is odd about two time steps.

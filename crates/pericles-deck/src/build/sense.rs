@@ -102,6 +102,14 @@ impl Deck {
     }
 
     fn judge_held_loads(&self, system: &System, warnings: &mut Vec<Warning>) {
+        // The axes along which each point is held, one bit each.
+        let mut held = vec![0u8; system.points()];
+        for motion in system.motions() {
+            let axes = motion.axes().fold(0, |bits, c| bits | 1 << c);
+            for &i in &motion.points {
+                held[i as usize] |= axes;
+            }
+        }
         for (k, (given, load)) in self.loads.iter().zip(system.loads()).enumerate() {
             let (LoadAmplitude::BodyForce(field)
             | LoadAmplitude::Traction {
@@ -110,14 +118,6 @@ impl Deck {
             let acts = |c: usize| c < system.dimension() && field[c].number() != Some(0.0);
             if !(0..3).any(acts) {
                 continue;
-            }
-            // The axes along which each point is held, one bit each.
-            let mut held = vec![0u8; system.points()];
-            for motion in system.motions() {
-                let axes = motion.axes().fold(0, |bits, c| bits | 1 << c);
-                for &i in &motion.points {
-                    held[i as usize] |= axes;
-                }
             }
             let resisted = |&i: &u32| (0..3).all(|c| !acts(c) || held[i as usize] >> c & 1 == 1);
             let (held, points) = (

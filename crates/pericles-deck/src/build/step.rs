@@ -3,6 +3,7 @@
 use pericles::PericlesError;
 use pericles::System;
 use pericles::time::{HighestFrequency, Integrator, State};
+use pericles::units::quantity;
 
 use super::damping;
 use crate::caution::Caution;
@@ -80,8 +81,10 @@ impl Deck {
                     self.judge(judged, limit, frequency, integrator.name(), warnings)?;
                     self.check_damped(dt, stable, damped)?;
                 }
-                if let (Scheme::Trigonometric(_), Ok(frequency)) = (&self.time.scheme, &frequency) {
-                    self.check_angle(dt, frequency)?;
+                if let (Scheme::Trigonometric(options), Ok(frequency)) =
+                    (&self.time.scheme, &frequency)
+                {
+                    self.check_angle(dt, frequency.bound.hypot(options.regularisation.sqrt()))?;
                 }
                 Ok(Steps {
                     dt,
@@ -105,16 +108,17 @@ impl Deck {
     }
 
     /// Refuses a step that turns the fastest wave so often that its angle keeps few digits; a series would have as many terms.
-    fn check_angle(&self, dt: f64, frequency: &HighestFrequency) -> Result<(), DeckError> {
+    fn check_angle(&self, dt: f64, fastest: f64) -> Result<(), DeckError> {
         const MOST: f64 = 1e6;
-        let longest = MOST / frequency.bound;
+        let longest = MOST / fastest;
         if dt <= longest {
             return Ok(());
         }
         let fault = Fault::OutOfRange {
-            value: format!("{dt:e} s"),
+            value: quantity(dt, "s"),
             allowed: format!(
-                "allowed: at most {longest:.4e} s, in which the fastest wave turns by {MOST:e}"
+                "allowed: at most {}, in which the phase of the fastest wave advances by a million radians",
+                quantity(longest, "s")
             ),
         };
         Err(self.at_path(&"time.dt".into(), fault))

@@ -4,7 +4,7 @@ use serde_json::Value as Json;
 
 use super::{Form, Ledger, Path, Table};
 use crate::document::{Node, Value};
-use crate::fault::Fault;
+use crate::fault::{Fault, shortened};
 use crate::nearest::nearest;
 use crate::quantity::Quantity;
 use crate::source::Place;
@@ -78,6 +78,25 @@ impl<'a> Item<'a> {
     /// The list, if it is one.
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.node.value, Value::Array(_))
+    }
+
+    /// The number of entries, if it is a list.
+    pub(crate) fn list_length(&self) -> Option<usize> {
+        match &self.node.value {
+            Value::Array(items) => Some(items.len()),
+            _ => None,
+        }
+    }
+
+    /// Reports a list of the wrong length.
+    pub(crate) fn wrong_length(&self, allowed: &str) {
+        let found = self.list_length().unwrap_or_default();
+        self.ledger
+            .report_value(self.place(), |value| Fault::WrongLength {
+                value,
+                found,
+                allowed: format!("allowed: {allowed}"),
+            });
     }
 
     pub(crate) fn is_table(&self) -> bool {
@@ -259,11 +278,19 @@ impl<'a> Item<'a> {
         text: &str,
         allowed: impl Iterator<Item = &'w str> + Clone,
     ) {
+        /// Nobody reads more; a deck with as many wrong names would take as many copies.
+        const MOST: usize = 30;
+        let few = allowed.clone().nth(100 * MOST).is_none();
+        let nearest = if few {
+            nearest(text, allowed.clone())
+        } else {
+            None
+        };
         self.report(Fault::UnknownWord {
             what,
-            value: text.into(),
-            nearest: nearest(text, allowed.clone()).map(String::from),
-            allowed: allowed.map(String::from).collect(),
+            value: shortened(text),
+            nearest: nearest.map(String::from),
+            allowed: allowed.take(MOST).map(String::from).collect(),
         });
     }
 

@@ -10,7 +10,7 @@ mod survey;
 mod table;
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value as Json};
 
@@ -20,7 +20,7 @@ pub(crate) use survey::{Form, Survey, TableSurvey, below};
 pub(crate) use table::Table;
 
 use crate::document::Node;
-use crate::fault::Fault;
+use crate::fault::{Fault, shortened};
 use crate::finding::Problem;
 use crate::source::{Place, Sources};
 
@@ -28,6 +28,8 @@ use crate::source::{Place, Sources};
 pub(crate) struct Ledger {
     sources: Sources,
     problems: RefCell<Vec<Problem>>,
+    /// Keys that are there, misspelt, with their tables: they are not missing.
+    misspelt: RefCell<BTreeSet<(String, String)>>,
     places: RefCell<BTreeMap<Path, Place>>,
     json: RefCell<Json>,
     survey: Option<RefCell<Survey>>,
@@ -38,6 +40,7 @@ impl Ledger {
         Self {
             sources,
             problems: RefCell::default(),
+            misspelt: RefCell::default(),
             places: RefCell::default(),
             json: RefCell::new(Json::Object(Map::new())),
             survey: None,
@@ -79,9 +82,8 @@ impl Ledger {
 
     /// Takes back that a key is missing: it is there, misspelt.
     fn found_misspelt(&self, key: &str, table: &str) {
-        self.problems.borrow_mut().retain(|problem| {
-            !matches!(problem.subject(), Fault::MissingKey { key: k, table: t, .. } if k == key && t == table)
-        });
+        let found = (key.to_owned(), table.to_owned());
+        self.misspelt.borrow_mut().insert(found);
     }
 
     /// Reports with the text at the place.
@@ -92,17 +94,13 @@ impl Ledger {
 
     /// The text at a place, shortened if it is long.
     fn excerpt(&self, place: Place) -> String {
-        const LONGEST: usize = 60;
         let at = self.sources.locate(place);
         let text = at.excerpt();
         let text = text
             .strip_prefix('"')
             .and_then(|inner| inner.strip_suffix('"'))
             .unwrap_or(text);
-        if text.chars().count() <= LONGEST {
-            return text.into();
-        }
-        text.chars().take(LONGEST).chain("…".chars()).collect()
+        shortened(text)
     }
 
     fn note_place(&self, path: &Path, place: Place) {
@@ -138,8 +136,16 @@ impl Ledger {
 
     /// Closes the ledger.
     pub(crate) fn close(self) -> Closed {
+        let mut problems = self.problems.into_inner();
+        let misspelt = self.misspelt.into_inner();
+        problems.retain(|problem| match problem.subject() {
+            Fault::MissingKey { key, table, .. } => {
+                !misspelt.contains(&(key.clone(), table.clone()))
+            }
+            _ => true,
+        });
         Closed {
-            problems: self.problems.into_inner(),
+            problems,
             record: Record {
                 sources: self.sources,
                 places: self.places.into_inner(),

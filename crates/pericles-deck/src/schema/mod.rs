@@ -6,6 +6,8 @@
 //! more than the reader, never less.
 
 mod descriptions;
+#[cfg(test)]
+mod extremes;
 mod json;
 mod markdown;
 mod specimens;

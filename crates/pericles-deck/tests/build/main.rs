@@ -7,6 +7,7 @@ mod conditions;
 mod ends;
 mod initial;
 mod plate;
+mod plausible;
 mod points;
 mod schemes;
 mod sense;

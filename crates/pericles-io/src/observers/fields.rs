@@ -55,7 +55,7 @@ impl FieldSeries {
         self
     }
 
-    /// The same for a surface, whose triangles become cells; its files hold the kinetic energy density besides.
+    /// The same for a surface, whose triangles become cells.
     pub fn of_surface(mut self, surface: Arc<Surface>) -> Self {
         self.surface = Some(surface);
         self
@@ -89,7 +89,7 @@ impl FieldSeries {
             .body
             .get_or_insert_with(|| Arc::new(FixedPart::of(cloud, surface)));
         let numbering = &body.numbering;
-        let mut columns: Vec<Column> = self
+        let columns: Vec<Column> = self
             .wanted
             .iter()
             .flat_map(|&field| columns(field, snapshot))
@@ -99,14 +99,6 @@ impl FieldSeries {
                 values: numbering.apply(array).into_owned(),
             })
             .collect();
-        if self.surface.is_some() {
-            let kinetic = snapshot.kinetic_energy_density();
-            columns.push(Column {
-                name: "Kinetic_Energy_Density".into(),
-                vector: false,
-                values: numbering.apply(&kinetic).into_owned(),
-            });
-        }
         Output {
             body: Arc::clone(body),
             time: state.t,

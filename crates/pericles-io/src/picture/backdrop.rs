@@ -3,7 +3,7 @@
 use super::colour::ColourMap;
 use super::drawing::Drawing;
 use super::frame::{ColourBar, Frame, finite_range, widened};
-use super::units::Shown;
+use pericles::units::Shown;
 
 /// A map of numbers over both axes of a [`LineChart`](super::LineChart), with a colour bar.
 #[derive(Debug, Clone)]

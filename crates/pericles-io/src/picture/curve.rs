@@ -5,7 +5,7 @@ use super::clip::dashes;
 use super::colour::CURVES;
 use super::drawing::Drawing;
 use super::frame::{Scale, Sizes, finite_range, widened};
-use super::units::Shown;
+use pericles::units::Shown;
 
 /// White space beyond the data, as a part of the axis.
 const MARGIN: f64 = 0.04;

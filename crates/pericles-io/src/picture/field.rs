@@ -8,9 +8,9 @@ use super::curve::{Axis, Curve};
 use super::drawing::Drawing;
 use super::frame::{ColourBar, Header, finite_range, widened};
 use super::line_chart::LineChart;
-use super::units::{Shown, quantity};
 use super::{plane, solid};
 use crate::IoError;
+use pericles::units::{Shown, quantity};
 
 /// The edges of the cells that the points stand for, in metres.
 #[derive(Debug, Clone, Copy)]

@@ -5,7 +5,7 @@ use super::colour::ColourMap;
 use super::drawing::Drawing;
 use super::text::{self, Align, Style};
 use super::ticks::Ticks;
-use super::units::Shown;
+use pericles::units::Shown;
 
 const GRID: Rgb = [224, 224, 224];
 

@@ -9,8 +9,8 @@ use super::curve::{Axis, Curve, Pen};
 use super::drawing::Drawing;
 use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
 use super::text::{self, Align, Style};
-use super::units::quantity;
 use crate::IoError;
+use pericles::units::quantity;
 
 /// Curves over a common axis.
 #[derive(Debug, Clone)]

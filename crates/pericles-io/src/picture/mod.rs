@@ -44,7 +44,6 @@ mod solid;
 mod svg;
 mod text;
 mod ticks;
-mod units;
 
 pub use animation::write_animation;
 pub use backdrop::Backdrop;
@@ -52,4 +51,4 @@ pub use colour::ColourMap;
 pub use curve::{Axis, Curve};
 pub use field::{CellSize, FieldPicture};
 pub use line_chart::LineChart;
-pub use units::quantity;
+pub use pericles::units::quantity;

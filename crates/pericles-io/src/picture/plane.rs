@@ -5,7 +5,7 @@ use super::field::Scene;
 use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
 use super::raster::Raster;
 use super::ticks::Ticks;
-use super::units::Shown;
+use pericles::units::Shown;
 
 /// White space around the body, as a part of its larger side.
 const MARGIN: f64 = 0.03;

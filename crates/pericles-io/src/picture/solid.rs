@@ -8,7 +8,7 @@ use super::frame::{Area, ColourBar, Sizes};
 use super::raster::{Face, Raster};
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
-use super::units::quantity;
+use pericles::units::quantity;
 
 const MARGIN: f64 = 0.03;
 const FLATTEST: f64 = 0.2;

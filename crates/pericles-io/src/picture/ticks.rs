@@ -1,6 +1,6 @@
 //! Places and labels of ticks.
 
-use super::units::{power_of_ten, superscript};
+use pericles::units::{power_of_ten, superscript};
 
 /// The ticks of an axis or a colour bar.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -32,6 +32,8 @@ pub enum Field {
     Strain,
     /// Volume of the point, m³; its area on a surface, m². The same at all times.
     Volume,
+    /// Kinetic energy density ½ ρ v², J/m³.
+    KineticEnergyDensity,
 }
 
 impl Field {
@@ -45,7 +47,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -56,6 +58,7 @@ impl Field {
         Self::Stress,
         Self::Strain,
         Self::Volume,
+        Self::KineticEnergyDensity,
     ];
 
     /// Name in files.
@@ -71,6 +74,7 @@ impl Field {
             Self::Stress => "Stress",
             Self::Strain => "Strain",
             Self::Volume => "Volume",
+            Self::KineticEnergyDensity => "Kinetic_Energy_Density",
         }
     }
 
@@ -82,7 +86,7 @@ impl Field {
             Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
             Self::Stress => "Pa",
             Self::Damage | Self::Strain => "",
-            Self::StrainEnergyDensity => "J/m³",
+            Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
             Self::Volume => "m³",
         }
     }
@@ -164,6 +168,7 @@ pub struct Snapshot<'a> {
     force: OnceCell<Vec<f64>>,
     damage: OnceCell<Vec<f64>>,
     energy_density: OnceCell<Vec<f64>>,
+    kinetic_density: OnceCell<Vec<f64>>,
     external: OnceCell<Vec<f64>>,
     reaction: OnceCell<Vec<f64>>,
     stress: OnceCell<Vec<f64>>,
@@ -182,6 +187,7 @@ impl<'a> Snapshot<'a> {
             force: OnceCell::new(),
             damage: OnceCell::new(),
             energy_density: OnceCell::new(),
+            kinetic_density: OnceCell::new(),
             external: OnceCell::new(),
             reaction: OnceCell::new(),
             stress: OnceCell::new(),
@@ -261,6 +267,9 @@ impl<'a> Snapshot<'a> {
             Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
             Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
             Field::Volume => self.system.cloud().volumes(),
+            Field::KineticEnergyDensity => self
+                .kinetic_density
+                .get_or_init(|| self.kinetic_energy_density()),
         }
     }
 

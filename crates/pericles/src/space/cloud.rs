@@ -59,11 +59,26 @@ impl PointCloud {
     ///
     /// `section` is the cross-section's area in 1D (m²), the thickness in 2D (m) and 1 in 3D, so that a cell of size Δx has volume
     /// section · Δx^dimension. The cell size used by volume corrections is that of the mean volume.
+    ///
+    /// # Errors
+    /// No points or too many; arrays of wrong lengths; volumes that are not positive; coordinates that are not finite, or so large that double precision
+    /// does not resolve the spacing.
     pub fn new(
         dimension: usize,
         positions: Vec<f64>,
         volumes: Vec<f64>,
         section: f64,
+    ) -> Result<Self> {
+        Self::with_spacing(dimension, positions, volumes, section, None)
+    }
+
+    /// The same with a spacing of its own; without one that of the mean cell.
+    fn with_spacing(
+        dimension: usize,
+        positions: Vec<f64>,
+        volumes: Vec<f64>,
+        section: f64,
+        spacing: Option<f64>,
     ) -> Result<Self> {
         positive("the section (area in 1D, thickness in 2D)", section)?;
         let n = volumes.len();
@@ -92,8 +107,11 @@ impl PointCloud {
                 value: positions[entry],
             });
         }
-        let mean = volumes.iter().sum::<f64>() / n as f64;
-        let spacing = (mean / section).powf(1.0 / dimension as f64);
+        let spacing = spacing.unwrap_or_else(|| {
+            let mean = volumes.iter().sum::<f64>() / n as f64;
+            (mean / section).powf(1.0 / dimension as f64)
+        });
+        check_resolution(&positions, spacing)?;
         Ok(Self {
             dimension,
             positions,
@@ -136,8 +154,8 @@ impl PointCloud {
         let flat = (0..3)
             .flat_map(|c| positions.iter().map(move |position| position[c]))
             .collect();
-        let mut cloud = Self::new(3, flat, areas, 1.0)?;
-        cloud.spacing = (surface.area() / surface.len() as f64).sqrt();
+        let spacing = (surface.area() / surface.len() as f64).sqrt();
+        let mut cloud = Self::with_spacing(3, flat, areas, 1.0, Some(spacing))?;
         cloud.user_numbers = surface.user_numbers().to_vec();
         Ok(cloud)
     }
@@ -158,8 +176,9 @@ impl PointCloud {
             }
         }
         let volume = section * lattice.spacing.powi(dimension as i32);
-        let mut cloud = Self::new(dimension, positions, vec![volume; n], section)?;
-        cloud.spacing = lattice.spacing;
+        let spacing = Some(lattice.spacing);
+        let mut cloud =
+            Self::with_spacing(dimension, positions, vec![volume; n], section, spacing)?;
         cloud.cell_sides = Some([lattice.spacing; 3]);
         cloud.lattice = Some(lattice);
         Ok(cloud)
@@ -181,9 +200,7 @@ impl PointCloud {
         section: f64,
         spacing: f64,
     ) -> Result<Self> {
-        let mut cloud = Self::new(dimension, positions, volumes, section)?;
-        cloud.spacing = spacing;
-        Ok(cloud)
+        Self::with_spacing(dimension, positions, volumes, section, Some(spacing))
     }
 
     /// The same points with the numbers and blocks of a list.
@@ -327,5 +344,36 @@ impl PointCloud {
             }
         }
         best.0
+    }
+}
+
+/// Refuses positions whose rounding is not small beside the spacing: points would coincide or be as far apart as rounding says.
+fn check_resolution(positions: &[f64], spacing: f64) -> Result<()> {
+    /// As exact as a side must be a whole number of cells.
+    const SHARE: f64 = 1e-6;
+    let farthest = positions.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let resolution = f64::EPSILON * farthest;
+    if resolution <= SHARE * spacing {
+        return Ok(());
+    }
+    Err(PericlesError::Unresolved {
+        farthest,
+        resolution,
+        spacing,
+        allowed: SHARE * spacing / f64::EPSILON,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_must_resolve_the_spacing() {
+        let pair = |x: f64| PointCloud::new(1, vec![x, x + 1.0], vec![1.0; 2], 1.0);
+        assert!(pair(1e9).is_ok());
+        let message = pair(-1e12).unwrap_err().to_string();
+        assert!(message.contains("1000 Gm from the origin"), "{message}");
+        assert!(message.contains("4.50 Gm"), "{message}");
     }
 }

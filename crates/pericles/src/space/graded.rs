@@ -98,6 +98,39 @@ impl GradedGrid {
         Ok(count)
     }
 
+    /// The numbers of the holes without a cell's centre inside the outline: they take nothing from the body.
+    ///
+    /// # Errors
+    /// Those of the grid.
+    pub fn idle_holes(&self) -> Result<Vec<usize>> {
+        let mut idle: Vec<usize> = (0..self.grid.holes.len()).collect();
+        if idle.is_empty() {
+            return Ok(idle);
+        }
+        let cells = self.grid.cells()?;
+        let shape = cells.shape.map(|count| count as i32);
+        for z in 0..shape[2] {
+            for y in 0..shape[1] {
+                for x in 0..shape[0] {
+                    let centre = cells.centre([x, y, z]);
+                    let part = self.part(&cells, centre);
+                    let ratio = part.map_or(1, |part| self.finer[part].ratio);
+                    let size = self.grid.spacing / f64::from(ratio);
+                    for_each_part(self.grid.dimension(), ratio, |offset| {
+                        let place: Point = std::array::from_fn(|c| centre[c] + offset[c] * size);
+                        if cells.is_in_outline(place) {
+                            idle.retain(|&k| !cells.is_in(&self.grid.holes[k], place));
+                        }
+                    });
+                }
+                if idle.is_empty() {
+                    return Ok(idle);
+                }
+            }
+        }
+        Ok(idle)
+    }
+
     /// The part that a large cell belongs to, if it is divided.
     fn part(&self, cells: &Cells<'_>, centre: Point) -> Option<usize> {
         let holds = |finer: &Finer| cells.is_in(&finer.region, centre);

@@ -80,9 +80,33 @@ pub(super) fn whole_cells(length: f64, spacing: f64) -> Result<f64> {
             spacing,
             below: ratio.floor().max(1.0) * spacing,
             above: ratio.ceil() * spacing,
+            fitting: fitting_spacings(&[length], spacing),
         });
     }
     Ok(count)
+}
+
+/// The spacings next below and above one that divide all sides, as far as there are any within a factor of two.
+fn fitting_spacings(sides: &[f64], spacing: f64) -> Vec<f64> {
+    /// Sides of more cells are no sizes of bodies.
+    const MOST: f64 = 1e5;
+    let Some(first) = sides.iter().copied().reduce(f64::min) else {
+        return Vec::new();
+    };
+    let ratio = first / spacing;
+    if !(ratio > 0.0 && ratio < MOST) {
+        return Vec::new();
+    }
+    let whole = |cells: f64| (cells - cells.round()).abs() <= 1e-6 * cells;
+    let fits = |count: &u32| {
+        let dx = first / f64::from(*count);
+        sides.iter().all(|side| whole(side / dx))
+    };
+    let middle = ratio.floor() as u32;
+    let finer = (middle + 1..=2 * middle + 2).find(fits);
+    let coarser = (middle.div_ceil(2).max(1)..=middle).rev().find(fits);
+    let counts = finer.into_iter().chain(coarser);
+    counts.map(|count| first / f64::from(count)).collect()
 }
 
 impl Grid {
@@ -174,7 +198,26 @@ impl Grid {
         let mut cells = 1.0;
         for c in 0..dimension {
             let count = if whole[c] {
-                whole_cells(side[c], spacing)?
+                whole_cells(side[c], spacing).map_err(|error| match error {
+                    // What fits one side alone would not help.
+                    PericlesError::NotWholeCells {
+                        length,
+                        spacing,
+                        below,
+                        above,
+                        ..
+                    } => {
+                        let sides = (0..dimension).filter(|&c| whole[c]).map(|c| side[c]);
+                        PericlesError::NotWholeCells {
+                            length,
+                            spacing,
+                            below,
+                            above,
+                            fitting: fitting_spacings(&sides.collect::<Vec<_>>(), spacing),
+                        }
+                    }
+                    other => other,
+                })?
             } else {
                 (side[c] / spacing - 1e-9).ceil().max(1.0)
             };
@@ -268,6 +311,12 @@ impl Cells<'_> {
         }
     }
 
+    /// Whether a place lies in the shape, holes not counted.
+    pub(super) fn is_in_outline(&self, place: Point) -> bool {
+        let outline = self.outline.as_ref();
+        outline.is_none_or(|outline| self.is_in(outline, place))
+    }
+
     /// Whether a place lies in a region.
     pub(super) fn is_in(&self, region: &Region, place: Point) -> bool {
         region.contains(place, &self.bounds, self.tolerance)
@@ -332,8 +381,23 @@ mod tests {
         assert_eq!(grid(0.9).points().unwrap().len(), 3);
         let error = grid(1.0).points().unwrap_err();
         assert!(matches!(error, PericlesError::NotWholeCells { .. }));
+        let message = error.to_string();
+        assert!(
+            message.contains("spacings of 250 mm and 333.3333 mm fit"),
+            "{message}"
+        );
         assert!(grid(f64::NAN).points().is_err());
         assert!(grid(1e30).points().is_err());
+    }
+
+    #[test]
+    fn suggested_spacings_divide_all_sides() {
+        let near = |sides: &[f64], dx| fitting_spacings(sides, dx);
+        assert_eq!(near(&[0.1, 0.04], 0.0007), [0.04 / 58.0, 0.04 / 56.0]);
+        assert_eq!(near(&[1.0], 0.3), [0.25, 1.0 / 3.0]);
+        // No common divisor within a factor of two.
+        assert_eq!(near(&[1.0, std::f64::consts::SQRT_2], 0.3), [0.0; 0]);
+        assert_eq!(near(&[1e300], 1e-300), [0.0; 0]);
     }
 
     #[test]

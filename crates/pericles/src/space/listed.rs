@@ -19,7 +19,7 @@ use crate::error::{PericlesError, Result};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ListedPoints {
-    /// Reference positions, m; components beyond the body's dimension are zero.
+    /// Reference positions, m; components beyond the body's dimension are not used.
     pub positions: Vec<Point>,
     /// The block of each point: a part of the body, by number.
     pub blocks: Vec<u32>,

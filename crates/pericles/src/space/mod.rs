@@ -22,7 +22,7 @@ pub use graded::{Finer, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
 pub use listed::ListedPoints;
 pub use quadrature::gauss_bar;
-pub use rectangular::rectangular_cells;
+pub use rectangular::{idle_holes, rectangular_cells};
 pub use region::{Face, Region};
 
 /// A point or vector in space; components beyond the body's dimension are zero.

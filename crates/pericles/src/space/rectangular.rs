@@ -17,48 +17,11 @@ pub fn rectangular_cells(
     section: f64,
     holes: &[Region],
 ) -> Result<PointCloud> {
+    let cells = BoxOfCells::new(origin, size, spacing)?;
     let dimension = size.len();
-    if !(1..=3).contains(&dimension) || spacing.len() != dimension {
-        return Err(PericlesError::WrongDimension {
-            what: "a box with this number of sides and a spacing for each",
-            needed: "1, 2 or 3",
-            dimension: spacing.len(),
-        });
-    }
-    let mut shape = [1usize; 3];
-    let mut cells = 1.0;
-    for c in 0..dimension {
-        let count = whole_cells(size[c], spacing[c])?;
-        cells *= count;
-        if cells > CELL_LIMIT as f64 {
-            return Err(PericlesError::TooManyPoints {
-                cells,
-                limit: CELL_LIMIT,
-            });
-        }
-        shape[c] = count as usize;
-    }
-    let least = spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let centre = |cell: usize| -> Point {
-        let row = cell / shape[0];
-        let steps = [cell % shape[0], row % shape[1], row / shape[1]];
-        std::array::from_fn(|c| match spacing.get(c) {
-            Some(dx) => origin[c] + (steps[c] as f64 + 0.5) * dx,
-            None => 0.0,
-        })
-    };
-    let mut end = [0.0; 3];
-    for c in 0..dimension {
-        end[c] = origin[c] + size[c];
-    }
-    let bounds = [origin, end];
-    let in_hole = |place: &Point| {
-        let holds = |hole: &Region| hole.contains(*place, &bounds, 1e-9 * least);
-        holes.iter().any(holds)
-    };
-    let places: Vec<Point> = (0..shape.iter().product())
-        .map(centre)
-        .filter(|place| !in_hole(place))
+    let places: Vec<Point> = cells
+        .centres()
+        .filter(|place| !holes.iter().any(|hole| cells.is_in(hole, *place)))
         .collect();
     let positions = (0..dimension)
         .flat_map(|c| places.iter().map(move |place| place[c]))
@@ -67,6 +30,92 @@ pub fn rectangular_cells(
     let cloud = PointCloud::new(dimension, positions, vec![volume; places.len()], section)?;
     let sides = std::array::from_fn(|c| spacing.get(c).copied().unwrap_or(1.0));
     Ok(cloud.with_cell_sides(sides))
+}
+
+/// The numbers of the holes without a centre of these cells: they take nothing from the body.
+///
+/// # Errors
+/// As [`rectangular_cells`].
+pub fn idle_holes(
+    origin: Point,
+    size: &[f64],
+    spacing: &[f64],
+    holes: &[Region],
+) -> Result<Vec<usize>> {
+    let cells = BoxOfCells::new(origin, size, spacing)?;
+    let mut idle: Vec<usize> = (0..holes.len()).collect();
+    for place in cells.centres() {
+        if idle.is_empty() {
+            break;
+        }
+        idle.retain(|&k| !cells.is_in(&holes[k], place));
+    }
+    Ok(idle)
+}
+
+/// The cells that fill a box.
+struct BoxOfCells<'a> {
+    origin: Point,
+    spacing: &'a [f64],
+    shape: [usize; 3],
+    bounds: [Point; 2],
+}
+
+impl<'a> BoxOfCells<'a> {
+    fn new(origin: Point, size: &[f64], spacing: &'a [f64]) -> Result<Self> {
+        let dimension = size.len();
+        if !(1..=3).contains(&dimension) || spacing.len() != dimension {
+            return Err(PericlesError::WrongDimension {
+                what: "a box with this number of sides and a spacing for each",
+                needed: "1, 2 or 3",
+                dimension: spacing.len(),
+            });
+        }
+        let mut shape = [1usize; 3];
+        let mut cells = 1.0;
+        for c in 0..dimension {
+            let count = whole_cells(size[c], spacing[c])?;
+            cells *= count;
+            if cells > CELL_LIMIT as f64 {
+                return Err(PericlesError::TooManyPoints {
+                    cells,
+                    limit: CELL_LIMIT,
+                });
+            }
+            shape[c] = count as usize;
+        }
+        let mut end = [0.0; 3];
+        for c in 0..dimension {
+            end[c] = origin[c] + size[c];
+        }
+        Ok(Self {
+            origin,
+            spacing,
+            shape,
+            bounds: [origin, end],
+        })
+    }
+
+    /// The centres, x fastest.
+    fn centres(&self) -> impl Iterator<Item = Point> + '_ {
+        (0..self.shape.iter().product()).map(|cell: usize| {
+            let row = cell / self.shape[0];
+            let steps = [
+                cell % self.shape[0],
+                row % self.shape[1],
+                row / self.shape[1],
+            ];
+            std::array::from_fn(|c| match self.spacing.get(c) {
+                Some(dx) => self.origin[c] + (steps[c] as f64 + 0.5) * dx,
+                None => 0.0,
+            })
+        })
+    }
+
+    fn is_in(&self, region: &Region, place: Point) -> bool {
+        let least = self.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+        region.contains(place, &self.bounds, 1e-9 * least)
+    }
 }
 
 #[cfg(test)]

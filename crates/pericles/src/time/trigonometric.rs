@@ -257,6 +257,16 @@ fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> 
         _ => None,
     };
     let product = |x: &[f64], out: &mut [f64]| system.vibration_into(reference, x, out);
+    let bound = system
+        .operator()
+        .frequency_bound(&|i| system.density().at(i));
+    if uniform.is_none() && !(bound > 0.0 && bound.is_finite()) {
+        return Err(PericlesError::SchemeNotUsable {
+            scheme: NAME,
+            reason: "its forces have no linear part at rest (on a surface: p above 2), and the scheme is the exact flow of that part; \
+                     use scheme = \"rk4\", \"newmark\" or \"discrete-gradient\"",
+        });
+    }
     Ok(match (options.functions, uniform) {
         (FunctionMethod::Fastest | FunctionMethod::Fourier, Some(density)) => {
             Engine::Fourier(density)
@@ -268,12 +278,6 @@ fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> 
             });
         }
         (FunctionMethod::Fastest | FunctionMethod::Chebyshev, _) => {
-            let bound = system
-                .operator()
-                .frequency_bound(&|i| system.density().at(i));
-            if !(bound > 0.0 && bound.is_finite()) {
-                return Err(PericlesError::NoStiffness);
-            }
             let square = bound * bound + options.regularisation;
             Engine::Krylov(Box::new(Chebyshev::new(square, reference.len())))
         }

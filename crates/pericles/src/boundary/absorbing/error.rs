@@ -82,6 +82,11 @@ pub enum AbsorbingError {
         /// What it is or has.
         reason: &'static str,
     },
+    /// A bar whose faces are joined.
+    #[error(
+        "a periodic bar has no end that could absorb waves; leave out `periodic` or the absorbing boundary"
+    )]
+    Periodic,
     /// Points that do not follow each other at equal distances.
     #[error(
         "an exact absorbing end needs a regular grid without holes: point {point} is not one spacing from the next"
@@ -92,7 +97,8 @@ pub enum AbsorbingError {
     },
     /// A layer that the horizon reaches across.
     #[error(
-        "the outer layer at {side} must be one horizon deep, {needed} points, and be followed by as many: the body has {points} points"
+        "the outer layer at {side} is one horizon deep ({needed} points) and must be followed by as many points: the body needs at least {} points and has {points}",
+        2 * needed
     )]
     LayerTooThin {
         /// The side.

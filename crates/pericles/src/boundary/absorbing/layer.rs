@@ -241,6 +241,9 @@ fn check_bar(cloud: &PointCloud) -> Result<(), AbsorbingError> {
     if dimension != 1 {
         return Err(AbsorbingError::NotABar { dimension });
     }
+    if cloud.is_periodic() {
+        return Err(AbsorbingError::Periodic);
+    }
     let gap = |i: &usize| {
         let apart = cloud.axis(0)[i + 1] - cloud.axis(0)[*i];
         (apart - cloud.spacing()).abs() > 1e-6 * cloud.spacing()

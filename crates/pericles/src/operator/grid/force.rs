@@ -17,7 +17,7 @@ use crate::family::{Crack, Cut, EndRule, LANES};
 use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{DamageMeasure, ForceOperator, InstructionSet, On};
+use crate::operator::{BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
 use crate::parallel::{components, components_mut, for_each_part};
 use crate::space::PointCloud;
 
@@ -103,10 +103,16 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     ) -> Result<Self> {
         let lattice = match cloud.lattice() {
             Some(lattice) if cloud.dimension() == D => lattice,
+            None if cloud.dimension() == D => {
+                return Err(PericlesError::FormNotUsable {
+                    form: BondForm::Grid.name(),
+                    reason: "its points lie on no regular grid; use \"list\"",
+                });
+            }
             _ => {
                 return Err(PericlesError::WrongDimension {
                     what: "the grid operator",
-                    needed: ["1, on a lattice", "2, on a lattice", "3, on a lattice"][D - 1],
+                    needed: ["1", "2", "3"][D - 1],
                     dimension: cloud.dimension(),
                 });
             }

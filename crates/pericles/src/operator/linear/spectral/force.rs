@@ -351,7 +351,8 @@ impl<const D: usize> ForceOperator for SpectralForce<D> {
 
     /// Cells within the horizon of all points, about; no loop runs over them.
     fn directed_bonds(&self) -> u64 {
-        (self.family * self.points() as f64) as u64
+        // Whole bonds, each seen from both of its ends.
+        2 * (0.5 * self.family * self.points() as f64).round() as u64
     }
 
     fn bytes(&self) -> usize {

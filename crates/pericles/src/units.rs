@@ -1,4 +1,4 @@
-//! Sizes a reader can grasp: SI prefixes, or a power of ten where a prefix would be wrong.
+//! Numbers as people read them: few digits, with SI prefixes, or a power of ten where a prefix would be wrong.
 
 /// Symbols that take a prefix, alone or as the first of a product or quotient.
 const PREFIXED: [&str; 10] = ["m", "s", "N", "J", "Pa", "W", "Hz", "g", "K", "B"];
@@ -8,14 +8,16 @@ const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
 
 /// How numbers of one kind are shown: divided by `factor`, and in `unit`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Shown {
-    pub(super) factor: f64,
-    pub(super) unit: String,
+pub struct Shown {
+    /// What values are divided by.
+    pub factor: f64,
+    /// The unit with its prefix or power of ten.
+    pub unit: String,
 }
 
 impl Shown {
     /// The way that suits numbers up to `largest` in size.
-    pub(super) fn for_size(largest: f64, unit: &str) -> Self {
+    pub fn for_size(largest: f64, unit: &str) -> Self {
         if !largest.is_finite() || largest <= 0.0 {
             return Self::plain(unit);
         }
@@ -45,7 +47,7 @@ impl Shown {
     }
 
     /// As given.
-    pub(super) fn plain(unit: &str) -> Self {
+    pub fn plain(unit: &str) -> Self {
         Self {
             factor: 1.0,
             unit: unit.to_owned(),
@@ -53,7 +55,7 @@ impl Shown {
     }
 
     /// `name [unit]`, or the bare name of a pure number.
-    pub(super) fn label(&self, name: &str) -> String {
+    pub fn label(&self, name: &str) -> String {
         match (name.is_empty(), self.unit.is_empty()) {
             (_, true) => name.to_owned(),
             (true, false) => format!("[{}]", self.unit),
@@ -82,13 +84,43 @@ pub fn quantity(value: f64, unit: &str) -> String {
         .to_owned()
 }
 
+/// One quantity with its SI prefix and up to seven digits, to be written into an input: `0.7017544 mm`.
+pub fn precise(value: f64, unit: &str) -> String {
+    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    let shown = Shown::for_size(rounded.abs(), unit);
+    let scaled: f64 = format!("{:.6e}", rounded / shown.factor)
+        .parse()
+        .unwrap_or(rounded);
+    if scaled != 0.0 && !(1e-3..1e6).contains(&scaled.abs()) {
+        return format!("{rounded:e} {unit}");
+    }
+    format!("{scaled} {}", shown.unit).trim_end().to_owned()
+}
+
+/// A number with so many significant digits, without an exponent where that is readable: `0.001809`, `1540`, `7.20e10`.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value);
+    let size = rounded.abs();
+    if (1e-4..1e7).contains(&size) {
+        let decimals = (digits as f64 - 1.0 - size.log10().floor()).clamp(0.0, 12.0);
+        format!("{rounded:.*}", decimals as usize)
+    } else {
+        format!("{rounded:.*e}", digits.saturating_sub(1))
+    }
+}
+
 /// 10ⁿ, the nearest number to it.
-pub(super) fn power_of_ten(power: i32) -> f64 {
+pub fn power_of_ten(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::NAN)
 }
 
 /// A whole number as superscript digits.
-pub(super) fn superscript(number: i32) -> String {
+pub fn superscript(number: i32) -> String {
     number
         .to_string()
         .chars()
@@ -153,6 +185,23 @@ mod tests {
         ] {
             assert_eq!(quantity(value, "s"), text);
         }
+    }
+
+    #[test]
+    fn precise_quantities_have_the_digits_that_are_needed() {
+        assert_eq!(precise(0.04 / 57.0, "m"), "701.7544 µm");
+        assert_eq!(precise(0.1, "m"), "100 mm");
+        assert_eq!(precise(1e30, "m"), "1e30 m");
+    }
+
+    #[test]
+    fn significant_digits() {
+        assert_eq!(significant(0.001_808_7, 4), "0.001809");
+        assert_eq!(significant(1541.3, 3), "1540");
+        assert_eq!(significant(9.996, 3), "10.0");
+        assert_eq!(significant(7.2e10, 3), "7.20e10");
+        assert_eq!(significant(-3.0e-9, 2), "-3.0e-9");
+        assert_eq!(significant(f64::NAN, 2), "NaN");
     }
 
     #[test]
