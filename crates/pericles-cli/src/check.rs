@@ -237,13 +237,22 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
 
 fn time(facts: &Facts) -> Vec<Line> {
     let mut lines = Vec::new();
-    if let (Some(omega), Some(limit)) = (facts.highest_frequency, facts.stable_step) {
-        let doubt = if facts.frequency_converged == Some(false) {
-            " (an estimate; the step is that of a bound)"
-        } else {
-            ""
+    if let (Some(omega), Some(bound)) = (facts.highest_frequency, facts.highest_frequency_bound) {
+        let certainty = match facts.highest_frequency_failure_probability {
+            Some(probability) if probability > 0.0 => {
+                format!(" (bound from random vectors, wrong with probability {probability:.0e})")
+            }
+            _ => String::new(),
         };
-        lines.push(("highest frequency", format!("{omega:.4e} 1/s{doubt}")));
+        let range = range(omega, bound);
+        lines.push(("highest frequency", format!("{range}{certainty}")));
+    }
+    if let (Some(omega), Some(bound)) = (facts.limiting_frequency, facts.limiting_frequency_bound)
+        && facts.refinement.is_some()
+    {
+        lines.push(("of the coarse step", range(omega, bound)));
+    }
+    if let Some(limit) = facts.stable_step {
         lines.push((
             "stable step",
             format!("{} ({})", quantity(limit, "s"), facts.scheme),
@@ -251,7 +260,7 @@ fn time(facts: &Facts) -> Vec<Line> {
     }
     let share = facts
         .stable_step
-        .map(|limit| format!(", {} of the stable one", percent(facts.dt / limit)))
+        .map(|limit| step_share(facts.dt / limit))
         .unwrap_or_default();
     lines.push((
         "steps",
@@ -263,4 +272,21 @@ fn time(facts: &Facts) -> Vec<Line> {
         ),
     ));
     lines
+}
+
+/// A frequency between an estimate and a bound.
+fn range(omega: f64, bound: f64) -> String {
+    format!(
+        "{omega:.4e} 1/s, at most {} more",
+        percent((bound / omega - 1.0).max(0.0))
+    )
+}
+
+/// A step over the stable one. A step above it is never called one of 100 %.
+fn step_share(ratio: f64) -> String {
+    if ratio > 1.0 {
+        format!(", {} above the stable one", percent(ratio - 1.0))
+    } else {
+        format!(", {} of the stable one", percent(ratio))
+    }
 }

@@ -283,8 +283,13 @@ impl Session {
             deadline.begin();
         }
         let mut trouble = None;
+        let mut warned = self.quiet;
         let outcome = self.simulation.run(|simulation| {
             let state = simulation.state();
+            if let (Some(found), false) = (simulation.instability(), warned) {
+                warned = true;
+                console::note(format_args!("warning: {found}"));
+            }
             progress.step(state.step, state.t);
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
             if signals.asked().is_some() || deadline.as_mut().is_some_and(late) {

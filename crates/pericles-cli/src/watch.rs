@@ -6,6 +6,7 @@
 //! | momentum account | [`MOMENTUM`] of the momentum that the energy there was could have made; [`IMPULSE`] of it with supports or two time steps |
 //! | loads and reactions of a static state | [`REACTIONS`] of the reactions |
 //! | points near breaking, where nothing broke | [`ENDANGERED`] of the points have bonds beyond [`NEAR`] of the critical stretch |
+//! | breaking within coarse steps | [`COARSE`] of the broken bonds |
 //! | displacements of a run that began as its own mirror image | they differ from their image by [`ASYMMETRY`] of the largest |
 //!
 //! Energy and momentum are not looked at where static states begin with loads that act at once. Waves that the grid cannot carry are found before the run (`pericles check`).
@@ -27,16 +28,19 @@ const IMPULSE: f64 = 1e-3;
 const REACTIONS: f64 = 1e-4;
 const NEAR: f64 = 0.9;
 const ENDANGERED: f64 = 0.01;
+const COARSE: f64 = 0.05;
 /// Rounding that did not grow is ten orders below.
 const ASYMMETRY: f64 = 1e-6;
 
 /// What is odd.
 pub(crate) fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     let found = [
+        simulation.instability().map(ToString::to_string),
         energy(simulation, audit),
         momentum(simulation, audit),
         reactions(simulation),
         endangered(simulation, audit),
+        coarse_breaking(audit),
         asymmetry(audit),
     ];
     found.into_iter().flatten().collect()
@@ -48,9 +52,13 @@ fn energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     }
     let scale = audit.external_work.abs().max(audit.initial_energy.abs());
     let drift = audit.largest_balance / scale;
+    let advice = simulation
+        .integrator()
+        .intended_drift()
+        .unwrap_or("a smaller time step shows whether results depend on it");
     (drift > ENERGY).then(|| {
         format!(
-            "the energy account is off by up to {}: a smaller time step shows whether results depend on it",
+            "the energy account is off by up to {}: {advice}",
             percent(drift)
         )
     })
@@ -144,6 +152,17 @@ fn endangered(simulation: &Simulation, audit: &Audit) -> Option<String> {
             "{} of the points have bonds beyond {} of the critical stretch, and none broke: a little more load would break them",
             percent(share),
             percent(NEAR)
+        )
+    })
+}
+
+/// Bonds that break within steps too coarse for them dissipate what they should, but when and which of them break depends on the step.
+fn coarse_breaking(audit: &Audit) -> Option<String> {
+    let share = audit.coarse_breaks as f64 / audit.broken_bonds.max(1) as f64;
+    (share > COARSE).then(|| {
+        format!(
+            "{} of the broken bonds were stretched from compression, or to more than twice the critical stretch, within one step: a smaller dt shows whether the results depend on it",
+            percent(share)
         )
     })
 }
