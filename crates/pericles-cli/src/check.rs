@@ -482,21 +482,31 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
 
 fn time(facts: &Facts) -> Vec<Line> {
     let mut lines = Vec::new();
-    if let (Some(omega), Some(limit)) = (facts.highest_frequency, facts.stable_step) {
-        let doubt = if facts.frequency_converged == Some(false) {
-            " (an estimate; the step is that of a bound)"
-        } else {
-            ""
+    if let (Some(omega), Some(bound)) = (facts.highest_frequency, facts.highest_frequency_bound) {
+        let certainty = match facts.highest_frequency_failure_probability {
+            Some(probability) if probability > 0.0 => {
+                format!(" (bound from random vectors, wrong with probability {probability:.0e})")
+            }
+            _ => String::new(),
         };
-        let text = format!("{omega:.4e} 1/s{doubt}");
-        lines.push(Line::new("highest frequency", text));
+        let range = range(omega, bound);
+        lines.push(
+            Line::new("highest frequency", format!("{range}{certainty}"))
+                .with("highest_frequency_margin", bound / omega - 1.0),
+        );
+    }
+    if let (Some(omega), Some(bound)) = (facts.limiting_frequency, facts.limiting_frequency_bound)
+        && facts.refinement.is_some()
+    {
+        let line = Line::new("of the coarse step", range(omega, bound));
+        lines.push(line.with("limiting_frequency_margin", bound / omega - 1.0));
+    }
+    if let Some(limit) = facts.stable_step {
         let text = format!("{} ({})", quantity(limit, "s"), facts.scheme);
         lines.push(Line::new("stable step", text));
     }
     let ratio = facts.stable_step.map(|limit| facts.dt / limit);
-    let share = ratio
-        .map(|ratio| format!(", {} of the stable one", percent(ratio)))
-        .unwrap_or_default();
+    let share = ratio.map(step_share).unwrap_or_default();
     let end = facts.steps as f64 * facts.dt;
     let text = format!(
         "{} of {}{share}; end at {}",
@@ -506,7 +516,28 @@ fn time(facts: &Facts) -> Vec<Line> {
     );
     let steps = Line::new("steps", text)
         .with("end", end)
-        .with("dt_over_stable_step", ratio);
+        .with("dt_over_stable_step", ratio)
+        .with(
+            "dt_above_stable_step",
+            ratio.map(|ratio| (ratio - 1.0).max(0.0)),
+        );
     lines.push(steps);
     lines
+}
+
+/// A frequency between an estimate and a bound.
+fn range(omega: f64, bound: f64) -> String {
+    format!(
+        "{omega:.4e} 1/s, at most {} more",
+        percent((bound / omega - 1.0).max(0.0))
+    )
+}
+
+/// A step over the stable one. A step above it is never called one of 100 %.
+fn step_share(ratio: f64) -> String {
+    if ratio > 1.0 {
+        format!(", {} above the stable one", percent(ratio - 1.0))
+    } else {
+        format!(", {} of the stable one", percent(ratio))
+    }
 }

@@ -59,9 +59,16 @@ pub(crate) struct Facts {
     pub(crate) shear_error: f64,
     pub(crate) dt: f64,
     pub(crate) steps: u64,
-    /// None if nothing resists motion.
+    /// The body's highest frequency from below, whatever the scheme, 1/s. None if nothing resists motion.
     pub(crate) highest_frequency: Option<f64>,
+    /// The same from above, but for the probability below, 1/s.
+    pub(crate) highest_frequency_bound: Option<f64>,
+    pub(crate) highest_frequency_failure_probability: Option<f64>,
+    /// Whether both agree to 2 %.
     pub(crate) frequency_converged: Option<bool>,
+    /// The frequency that limits the step, from below and from above, 1/s: the highest, except for schemes with two time steps.
+    pub(crate) limiting_frequency: Option<f64>,
+    pub(crate) limiting_frequency_bound: Option<f64>,
     pub(crate) stable_step: Option<f64>,
     /// The estimated peak, files and pictures not counted, bytes.
     pub(crate) memory_estimate: u64,
@@ -213,8 +220,14 @@ impl Facts {
             shear_error: constants.shear_error,
             dt: model.dt,
             steps: model.steps,
-            highest_frequency: model.frequency.map(|f| f.estimate),
-            frequency_converged: model.frequency.map(|f| f.converged),
+            highest_frequency: model.body_frequency.map(|f| f.estimate),
+            highest_frequency_bound: model.body_frequency.map(|f| f.bound),
+            highest_frequency_failure_probability: model
+                .body_frequency
+                .map(|f| f.failure_probability),
+            frequency_converged: model.body_frequency.map(|f| f.converged),
+            limiting_frequency: model.frequency.map(|f| f.estimate),
+            limiting_frequency_bound: model.frequency.map(|f| f.bound),
             stable_step: model.stable_step(),
             memory_estimate: deck.memory_estimate(model),
             scheme: model.integrator.name(),

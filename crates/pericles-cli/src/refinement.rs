@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use pericles::time::{
     HighestFrequency, Integrator, RefinementReport, RungeKutta, State, Tableau, VelocityVerlet,
-    highest_frequency,
 };
 use pericles::{Interrupt, PericlesError, System};
 use pericles_deck::{Deck, FineRegion, Model, Scheme};
@@ -70,7 +69,7 @@ impl RefinementFacts {
     pub(crate) fn of(deck: &Deck, model: &Model) -> Option<Self> {
         let report = model.integrator.refinement()?;
         let ratio = f64::from(report.ratio);
-        let body = highest_frequency(&model.system, &model.state.u).ok();
+        let body = model.body_frequency;
         let limiting = model.frequency.map(|frequency| frequency.estimate);
         Some(Self {
             ratio: report.ratio,

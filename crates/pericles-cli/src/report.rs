@@ -115,6 +115,8 @@ pub(crate) struct Audit {
     /// The same over √(2 · kinetic energy · mass).
     pub(crate) momentum_error_relative: f64,
     pub(crate) broken_bonds: u64,
+    /// Those of them that were stretched from compression, or to many times their critical stretch, within one step.
+    pub(crate) coarse_breaks: u64,
     pub(crate) largest_damage: f64,
     /// The balance over the larger of work and initial energy.
     pub(crate) energy_drift: f64,
@@ -242,11 +244,12 @@ impl Audit {
             momentum_error: error,
             momentum_error_relative: error / (2.0 * energies.kinetic * mass).sqrt(),
             broken_bonds: system.operator().broken_bonds(),
+            coarse_breaks: system.coarse_breaks(),
             largest_damage: damage.iter().fold(0.0, |most: f64, &d| most.max(d)),
             energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
             omega_dt: report
                 .model
-                .highest_frequency
+                .limiting_frequency
                 .map(|omega| omega * report.model.dt),
             evaluated_points: system.evaluated_points(),
             force_rounding: system.operator().rounding(&simulation.state().u),

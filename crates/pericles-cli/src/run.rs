@@ -321,6 +321,7 @@ impl Session {
             deadline.begin();
         }
         let mut trouble = None;
+        let mut warned = self.quiet;
         let mut breakage = Breakage::from(&self.simulation);
         let (warnings, quiet) = (&mut self.report.model.warnings, self.quiet);
         let cost = Cell::new(checkpoints.cost());
@@ -333,6 +334,10 @@ impl Session {
         let interrupt = Interrupt::when(&is_over);
         let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
             let state = simulation.state();
+            if let (Some(found), false) = (simulation.instability(), warned) {
+                warned = true;
+                console::note(format_args!("warning: {found}"));
+            }
             progress.step(state.step, state.t);
             if let Some(warning) = breakage.look(simulation) {
                 if !quiet {

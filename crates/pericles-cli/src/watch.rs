@@ -8,6 +8,7 @@
 //! | loads and reactions of a static state | [`REACTIONS`] of the reactions |
 //! | bonds that break in masses, once while the run goes on | [`BROKEN_AT_ONCE`] of the bonds in one step, [`BROKEN_IN_ALL`] in all |
 //! | points near breaking, where nothing broke | [`ENDANGERED`] of the points have bonds beyond [`NEAR`] of the critical stretch |
+//! | breaking within coarse steps | [`COARSE`] of the broken bonds |
 //! | displacements of a run that began as its own mirror image | they differ from their image by [`ASYMMETRY`] of the largest |
 //!
 //! Static states have no momentum. Waves that the grid cannot carry are found before the run (`pericles check`).
@@ -30,6 +31,7 @@ const IMPULSE: f64 = 1e-3;
 const REACTIONS: f64 = 1e-4;
 const NEAR: f64 = 0.9;
 const ENDANGERED: f64 = 0.01;
+const COARSE: f64 = 0.05;
 /// Rounding that did not grow is ten orders below.
 const ASYMMETRY: f64 = 1e-6;
 
@@ -90,10 +92,12 @@ impl Breakage {
 /// What is odd.
 pub(crate) fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     let found = [
+        simulation.instability().map(ToString::to_string),
         energy(simulation, audit),
         momentum(simulation, audit),
         reactions(simulation),
         endangered(simulation, audit),
+        coarse_breaking(audit),
         asymmetry(audit),
     ];
     found.into_iter().flatten().collect()
@@ -105,9 +109,13 @@ fn energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     }
     let scale = audit.external_work.abs().max(audit.initial_energy.abs());
     let drift = audit.largest_balance / scale;
+    let advice = simulation
+        .integrator()
+        .intended_drift()
+        .unwrap_or("a smaller time step shows whether results depend on it");
     (drift > ENERGY).then(|| {
         format!(
-            "the energy account is off by up to {}: a smaller time step shows whether results depend on it",
+            "the energy account is off by up to {}: {advice}",
             percent(drift)
         )
     })
@@ -206,6 +214,17 @@ fn endangered(simulation: &Simulation, audit: &Audit) -> Option<String> {
             "{} of the points have bonds beyond {} of the critical stretch, and none broke: a little more load would break them",
             percent(share),
             percent(NEAR)
+        )
+    })
+}
+
+/// Bonds that break within steps too coarse for them dissipate what they should, but when and which of them break depends on the step.
+fn coarse_breaking(audit: &Audit) -> Option<String> {
+    let share = audit.coarse_breaks as f64 / audit.broken_bonds.max(1) as f64;
+    (share > COARSE).then(|| {
+        format!(
+            "{} of the broken bonds were stretched from compression, or to more than twice the critical stretch, within one step: a smaller dt shows whether the results depend on it",
+            percent(share)
         )
     })
 }

@@ -171,7 +171,7 @@ pub enum Caution {
         distance: f64,
     },
     /// A step beyond the stable limit, accepted by `allow_unstable`.
-    #[error("the time step {dt:e} s exceeds the stable {limit:e} s")]
+    #[error("the time step {dt:.6e} s is unstable: it exceeds the stable step of {limit:.6e} s")]
     UnstableStep {
         /// The step, s.
         dt: f64,
@@ -192,7 +192,7 @@ pub enum Caution {
     },
     /// A step that may exceed the stable limit.
     #[error(
-        "the time step {dt:e} s exceeds {limit:e} s, up to which it is surely stable; the exact limit could not be found"
+        "the time step {dt:.6e} s may be unstable: it exceeds {limit:.6e} s, up to which the scheme is stable for certain"
     )]
     UncertainStep {
         /// The step, s.

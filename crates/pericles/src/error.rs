@@ -418,15 +418,15 @@ pub enum PericlesError {
     Absorbing(#[from] AbsorbingError),
     /// The inner iteration of a step that does not end.
     #[error(
-        "at t = {t:e} s the inner iteration did not converge: after {iterations} evaluations the velocity still changes by {change:e} (allowed {tolerance:e}); \
-         dt = {dt:e} s, the highest frequency is about {omega:.4e} 1/s, so dt ≤ {safe:.4e} s converges; or give more iterations, or solver = \"newton-krylov\""
+        "{}",
+        inner_iteration(*t, *iterations, *change, *tolerance, *dt, *omega, *safe)
     )]
     InnerIteration {
         /// Time at the end of the step, s.
         t: f64,
-        /// Evaluations done.
+        /// Evaluations allowed.
         iterations: u32,
-        /// Last change of the velocity, m/s.
+        /// Last change of the velocity, m/s; NaN or infinite where the iteration diverged.
         change: f64,
         /// Change allowed, m/s.
         tolerance: f64,
@@ -434,8 +434,8 @@ pub enum PericlesError {
         dt: f64,
         /// Estimate of the highest angular frequency at the state, 1/s.
         omega: f64,
-        /// The largest step that converges in as many iterations, s.
-        safe: f64,
+        /// A step below dt that converges in as many iterations, s; none if the step is not the reason.
+        safe: Option<f64>,
     },
     /// A surface that cannot be used.
     #[error(transparent)]
@@ -482,5 +482,52 @@ fn no_equilibrium(t: f64, iterations: u32, residual: f64, tolerance: f64) -> Str
         format!(
             "at t = {t:.4e} s the forces grow without bound after {iterations} iterations, as where a body becomes much stiffer within a load step"
         )
+    }
+}
+
+/// The message of [`PericlesError::InnerIteration`].
+fn inner_iteration(
+    t: f64,
+    iterations: u32,
+    change: f64,
+    tolerance: f64,
+    dt: f64,
+    omega: f64,
+    safe: Option<f64>,
+) -> String {
+    let evaluations = match iterations {
+        1 => "1 evaluation".to_owned(),
+        several => format!("{several} evaluations"),
+    };
+    let state = if change.is_finite() {
+        format!(
+            "after {evaluations} the velocity still changes by {change:.3e} m/s (allowed: {tolerance:.3e} m/s)"
+        )
+    } else {
+        format!("the iteration diverged within {evaluations}: velocities are NaN or infinite")
+    };
+    let step = match safe {
+        Some(safe) => format!(
+            "dt = {dt:.4e} s with a highest frequency of {omega:.4e} 1/s: give dt ≤ {safe:.4e} s, or "
+        ),
+        None => String::new(),
+    };
+    let more = match iterations {
+        1 => {
+            "give iterations = 2 or more, because one evaluation has nothing to be compared with, "
+        }
+        _ => "give more iterations, ",
+    };
+    format!(
+        "at t = {t:.6e} s the inner iteration did not converge: {state}. {}or solver = \"newton-krylov\"",
+        capital(&format!("{step}{more}"))
+    )
+}
+
+/// A sentence with a capital letter where it begins with a verb.
+fn capital(sentence: &str) -> String {
+    match sentence.strip_prefix("give") {
+        Some(rest) => format!("Give{rest}"),
+        None => sentence.to_owned(),
     }
 }

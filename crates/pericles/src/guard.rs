@@ -1,13 +1,25 @@
-//! The guard of a run: what stops it before it fills a disk with nonsense.
+//! The guard of a run: stops it before it fills a disk with nonsense.
 //!
-//! | what | looked for | in |
+//! | looked for | when | in |
 //! |---|---|---|
-//! | numbers that are none | every [`OFTEN`] steps | velocities |
-//! | energy from nowhere | kinetic every [`OFTEN`], all of it every [`RARELY`] steps | all bodies |
-//! | points that have passed each other | every [`OFTEN`] steps | bars that are not linear: a linear law knows no order of points |
-//! | a step above the bound | every [`RARELY`] steps, and where energy came from nowhere | bodies that are not linear, under explicit schemes of one step, unless the step was too long from the start |
+//! | NaN or infinity | every [`OFTEN`] steps | velocities |
+//! | more kinetic energy than was put in | every [`OFTEN`] steps | all bodies |
+//! | growing kinetic and elastic energy | every step | runs whose step is above the bound of the stable step |
+//! | the same, by a measure that costs no force | every [`OFTEN`] steps | nonlinear bodies under explicit schemes |
+//! | more energy than the scheme conserves | every [`RARELY`] steps | all bodies |
+//! | points that have passed each other | every [`OFTEN`] steps | nonlinear bars: a linear law knows no order of points |
+//! | a step above the bound of a body that stiffened | every [`RARELY`] steps, and where energy appeared | nonlinear bodies under explicit schemes of one step, unless the step was too long from the start |
 //!
-//! Everything is looked for after the last step. The guard touches nothing, so that results do not depend on it; its cost is below one evaluation of the force in a hundred.
+//! Everything is looked for after the last step. The guard changes nothing, so that results do not depend on it. It costs less than one evaluation of the force in a hundred, except where the
+//! step is above the bound: there it costs one evaluation of the energy a step.
+//!
+//! **Growth.** Velocity Verlet conserves H = T + U − dt²/8 a·Ma for linear bodies. H is no measure of growth: it is indefinite beyond the stability limit, where T + U grows without bound at constant H. Below the limit,
+//! with x = dt ω/(the limit of ω dt), H ≥ T + (1 − x²) U, so that T + U cannot exceed H/(1 − x²): a linear body whose step is below the bound cannot grow, and its plain energy, which
+//! may swing by that factor, need not be looked at. At the limit, T + U of a mode can grow (3 + 2√2)-fold in a step, and above it exponentially: a run that is stopped at the first step with 1.7 times the energy
+//! put in has not passed ten times. For nonlinear bodies, whose limit changes, T + dt²/8 a·Ma is the measure, which costs no force: it is bounded by a multiple of the energy like T + U in stable
+//! runs, and grows as T + U does in unstable ones, where T alone is small at full steps.
+//!
+//! **Rounding.** Energies below those of displacements by a few units in the last place, ½ M (ω ε L)² with the body's mass M, frequency bound ω and size L, mean nothing: see [`Watched::rounding`].
 
 use std::fmt;
 
@@ -19,20 +31,24 @@ use crate::time::{Integrator, State, frequency_from_below, highest_frequency};
 const OFTEN: u64 = 20;
 /// Steps between two looks that cost as much as some evaluations of the force.
 const RARELY: u64 = 2000;
-/// Energy over what was there and what was exchanged at which a run is given up: there is room for the errors of coarse steps.
+/// Energy over the energy available at which a run is given up: there is room for the errors of coarse steps.
 const GROWTH: f64 = 2.0;
+/// The same for the sum of kinetic and elastic energy where the step is above the bound.
+const PLAIN_GROWTH: f64 = 1.7;
+/// The same for the measure of nonlinear bodies, over what stable runs can have.
+const SWING: f64 = 5.0;
 /// Evaluations of the tangent for a look at the stiffness.
 const APPLICATIONS: usize = 10;
-/// By how much the bound of the linearised motion may be passed: motion that is not linear does not grow at once.
+/// By how much the bound of the linearised motion may be exceeded: nonlinear motion does not grow at once.
 const SLACK: f64 = 1.02;
 
 /// Why a run is given up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// A velocity is not a number.
+    /// A velocity is NaN or infinite.
     NotANumber,
-    /// More energy than was there and was put in.
+    /// More energy than was there at the start and was exchanged since.
     Growth {
         /// Its ratio to that.
         ratio: f64,
@@ -54,9 +70,12 @@ pub enum Cause {
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotANumber => write!(f, "a velocity is not a number"),
+            Self::NotANumber => write!(f, "a velocity is NaN or infinite"),
+            Self::Growth { ratio } if *ratio < 1e4 => {
+                write!(f, "the energy is {ratio:.1} times what was put in")
+            }
             Self::Growth { ratio } => {
-                write!(f, "the energy is {ratio:.3e} times what was put in")
+                write!(f, "the energy is {ratio:.1e} times what was put in")
             }
             Self::Passed { other } => write!(f, "it has passed its neighbour, point {other}"),
             Self::Stiffened { dt, limit } => write!(
@@ -80,6 +99,11 @@ impl Cause {
             Self::Stiffened { .. } => "give a smaller dt",
         }
     }
+
+    /// Whether it is the time step that makes the run unstable, and not its numbers that ended.
+    pub(crate) fn is_growth(&self) -> bool {
+        matches!(self, Self::Growth { .. } | Self::Stiffened { .. })
+    }
 }
 
 /// What was found, and at which point.
@@ -96,6 +120,8 @@ pub(crate) struct Watched<'a> {
     pub(crate) integrator: &'a dyn Integrator,
     pub(crate) start: StartEnergy,
     pub(crate) dt: f64,
+    /// The step over the largest one that is stable at rest for certain; none where there is no such step.
+    pub(crate) step_ratio: Option<f64>,
 }
 
 impl Watched<'_> {
@@ -105,12 +131,24 @@ impl Watched<'_> {
         if due(OFTEN) {
             self.look_at_motion()?;
             self.look_at_order()?;
+            self.look_at_swing()?;
+        }
+        if self.step_ratio.is_some_and(|ratio| ratio > 1.0) {
+            self.look_at_growth()?;
         }
         if due(RARELY) {
             self.look_at_energy()?;
             self.look_at_stiffness()?;
         }
         Ok(())
+    }
+
+    /// Looks for NaN and infinity alone.
+    pub(crate) fn look_at_numbers(&self, last: bool) -> Result<(), Alarm> {
+        if !(last || self.state.step.is_multiple_of(OFTEN)) {
+            return Ok(());
+        }
+        self.finite_kinetic_energy().map(|_| ())
     }
 
     /// The fastest point; one whose velocity is not a number counts as such.
@@ -133,15 +171,80 @@ impl Watched<'_> {
         if speed.is_nan() { f64::INFINITY } else { speed }
     }
 
-    fn look_at_motion(&self) -> Result<(), Alarm> {
+    fn finite_kinetic_energy(&self) -> Result<f64, Alarm> {
         let kinetic = self.system.kinetic_energy(&self.state.v);
         if kinetic.is_finite() {
-            return self.compare(kinetic);
+            return Ok(kinetic);
         }
         Err(Alarm {
             cause: Cause::NotANumber,
             point: self.fastest(),
         })
+    }
+
+    fn look_at_motion(&self) -> Result<(), Alarm> {
+        let kinetic = self.finite_kinetic_energy()?;
+        self.compare(kinetic, GROWTH)
+    }
+
+    fn look_at_growth(&self) -> Result<(), Alarm> {
+        let State { t, u, v, .. } = self.state;
+        let energy = self.system.kinetic_energy(v) + self.system.operator().energy(*t, u);
+        self.compare(energy, PLAIN_GROWTH)
+    }
+
+    /// The kinetic energy half a step away, beyond what a stable run can have, in a nonlinear body whose step is too long by now.
+    fn look_at_swing(&self) -> Result<(), Alarm> {
+        let Some(ratio) = self.step_ratio.filter(|ratio| *ratio < 1.0) else {
+            return Ok(());
+        };
+        if self.system.operator().is_linear() {
+            return Ok(());
+        }
+        let hidden = 0.25 * self.dt * self.dt * self.system.kinetic_energy(&self.state.a);
+        let energy = self.system.kinetic_energy(&self.state.v) + hidden;
+        let most = SWING / (1.0 - ratio * ratio);
+        if energy <= most * (self.available() + self.rounding()) {
+            return Ok(());
+        }
+        let omega = highest_frequency(self.system, &self.state.u);
+        match omega.ok().and_then(|omega| self.stiffened(omega.estimate)) {
+            None => Ok(()),
+            Some(cause) => Err(Alarm {
+                cause,
+                point: self.fastest(),
+            }),
+        }
+    }
+
+    /// Energy that was there and that was exchanged with the outside, J: what left may come back.
+    fn available(&self) -> f64 {
+        self.start.energy + self.system.ledger().exchanged
+    }
+
+    /// Energy that rounding alone may make, J: the body's mass times the square of ω ε L, the velocity of vibrations by one unit in the last place of coordinates and displacements. Rounding acts
+    /// anew in every step, like a random walk.
+    fn rounding(&self) -> f64 {
+        let (system, operator) = (self.system, self.system.operator());
+        let density = |i: usize| system.density().at(i);
+        let omega = operator.frequency_bound(&density);
+        let n = system.points();
+        let size = (0..system.dimension())
+            .flat_map(|c| {
+                let x = system.cloud().axis(c);
+                (0..n).map(move |i| x[i].abs() + self.state.u[c * n + i].abs())
+            })
+            .fold(0.0, f64::max);
+        let mass: f64 = (0..n)
+            .map(|i| density(i) * system.cloud().volumes()[i])
+            .sum();
+        let unit = if operator.rounding(&self.state.u).is_some() {
+            f64::from(f32::EPSILON)
+        } else {
+            f64::EPSILON
+        };
+        let steps = self.state.step as f64 + 64.0;
+        mass * (omega * unit * size).powi(2) * steps
     }
 
     /// What the scheme conserves: close to the stable limit the plain energy swings by orders of magnitude.
@@ -151,18 +254,19 @@ impl Watched<'_> {
         let elastic = operator.energy(state.t, &state.u);
         let kinetic = system.kinetic_energy(&state.v);
         let correction = self.integrator.energy_correction(system, state, self.dt);
-        self.compare(kinetic + elastic + operator.dissipated() + correction)
+        let conserved = kinetic + elastic + operator.dissipated() + correction;
+        self.compare(conserved, GROWTH)
     }
 
-    /// Energy cannot exceed what was there and what was exchanged with the outside, whichever way: what left may come back.
-    fn compare(&self, energy: f64) -> Result<(), Alarm> {
-        let available = self.start.energy + self.system.ledger().exchanged;
-        let ratio = energy / available.max(f64::MIN_POSITIVE);
-        if ratio <= GROWTH {
+    /// Refuses an energy above `most` times the available one.
+    fn compare(&self, energy: f64, most: f64) -> Result<(), Alarm> {
+        let available = self.available();
+        if energy <= most * available || energy <= most * (available + self.rounding()) {
             return Ok(());
         }
         let omega = highest_frequency(self.system, &self.state.u);
         let stiffened = omega.ok().and_then(|omega| self.stiffened(omega.estimate));
+        let ratio = energy / available.max(f64::MIN_POSITIVE);
         Err(Alarm {
             cause: stiffened.unwrap_or(Cause::Growth { ratio }),
             point: self.fastest(),
@@ -173,7 +277,7 @@ impl Watched<'_> {
     fn look_at_order(&self) -> Result<(), Alarm> {
         let (system, cloud) = (self.system, self.system.cloud());
         let operator = system.operator();
-        if system.dimension() != 1 || operator.as_linear().is_some() {
+        if system.dimension() != 1 || operator.is_linear() {
             return Ok(());
         }
         let mut damage = vec![0.0; cloud.len()];
@@ -199,7 +303,7 @@ impl Watched<'_> {
     }
 
     fn look_at_stiffness(&self) -> Result<(), Alarm> {
-        if self.system.operator().as_linear().is_some() || self.stable_step(1.0).is_none() {
+        if self.system.operator().is_linear() || self.stable_step(1.0).is_none() {
             return Ok(());
         }
         let omega = frequency_from_below(self.system, &self.state.u, APPLICATIONS);

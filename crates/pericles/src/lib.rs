@@ -53,6 +53,7 @@ pub mod analysis;
 mod archive;
 pub mod bench;
 pub mod boundary;
+mod breaking;
 pub mod cache;
 mod error;
 pub mod family;

@@ -1,5 +1,7 @@
 //! The loop over time, written once.
 
+use std::sync::OnceLock;
+
 use crate::archive::{Archive, Saved};
 use crate::boundary::absorbing::AbsorbingError;
 use crate::error::PericlesError;
@@ -8,7 +10,7 @@ use crate::interrupt::Interrupt;
 use crate::observe::{ObserveError, Observer, Schedule, Snapshot, StartEnergy};
 use crate::stop::{StopReason, StopWhen};
 use crate::system::System;
-use crate::time::{Integrator, State};
+use crate::time::{HighestFrequency, Integrator, State, highest_frequency};
 
 /// What the caller wants after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,6 +139,12 @@ pub struct Simulation {
     stops: Vec<StopWhen>,
     stopped: Option<StopReason>,
     start: StartEnergy,
+    /// The frequency that limits the step, if it is known.
+    frequency: Option<HighestFrequency>,
+    /// The step over the stable one, once it was asked for.
+    step_ratio: OnceLock<Option<f64>>,
+    allow_unstable: bool,
+    instability: Option<Box<SimulationError>>,
 }
 
 impl Simulation {
@@ -163,7 +171,34 @@ impl Simulation {
             stops: Vec::new(),
             stopped: None,
             start,
+            frequency: None,
+            step_ratio: OnceLock::new(),
+            allow_unstable: false,
+            instability: None,
         }
+    }
+
+    /// The same where the frequency that limits the step is known, which the guard would look for otherwise.
+    #[must_use]
+    pub fn with_frequency(self, frequency: HighestFrequency) -> Self {
+        Self {
+            frequency: Some(frequency),
+            ..self
+        }
+    }
+
+    /// The same, going on where energy grows until numbers end; see [`Simulation::instability`].
+    #[must_use]
+    pub fn allowing_instability(self) -> Self {
+        Self {
+            allow_unstable: true,
+            ..self
+        }
+    }
+
+    /// The first instability of a run that goes on all the same.
+    pub fn instability(&self) -> Option<&SimulationError> {
+        self.instability.as_deref()
     }
 
     /// Adds an observer.
@@ -399,21 +434,53 @@ impl Simulation {
             integrator: &*self.integrator,
             start: self.start,
             dt: self.dt,
+            step_ratio: *self.step_ratio.get_or_init(|| self.found_step_ratio()),
         }
     }
 
-    fn guard(&self, last: bool) -> Result<(), SimulationError> {
+    /// The step over the largest one that is stable at rest for certain; none for schemes without such a step and bodies without stiffness at rest.
+    fn found_step_ratio(&self) -> Option<f64> {
+        let limit = self.integrator.stability_limit()?;
+        if let Some(frequency) = self.frequency {
+            return Some(self.dt / frequency.stable_step(limit, 1.0));
+        }
+        let density = |i: usize| self.system.density().at(i);
+        let crude = self.system.operator().frequency_bound(&density);
+        if crude * self.dt <= limit {
+            return (crude > 0.0).then_some(crude * self.dt / limit);
+        }
+        let rest = vec![0.0; self.state.u.len()];
+        let body = highest_frequency(&self.system, &rest).ok()?;
+        let limiting = self
+            .integrator
+            .limiting_frequency(&self.system, &rest, body)
+            .ok()?;
+        Some(self.dt / limiting.stable_step(limit, 1.0))
+    }
+
+    fn guard(&mut self, last: bool) -> Result<(), SimulationError> {
         let watched = self.watched();
-        watched
-            .look(last)
-            .map_err(|Alarm { cause, point }| SimulationError::Unstable {
-                step: self.state.step,
-                t: self.state.t,
-                cause,
-                point: self.system.cloud().user_number(point),
-                place: self.system.cloud().point(point),
-                speed: watched.speed(point),
-            })
+        let looked = if self.instability.is_some() {
+            watched.look_at_numbers(last)
+        } else {
+            watched.look(last)
+        };
+        let Err(Alarm { cause, point }) = looked else {
+            return Ok(());
+        };
+        let found = SimulationError::Unstable {
+            step: self.state.step,
+            t: self.state.t,
+            cause,
+            point: self.system.cloud().user_number(point),
+            place: self.system.cloud().point(point),
+            speed: watched.speed(point),
+        };
+        if !(self.allow_unstable && cause.is_growth()) {
+            return Err(found);
+        }
+        self.instability = Some(Box::new(found));
+        Ok(())
     }
 
     fn stuck(&self, source: PericlesError, broken: u64) -> SimulationError {

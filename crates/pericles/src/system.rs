@@ -46,6 +46,7 @@ pub struct System {
     boundaries: Vec<Box<dyn Boundary>>,
     ledger: Ledger,
     evaluated: Counter,
+    pub(crate) coarse_breaks: Counter,
 }
 
 impl System {
@@ -77,6 +78,7 @@ impl System {
             boundaries: Vec::new(),
             ledger: Ledger::default(),
             evaluated: Counter::default(),
+            coarse_breaks: Counter::default(),
         })
     }
 
@@ -124,6 +126,15 @@ impl System {
     /// The internal forces.
     pub fn operator(&self) -> &dyn ForceOperator {
         &*self.operator
+    }
+
+    pub(crate) fn operator_mut(&mut self) -> &mut dyn ForceOperator {
+        &mut *self.operator
+    }
+
+    /// Books work (J) and impulse (N s) of supports.
+    pub(crate) fn book_reaction(&mut self, work: f64, impulse: [f64; 3]) {
+        self.ledger.book(work, impulse);
     }
 
     /// Mass densities, kg/m³.
@@ -517,6 +528,7 @@ impl Saved for System {
         } = self.ledger;
         archive.put("ledger", Values::F64(vec![work, exchanged, x, y, z]));
         archive.put("evaluated", Values::U64(vec![self.evaluated.get()]));
+        archive.put("coarse breaks", Values::U64(vec![self.coarse_breaks.get()]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
@@ -538,6 +550,9 @@ impl Saved for System {
         let mut evaluated = [0];
         archive.u64_into("evaluated", &mut evaluated)?;
         self.evaluated = evaluated[0].into();
+        let mut coarse_breaks = [0];
+        archive.u64_into("coarse breaks", &mut coarse_breaks)?;
+        self.coarse_breaks = coarse_breaks[0].into();
         Ok(())
     }
 }

@@ -12,6 +12,7 @@ mod fracture;
 mod manifolds;
 mod multi_time_step;
 mod nonlocal_wave;
+mod numerics;
 mod row;
 mod table;
 
@@ -41,13 +42,14 @@ pub(crate) struct Study {
 }
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 6] = [
+const TOPICS: [&[Study]; 7] = [
     &absorbing_boundaries::STUDIES,
     &dispersion::STUDIES,
     &fracture::STUDIES,
     &manifolds::STUDIES,
     &multi_time_step::STUDIES,
     &nonlocal_wave::STUDIES,
+    &numerics::STUDIES,
 ];
 
 fn studies() -> impl Iterator<Item = &'static Study> {

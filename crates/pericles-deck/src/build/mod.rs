@@ -77,6 +77,8 @@ pub struct Model {
     pub integrator: Box<dyn Integrator>,
     /// The frequency that limits the step at the start, the highest unless the scheme has two time steps; none if nothing resists motion, and the deck gives the step.
     pub frequency: Option<HighestFrequency>,
+    /// The highest frequency of the body with its absorbing ends at the start, whatever the scheme.
+    pub body_frequency: Option<HighestFrequency>,
     /// The time step, s.
     pub dt: f64,
     /// Number of steps.
@@ -95,6 +97,8 @@ pub struct Model {
     pub warnings: Vec<Warning>,
     /// The strongest damping of layers, 1/s.
     damping: f64,
+    /// Whether the run goes on where its energy grows.
+    allow_unstable: bool,
 }
 
 impl Model {
@@ -107,6 +111,7 @@ impl Model {
 
     /// The run; observers are still to be added.
     pub fn simulation(self) -> Simulation {
+        let (frequency, allow_unstable) = (self.frequency, self.allow_unstable);
         let mut simulation = Simulation::new(
             self.system,
             self.integrator,
@@ -116,6 +121,12 @@ impl Model {
         );
         for stop in self.stops {
             simulation.stop_when(stop);
+        }
+        if let Some(frequency) = frequency {
+            simulation = simulation.with_frequency(frequency);
+        }
+        if allow_unstable {
+            simulation = simulation.allowing_instability();
         }
         simulation
     }
@@ -201,6 +212,7 @@ impl Deck {
             state,
             integrator,
             frequency: steps.frequency,
+            body_frequency: steps.body_frequency,
             dt: steps.dt,
             steps: steps.count,
             probes,
@@ -210,6 +222,7 @@ impl Deck {
             loads,
             warnings,
             damping,
+            allow_unstable: self.time.allow_unstable,
         })
     }
 

@@ -2,7 +2,7 @@
 
 use pericles::PericlesError;
 use pericles::System;
-use pericles::time::{HighestFrequency, Integrator, State};
+use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
 use pericles::units::quantity;
 
 use super::damping;
@@ -21,7 +21,10 @@ const WHOLE: f64 = 1e-9;
 pub(super) struct Steps {
     pub(super) dt: f64,
     pub(super) count: u64,
+    /// The frequency that limits the step.
     pub(super) frequency: Option<HighestFrequency>,
+    /// The body's highest, whatever the scheme.
+    pub(super) body_frequency: Option<HighestFrequency>,
 }
 
 impl Deck {
@@ -41,10 +44,13 @@ impl Deck {
                 dt: end / count as f64,
                 count,
                 frequency: None,
+                body_frequency: None,
             });
         }
-        let frequency = integrator
-            .limiting_frequency(system, &state.u)
+        let body = highest_frequency(system, &state.u).map(|body| body.at_least(exterior));
+        let body_frequency = body.as_ref().ok().copied();
+        let frequency = body
+            .and_then(|body| integrator.limiting_frequency(system, &state.u, body))
             .map(|frequency| frequency.at_least(exterior));
         let limit = integrator.stability_limit();
         match self.time.step {
@@ -69,6 +75,7 @@ impl Deck {
                     dt: end / count as f64,
                     count,
                     frequency: Some(frequency),
+                    body_frequency,
                 })
             }
             TimeStep::Fixed(given) => {
@@ -90,6 +97,7 @@ impl Deck {
                     dt,
                     count,
                     frequency: frequency.ok(),
+                    body_frequency,
                 })
             }
         }
@@ -124,7 +132,7 @@ impl Deck {
         Err(self.at_path(&"time.dt".into(), fault))
     }
 
-    /// Refuses a given step that is known to be unstable; one that may be is only warned of.
+    /// Refuses a given step that is unstable for certain; warns of one that may be.
     fn judge(
         &self,
         dt: f64,
@@ -137,18 +145,20 @@ impl Deck {
         if dt <= stable {
             return Ok(());
         }
-        let caution = match (frequency.converged, self.time.allow_unstable) {
-            (true, false) => {
-                let error = PericlesError::UnstableStep {
-                    dt,
-                    omega: frequency.estimate,
-                    limit: stable,
-                    scheme,
-                };
-                return Err(self.at("time.dt", error));
-            }
-            (true, true) => Caution::UnstableStep { dt, limit: stable },
-            (false, _) => Caution::UncertainStep { dt, limit: stable },
+        let unstable = dt > frequency.unstable_step(limit);
+        if unstable && !self.time.allow_unstable {
+            let error = PericlesError::UnstableStep {
+                dt,
+                omega: frequency.estimate,
+                limit: stable,
+                scheme,
+            };
+            return Err(self.at("time.dt", error));
+        }
+        let caution = if unstable {
+            Caution::UnstableStep { dt, limit: stable }
+        } else {
+            Caution::UncertainStep { dt, limit: stable }
         };
         warnings.push(self.finding(&"time.dt".into(), caution));
         Ok(())

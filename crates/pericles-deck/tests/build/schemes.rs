@@ -73,6 +73,36 @@ fn schemes() {
 }
 
 #[test]
+fn the_highest_frequency_is_that_of_the_body_whatever_the_scheme() {
+    let verlet = build(&plate_with_time(""));
+    assert_eq!(verlet.frequency, verlet.body_frequency);
+    for scheme in ["rk4-mts", "respa"] {
+        let time = format!("scheme = \"{scheme}\"\nratio = 4\nfine = \"middle\"");
+        let two = build(&plate_with_time(&time));
+        assert_eq!(two.body_frequency, verlet.body_frequency, "{scheme}");
+        let [limiting, body] = [two.frequency, two.body_frequency].map(Option::unwrap);
+        assert!(limiting.bound < body.bound * (1.0 + 1e-3), "{scheme}");
+    }
+}
+
+#[test]
+fn a_step_between_the_bounds_of_the_stable_one_is_warned_of_and_one_above_is_refused() {
+    let frequency = build(PLATE).frequency.unwrap();
+    let [stable, unstable] = [
+        frequency.stable_step(2.0, 1.0),
+        frequency.unstable_step(2.0),
+    ];
+    assert!(stable < unstable, "{frequency:?}");
+    let deck = |dt: f64| PLATE.replace("end = \"2 us\"", &format!("end = \"2 us\"\ndt = {dt:e}"));
+    let warnings = |dt: f64| build(&deck(dt)).warnings;
+    assert!(warnings(stable * (1.0 - 1e-12)).is_empty());
+    let between = warnings((stable * unstable).sqrt());
+    assert!(between[0].line().contains("may be unstable"), "{between:?}");
+    let error = refusal(&deck(unstable * (1.0 + 1e-6))).to_string();
+    assert!(error.contains("is unstable"), "{error}");
+}
+
+#[test]
 fn schemes_that_do_not_fit_are_refused() {
     for (time, line, words) in [
         ("scheme = \"dormand-prince\"", 55, "give dt"),

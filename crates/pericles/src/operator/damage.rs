@@ -29,9 +29,29 @@ pub(super) struct BreakEvent {
     pub dissipated: f64,
 }
 
+/// A bond that a step too coarse for it broke: the energy booked for it is far from what it stored at its critical stretch.
+///
+/// The work of its force over the step decides what a breaking bond dissipates ([`ForceOperator::accept_and_force`](super::ForceOperator::accept_and_force)). A bond that was compressed at the
+/// start of the step and is over-stretched at its end has negative work booked, as if breaking made energy; one that was pulled far beyond its critical stretch dissipates many times its energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoarseBreak {
+    /// Its ends, the smaller number first.
+    pub points: [u32; 2],
+    /// The direction of its force, of either sign; any length but zero, missing components are zero.
+    pub along: [f64; 3],
+    /// Energy at its critical stretch minus the energy booked, J.
+    pub missing: f64,
+}
+
+/// Energies booked for a broken bond that are taken as they are, over its energy at the critical stretch. The errors of both signs within these bounds cancel: they are of first
+/// order in the step for one bond, of second order in the mean.
+const RESOLVED: std::ops::RangeInclusive<f64> = 0.0..=4.0;
+
 /// What breaking did to a block.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tally {
+    /// Bonds broken by steps too coarse for them, once for each end that found it; not saved, as every step settles its own.
+    pub coarse: Vec<CoarseBreak>,
     /// Σ over directed bonds broken of V/2 times the energy dissipated, J.
     pub dissipated: f64,
     /// Directed bonds broken.
@@ -46,6 +66,63 @@ pub(super) struct BlockDamage {
     /// Bonds left, one byte per group of eight.
     pub intact: Vec<u8>,
     pub tally: Tally,
+}
+
+impl CoarseBreak {
+    /// A bond that broke with this force and dissipated so much, J, where it should be about `critical`; none if that is near enough.
+    pub(super) fn of<const D: usize>(
+        ends: [usize; 2],
+        force: [f64; D],
+        dissipated: f64,
+        critical: f64,
+    ) -> Option<Self> {
+        let resolved = critical * RESOLVED.start()..=critical * RESOLVED.end();
+        let [i, j] = ends.map(|end| end as u32);
+        (!resolved.contains(&dissipated)).then(|| Self {
+            points: [i.min(j), i.max(j)],
+            along: std::array::from_fn(|c| force.get(c).copied().unwrap_or(0.0)),
+            missing: critical - dissipated,
+        })
+    }
+}
+
+impl Tally {
+    /// Books half of a bond's energy `dissipated`, J, for one of its ends; the other arguments are those of [`CoarseBreak::of`].
+    pub fn book<const D: usize>(
+        &mut self,
+        ends: [usize; 2],
+        force: [f64; D],
+        dissipated: f64,
+        critical: f64,
+    ) {
+        self.dissipated += 0.5 * dissipated;
+        self.broken.add(1);
+        self.coarse
+            .extend(CoarseBreak::of(ends, force, dissipated, critical));
+    }
+}
+
+/// Takes the bonds that steps too coarse for them broke, each once, by their ends.
+pub(super) fn take_coarse_breaks(blocks: &mut [BlockDamage]) -> Vec<CoarseBreak> {
+    let mut coarse: Vec<CoarseBreak> = Vec::new();
+    for block in blocks {
+        coarse.append(&mut block.tally.coarse);
+    }
+    each_once(coarse)
+}
+
+/// Bonds in the order of their ends, without the second copies.
+pub(super) fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
+    coarse.sort_by_key(|bond| bond.points);
+    coarse.dedup_by_key(|bond| bond.points);
+    coarse
+}
+
+/// Books energy, J.
+pub(super) fn dissipate(blocks: &mut [BlockDamage], energy: f64) {
+    if let Some(block) = blocks.first_mut() {
+        block.tally.dissipated += energy;
+    }
 }
 
 impl BlockDamage {

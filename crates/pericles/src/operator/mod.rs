@@ -30,6 +30,7 @@ mod list;
 pub(crate) mod prefetch;
 mod records;
 mod rows;
+mod springs;
 pub mod surface;
 mod view;
 mod zoned;
@@ -38,7 +39,7 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use composite::CompositeBody;
-pub use damage::{Breaking, DamageMeasure};
+pub use damage::{Breaking, CoarseBreak, DamageMeasure};
 pub use fast_law::{FastLaw, FixedBond};
 pub use graded::{EndLaw, GradedBody};
 pub use grid::GridForce;
@@ -49,6 +50,7 @@ pub use linear::{
 };
 pub use linearisation::Linearisation;
 pub use list::BondForce;
+pub use springs::{LatticeSpring, LatticeSprings};
 pub use view::{BondAt, BondView};
 pub use zoned::ZonedForce;
 
@@ -148,7 +150,7 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// force in it. For schemes whose step ends on an evaluation.
     ///
     /// The bond's force acted in the first half of the step only, so the energy it dissipates is its energy at breaking minus
-    /// half the work its force would have done in this step.
+    /// half the work its force would have done in this step. Where that is far from its energy at the critical stretch, [`ForceOperator::take_coarse_breaks`] tells.
     fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]);
 
     /// The same decision alone, for schemes that do not end on an evaluation: the bond acted until now and dissipates its whole energy.
@@ -162,6 +164,16 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// Energy dissipated by breaking so far, J.
     fn dissipated(&self) -> f64 {
         0.0
+    }
+
+    /// Books energy that breaking dissipated beside what was booked when it was decided, J.
+    fn dissipate(&mut self, energy: f64) {
+        let _ = energy;
+    }
+
+    /// Takes the bonds broken since this was asked last by steps too coarse for them, each once, in an order that depends on nothing but the bonds.
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        Vec::new()
     }
 
     /// Bonds broken so far, each counted once.
@@ -204,7 +216,17 @@ pub trait ForceOperator: Saved + Send + Sync {
         let _ = set;
     }
 
-    /// The operator as a linear map, if it is one.
+    /// Whether the force is linear in the displacement as long as no bond breaks, computed in whatever precision.
+    fn is_linear(&self) -> bool {
+        self.as_linear().is_some()
+    }
+
+    /// The springs of an infinite lattice of which the body at rest is a part: a bound of its highest frequency. None of bodies that are no part of a lattice of springs.
+    fn lattice_springs(&self) -> Option<LatticeSprings> {
+        None
+    }
+
+    /// The operator as a linear map to double precision, if it is one.
     fn as_linear(&self) -> Option<&dyn LinearOperator>;
 
     /// The operator's bonds one by one, if it lists them.

@@ -21,7 +21,7 @@ mod zones;
 pub use embedded::AdaptiveRungeKutta;
 pub use fine_region::{Fine, Follow};
 pub use frequency::{
-    HighestFrequency, frequency_from_below, highest_frequency, highest_frequency_on,
+    FAILURE, HighestFrequency, SMALL, frequency_from_below, highest_frequency, highest_frequency_on,
 };
 pub use implicit::{Implicit, ImplicitRule, LinearSolver};
 pub use interface::{Interpolant, Predictor};
@@ -90,6 +90,7 @@ impl State {
         system.complete_and_accelerate(completed, &mut self.a);
         std::mem::swap(&mut self.u, u);
         std::mem::swap(&mut self.v, v);
+        system.settle_breaking(t, &mut self.v);
         self.t = t;
     }
 }
@@ -123,12 +124,18 @@ pub trait Integrator: Saved + Send {
     /// The largest stable ω dt for an undamped oscillation; none if the scheme is stable for any step.
     fn stability_limit(&self) -> Option<f64>;
 
-    /// The frequency that limits the step at displacement `u`: the body's highest, but for schemes whose step is not the same everywhere.
+    /// The frequency that limits the step at displacement `u`, where `body` is the body's highest: the same, except for schemes whose step is not the same everywhere.
     ///
     /// # Errors
     /// A body without any stiffness.
-    fn limiting_frequency(&self, system: &System, u: &[f64]) -> Result<HighestFrequency> {
-        highest_frequency(system, u)
+    fn limiting_frequency(
+        &self,
+        system: &System,
+        u: &[f64],
+        body: HighestFrequency,
+    ) -> Result<HighestFrequency> {
+        let _ = (system, u);
+        Ok(body)
     }
 
     /// What a scheme with two time steps did so far; none for other schemes.
@@ -156,6 +163,11 @@ pub trait Integrator: Saved + Send {
     /// Whether a step changes state or system before it is complete, so that one that is interrupted has to be undone from a copy made before it.
     fn changes_within_step(&self) -> bool {
         false
+    }
+
+    /// Why the energy of the body drifts by design, and what to change if it shall not; none for schemes whose drift is an error of the step.
+    fn intended_drift(&self) -> Option<&'static str> {
+        None
     }
 
     /// Prepares the state at t = 0: prescribed values and initial acceleration.

@@ -124,8 +124,13 @@ impl Integrator for MultiTimeStep {
         Some(self.limit)
     }
 
-    fn limiting_frequency(&self, system: &System, u: &[f64]) -> Result<HighestFrequency> {
-        self.refinement.limiting_frequency(system, u)
+    fn limiting_frequency(
+        &self,
+        system: &System,
+        u: &[f64],
+        body: HighestFrequency,
+    ) -> Result<HighestFrequency> {
+        self.refinement.limiting_frequency(system, u, body)
     }
 
     fn refinement(&self) -> Option<RefinementReport> {
@@ -183,6 +188,7 @@ impl Integrator for MultiTimeStep {
             Predictor::Structured => self.history.push(first, dt),
             Predictor::BackwardDifference => self.history.push(v, dt),
         }
+        system.settle_breaking(t_next, &mut state.v);
         state.t = t_next;
         state.step += 1;
         Ok(())

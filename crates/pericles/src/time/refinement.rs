@@ -2,7 +2,7 @@
 
 use super::State;
 use super::fine_region::{Fine, Follow, check, mark_regions};
-use super::frequency::{HighestFrequency, highest_frequency, highest_frequency_on};
+use super::frequency::{HighestFrequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
 use crate::archive::{Archive, Counter, Values};
@@ -183,8 +183,8 @@ impl Refinement {
         &self,
         system: &System,
         u: &[f64],
+        body: HighestFrequency,
     ) -> Result<HighestFrequency> {
-        let whole = highest_frequency(system, u)?;
         // Adaptive regions come and go.
         if self.follow.is_some() || self.zones.coarse.is_empty() || self.zones.fine.is_empty() {
             let ratio = if self.zones.coarse.is_empty() {
@@ -192,13 +192,13 @@ impl Refinement {
             } else {
                 1.0
             };
-            return Ok(whole.over(ratio));
+            return Ok(body.over(ratio));
         }
-        let fine = whole.over(f64::from(self.ratio));
+        let fine = body.over(f64::from(self.ratio));
         match highest_frequency_on(system, u, self.zones.coarse.points()) {
-            Ok(coarse) if coarse.estimate > fine.estimate => Ok(coarse),
+            Ok(coarse) => Ok(fine.or_higher(coarse)),
             // Coarse points without stiffness of their own set no limit.
-            Ok(_) | Err(PericlesError::NoStiffness) => Ok(fine),
+            Err(PericlesError::NoStiffness) => Ok(fine),
             Err(error) => Err(error),
         }
     }

@@ -120,8 +120,13 @@ impl Integrator for Respa {
         Some(2.0)
     }
 
-    fn limiting_frequency(&self, system: &System, u: &[f64]) -> Result<HighestFrequency> {
-        self.refinement.limiting_frequency(system, u)
+    fn limiting_frequency(
+        &self,
+        system: &System,
+        u: &[f64],
+        body: HighestFrequency,
+    ) -> Result<HighestFrequency> {
+        self.refinement.limiting_frequency(system, u, body)
     }
 
     fn refinement(&self) -> Option<RefinementReport> {
@@ -201,6 +206,7 @@ impl Integrator for Respa {
         Sum::new().plus(1.0, &self.fast).add_to(coarse_border, n, a);
         system.book_step(accepted, a);
         system.finish(t_next, u, v, &On::All, a);
+        system.settle_breaking(t_next, v);
         *t = t_next;
         *step += 1;
         Ok(())

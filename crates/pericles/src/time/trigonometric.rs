@@ -348,6 +348,12 @@ impl Integrator for Trigonometric {
         None
     }
 
+    fn intended_drift(&self) -> Option<&'static str> {
+        (self.options.regularisation > 0.0).then_some(
+            "regularisation adds a stiffness to the ground, and the scheme conserves the energy with it, for any time step; regularisation = 0 conserves the energy of the body",
+        )
+    }
+
     fn start(&mut self, system: &mut System, state: &mut State) {
         super::runge_kutta::start(system, state);
     }

@@ -70,6 +70,7 @@ impl Integrator for VelocityVerlet {
         system.accept_and_accelerate(accepted, v, a);
         kick(v, a, 0.5 * dt);
         system.constrain_velocity(t_next, v);
+        system.settle_breaking(t_next, v);
         *t = t_next;
         *step += 1;
         Ok(())

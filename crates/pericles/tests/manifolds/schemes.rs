@@ -139,10 +139,37 @@ fn the_inner_iteration_ends_where_explicit_schemes_do() {
                 panic!("{source}");
             };
             assert!((omega / 20.17 - 1.0).abs() < 1e-2, "{omega}");
+            let safe = safe.unwrap();
             assert!(safe < 2.0 / 20.17 && safe > 0.9 * 2.0 / 20.17, "{safe}");
         }
         other => panic!("{other}"),
     }
+}
+
+#[test]
+fn one_inner_iteration_is_not_answered_with_a_smaller_step() {
+    let sphere = Sphere::standard();
+    let message = |dt: f64, iterations| {
+        let system = sphere.system(&material(2.0, 0.999));
+        let options = NewmarkOptions {
+            iterations,
+            ..NewmarkOptions::default()
+        };
+        let scheme = Newmark::new(options, &system).unwrap();
+        let mut run = Simulation::new(system, Box::new(scheme), sphere.thrown(0.1), dt, 20);
+        run.run(|_| Control::Continue).unwrap_err().to_string()
+    };
+    let one = message(0.01, 1);
+    assert!(one.contains("after 1 evaluation the velocity"), "{one}");
+    assert!(one.contains("Give iterations = 2 or more"), "{one}");
+    assert!(!one.contains("dt ≤") && !one.contains("NaN"), "{one}");
+    // Far above the limit the iterates overflow.
+    let far = message(1e100, 50);
+    assert!(
+        far.contains("NaN or infinite") && far.contains("give dt ≤"),
+        "{far}"
+    );
+    assert!(!far.contains("changes by"), "{far}");
 }
 
 #[test]

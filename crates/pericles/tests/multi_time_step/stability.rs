@@ -19,7 +19,7 @@ fn growth(problem: Problem, omega_dt: f64, steps: [u64; 2], scheme: &Scheme<'_>)
     let whole = highest_frequency_on(&system, &state.u, &all).unwrap();
     assert!(omega.converged && omega.estimate <= whole.estimate * 1.001);
     let mut scheme = scheme(&system, &fine);
-    let limiting = scheme.limiting_frequency(&system, &state.u).unwrap();
+    let limiting = scheme.limiting_frequency(&system, &state.u, whole).unwrap();
     let dt = omega_dt / limiting.estimate;
     scheme.start(&mut system, &mut state);
     let mut sizes = [0.0; 2];

@@ -13,6 +13,8 @@ use crate::operator::lanes::Lanes;
 pub(super) struct GridBreaking<'a, const D: usize> {
     /// Bonds with measure > threshold |ξ|² are over-stretched.
     pub threshold: f64,
+    /// The critical stretch.
+    pub critical_stretch: f64,
     /// Volume of a point, m³.
     pub volume: f64,
     /// Which bonds of a chunk and offset may break.
@@ -97,23 +99,23 @@ fn book<L: FastLaw, N: GridNumber, const D: usize>(
         let there = here.wrapping_add_signed(offset.shift);
         let difference = |field: &[N]| -> f64 { field[there].into() - field[here].into() };
         let eta: [f64; D] = std::array::from_fn(|c| difference(grid.u[c]) * grid.unit);
-        let mut energy = L::energy(xi, eta);
+        let (mut energy, force) = (L::energy(xi, eta), L::force(xi, eta));
+        let [i, j] = [here, there].map(|place| (rule.point_at)(place - grid.margin));
         if let Some((velocity, dt)) = &rule.step {
-            let force = L::force(xi, eta);
-            let [i, j] = [here, there].map(|place| (rule.point_at)(place - grid.margin));
             let power: f64 = (0..D)
                 .map(|c| force[c] * (velocity[c][j] - velocity[c][i]))
                 .sum();
             energy -= 0.5 * dt * power;
         }
-        let dissipated = 0.5 * rule.volume * offset.stiffness.into() * energy;
-        tally.dissipated += dissipated;
-        tally.broken.add(1);
+        let stiffness: f64 = offset.stiffness.into();
+        let weight = rule.volume * stiffness;
+        let critical = L::energy(xi, xi.map(|component| rule.critical_stretch * component));
+        tally.book([i, j], force, weight * energy, weight * critical);
         if rule.note_events {
             tally.events.push(BreakEvent {
                 point: chunk.point,
                 entry: entry + k,
-                dissipated,
+                dissipated: 0.5 * weight * energy,
             });
         }
     }

@@ -252,6 +252,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         let set = self.instruction_set;
         let rule = GridBreaking {
             threshold: L::threshold(self.critical_stretch),
+            critical_stretch: self.critical_stretch,
             volume: self.cloud.volumes()[0],
             breakable: &|chunk: &Chunk, offset: usize| self.breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),

@@ -11,7 +11,8 @@ use crate::family::LANES;
 use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    Accepted, BondView, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce,
+    Accepted, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
+    LinearOperator, On, ZonedForce,
 };
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
 
@@ -116,6 +117,14 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         damage::dissipated(&self.blocks)
     }
 
+    fn dissipate(&mut self, energy: f64) {
+        damage::dissipate(&mut self.blocks, energy);
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        damage::take_coarse_breaks(&mut self.blocks)
+    }
+
     fn broken_bonds(&self) -> u64 {
         damage::broken_bonds(&self.blocks)
     }
@@ -210,6 +219,19 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         if InstructionSet::available().contains(&set) {
             self.instruction_set = set;
         }
+    }
+
+    fn is_linear(&self) -> bool {
+        L::LINEAR
+    }
+
+    fn lattice_springs(&self) -> Option<LatticeSprings> {
+        let (cells, lengths) = (self.stencil.cells(), self.stencil.lengths());
+        let spring = |k: usize| LatticeSpring {
+            offset: cells[k],
+            stiffness: self.stencil.offsets()[k].stiffness / lengths[k],
+        };
+        LatticeSprings::new(D, (0..self.stencil.len()).map(spring))
     }
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {

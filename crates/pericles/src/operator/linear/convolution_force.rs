@@ -16,7 +16,9 @@ use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, VolumeCorrection};
 use crate::material::{BondConstants, BondMaterial};
-use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use crate::operator::{
+    Accepted, ForceOperator, InstructionSet, LatticeSprings, LinearOperator, On,
+};
 use crate::parallel::{components, components_mut};
 use crate::space::{Lattice, PointCloud};
 
@@ -37,6 +39,7 @@ pub struct ConvolutionForce<const D: usize> {
     diagonal: Vec<Vec<f64>>,
     /// Σ |k|/|ξ| over a full family, where K is not positive semidefinite.
     signed_bound: Option<f64>,
+    springs: Option<LatticeSprings>,
     directed_bonds: u64,
     fields: Pool<Vec<f64>>,
 }
@@ -133,6 +136,7 @@ impl<const D: usize> ConvolutionForce<D> {
             engine,
             diagonal: vec![],
             signed_bound: signed.then_some(bound),
+            springs: bonds.springs(D, axes.map(|axis| axis.raw)),
             directed_bonds,
             fields: Pool::new(1, move || vec![0.0; D * n]),
             cloud,
@@ -332,6 +336,10 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
 
     fn instruction_set(&self) -> InstructionSet {
         InstructionSet::detect()
+    }
+
+    fn lattice_springs(&self) -> Option<LatticeSprings> {
+        self.springs.clone()
     }
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {

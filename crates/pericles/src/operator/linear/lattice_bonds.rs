@@ -3,6 +3,7 @@
 use super::refuse;
 use crate::error::{PericlesError, Result};
 use crate::family::VolumeCorrection;
+use crate::operator::{LatticeSpring, LatticeSprings};
 use crate::space::{Lattice, PointCloud};
 
 /// A bond of some offset: k = c α κ V, the length |ξ| and the vector ξ.
@@ -72,6 +73,20 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
             length,
             xi,
         })
+    }
+
+    /// The bonds as springs, with offsets up to `most` along each axis.
+    pub fn springs(&self, dimension: usize, most: [usize; 3]) -> Option<LatticeSprings> {
+        let range = |axis: usize| -(most[axis] as i64)..=most[axis] as i64;
+        let all = range(2)
+            .flat_map(|z| range(1).flat_map(move |y| range(0).map(move |x| [x, y, z])))
+            .filter_map(|offset| {
+                self.at(offset).map(|bond| LatticeSpring {
+                    offset: offset.map(|o| o as i32),
+                    stiffness: bond.stiffness / bond.length,
+                })
+            });
+        LatticeSprings::new(dimension, all)
     }
 
     /// Σ |k|/|ξ| over a full family with offsets up to `most` along each axis, and whether any k is negative.

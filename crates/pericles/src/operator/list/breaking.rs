@@ -10,6 +10,8 @@ use crate::operator::records::Records;
 pub(super) struct BreakRule<'a, const D: usize> {
     /// Bonds with measure > threshold |ξ|² are over-stretched.
     pub threshold: f64,
+    /// The critical stretch, where all bonds have the same.
+    pub critical_stretch: f64,
     /// Thresholds that depend on the ends of a bond, in place of the one, which is then the smallest of them.
     pub pairs: Option<&'a PairThresholds>,
     /// Bits of the bonds that may break; all of them if none.
@@ -41,6 +43,13 @@ impl<const D: usize> BreakRule<'_, D> {
         match self.pairs {
             None => self.threshold,
             Some(pairs) => pairs.table[pairs.classes.class(i, j)],
+        }
+    }
+
+    fn critical_stretch_of(&self, i: usize, j: usize) -> f64 {
+        match self.pairs {
+            None => self.critical_stretch,
+            Some(pairs) => pairs.classes.critical_stretches()[pairs.classes.class(i, j)],
         }
     }
 }
@@ -75,22 +84,22 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
                 *intact &= !(1 << lane);
                 let entry = group * LANES + lane;
                 let stiffness = bonds.stiffness_of::<D>(entry, [i, j], [u[i][3], u[j][3]]);
-                let mut energy = L::energy(xi, eta);
+                let (mut energy, force) = (L::energy(xi, eta), L::force(xi, eta));
                 if let Some((velocity, dt)) = &rule.step {
-                    let force = L::force(xi, eta);
                     let power: f64 = (0..D)
                         .map(|c| force[c] * (velocity[c][j] - velocity[c][i]))
                         .sum();
                     energy -= 0.5 * dt * power;
                 }
-                let dissipated = 0.5 * rule.volumes[i] * stiffness * energy;
-                tally.dissipated += dissipated;
-                tally.broken.add(1);
+                let weight = rule.volumes[i] * stiffness;
+                let stretch = rule.critical_stretch_of(i, j);
+                let critical = L::energy(xi, xi.map(|component| stretch * component));
+                tally.book([i, j], force, weight * energy, weight * critical);
                 if rule.note_events {
                     tally.events.push(BreakEvent {
                         point: i as u32,
                         entry,
-                        dissipated,
+                        dissipated: 0.5 * weight * energy,
                     });
                 }
             }

@@ -228,6 +228,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let bonds = self.view().leading_to(partners);
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
+            critical_stretch: self.critical_stretch,
             pairs: self.pairs.as_ref(),
             breakable: self.breakable.as_deref(),
             volumes: self.cloud.volumes(),

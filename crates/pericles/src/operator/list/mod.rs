@@ -5,6 +5,7 @@ mod force;
 mod kernels;
 mod operator;
 mod packed;
+mod springs;
 mod stiffness;
 mod zoned;
 

@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::family::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    Accepted, BondAt, BondView, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce,
-    damage,
+    Accepted, BondAt, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSprings,
+    LinearOperator, On, ZonedForce, damage,
 };
 use crate::parallel::{BLOCK, components, ordered_sum};
 
@@ -97,6 +97,14 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
         damage::dissipated(&self.blocks)
     }
 
+    fn dissipate(&mut self, energy: f64) {
+        damage::dissipate(&mut self.blocks, energy);
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        damage::take_coarse_breaks(&mut self.blocks)
+    }
+
     fn broken_bonds(&self) -> u64 {
         damage::broken_bonds(&self.blocks)
     }
@@ -158,6 +166,10 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
         if InstructionSet::available().contains(&set) {
             self.instruction_set = set;
         }
+    }
+
+    fn lattice_springs(&self) -> Option<LatticeSprings> {
+        self.springs_of_offsets()
     }
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {

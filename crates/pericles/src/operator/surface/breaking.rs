@@ -7,6 +7,7 @@ use super::law::SurfaceLaw;
 use crate::archive::{Archive, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::On;
+use crate::operator::damage::CoarseBreak;
 use crate::operator::lanes::{F64x8, Real};
 use crate::operator::records::Records;
 use crate::parallel::BLOCK;
@@ -19,6 +20,8 @@ pub(super) struct Breaking {
     pub broken: Vec<(usize, f64)>,
     /// J.
     pub dissipated: f64,
+    /// Bonds broken by steps too coarse for them since they were taken last.
+    pub coarse: Vec<CoarseBreak>,
 }
 
 /// The end of a step as breaking sees it.
@@ -105,13 +108,22 @@ impl Breaking {
             };
             let eta = difference(step.u, n, i, j);
             let mut energy = law.energy(lanes(xi), lanes(eta)).0[0];
+            let force = law.force(lanes(xi), lanes(eta)).map(|force| force.0[0]);
             if let Some((velocity, dt)) = step.path {
-                let force = law.force(lanes(xi), lanes(eta));
                 let rate = difference(velocity, n, i, j);
-                let power: f64 = (0..3).map(|c| force[c].0[0] * rate[c]).sum();
+                let power: f64 = (0..3).map(|c| force[c] * rate[c]).sum();
                 energy -= 0.5 * dt * power;
             }
-            self.dissipated += step.areas[i] * weight * energy;
+            let factor = step.areas[i] * weight;
+            self.dissipated += factor * energy;
+            // A chord's elongation at the critical |η| depends on the direction of η: its energy there is not known.
+            if !L::CHORD {
+                let square: f64 = eta.iter().map(|x| x * x).sum();
+                let part = (self.limits[entry] / square).sqrt();
+                let critical = law.energy(lanes(xi), lanes(eta.map(|x| part * x))).0[0];
+                let coarse = CoarseBreak::of([i, j], force, factor * energy, factor * critical);
+                self.coarse.extend(coarse);
+            }
             self.cut(bonds, entry);
             let back = bonds.row(j).find(|&(_, other)| other == i);
             if let Some((back, _)) = back {

@@ -10,6 +10,7 @@ use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
 use super::law::SurfaceLaw;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
+use crate::operator::damage::{CoarseBreak, each_once};
 use crate::operator::lanes::Row;
 use crate::operator::linear::pool::{Lent, Pool};
 use crate::operator::records::pack;
@@ -55,6 +56,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
                 limits,
                 broken: Vec::new(),
                 dissipated: 0.0,
+                coarse: Vec::new(),
             }),
             records: Pool::new(1, move || vec![Row::default(); n]),
             cloud,
@@ -201,6 +203,19 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
         self.breaking
             .as_ref()
             .map_or(0.0, |breaking| breaking.dissipated)
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        if let Some(breaking) = &mut self.breaking {
+            breaking.dissipated += energy;
+        }
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        let breaking = self.breaking.as_mut();
+        breaking.map_or(Vec::new(), |breaking| {
+            each_once(std::mem::take(&mut breaking.coarse))
+        })
     }
 
     fn broken_bonds(&self) -> u64 {

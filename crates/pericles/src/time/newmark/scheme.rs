@@ -158,18 +158,21 @@ impl Newmark {
 
     fn not_converged(&self, system: &System, t: f64, dt: f64, change: f64) -> PericlesError {
         // The frequency at the predicted state: the iterate itself may be far out.
-        let omega = highest_frequency(system, &self.predicted[0])
-            .map_or(0.0, |frequency| frequency.estimate);
+        let omega =
+            highest_frequency(system, &self.predicted[0]).map_or(0.0, |frequency| frequency.bound);
+        let iterations = self.options.iterations;
         // The correction shrinks by β ω² dt² an iteration: so that the last is a millionth of the first.
-        let shrink = 1e-6_f64.powf(1.0 / f64::from(self.options.iterations));
+        let shrink = 1e-6_f64.powf(1.0 / f64::from(iterations - 1));
+        let safe = (shrink / self.options.beta).sqrt() / omega;
         PericlesError::InnerIteration {
             t,
-            iterations: self.options.iterations,
+            iterations,
             change,
             tolerance: self.options.tolerance,
             dt,
             omega,
-            safe: (shrink / self.options.beta).sqrt() / omega,
+            // One evaluation has nothing to be compared with, and a step that is short enough already is no advice.
+            safe: (iterations > 1 && safe.is_finite() && safe < dt).then_some(safe),
         }
     }
 
@@ -279,6 +282,7 @@ impl Newmark {
         std::mem::swap(&mut state.u, u);
         std::mem::swap(&mut state.v, v);
         std::mem::swap(&mut state.a, a);
+        system.settle_breaking(t, &mut state.v);
     }
 }
 
@@ -311,6 +315,11 @@ impl Integrator for Newmark {
 
     fn inner_iterations(&self) -> Option<InnerIterations> {
         Some(self.iterations)
+    }
+
+    fn intended_drift(&self) -> Option<&'static str> {
+        (self.options.gamma > 0.5)
+            .then_some("gamma above 1/2 dissipates energy by design; gamma = 0.5 does not")
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {

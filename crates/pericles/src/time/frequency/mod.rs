@@ -1,0 +1,288 @@
+//! The highest frequency of a body, which limits explicit time steps: an estimate from below and a bound from above.
+//!
+//! | body | bound | certainty |
+//! |---|---|---|
+//! | any, at rest | Gershgorin's discs ([`ForceOperator::frequency_bound`](crate::operator::ForceOperator::frequency_bound)) | rigorous |
+//! | on a lattice, at rest, more than [`SMALL`] unknowns | the plane waves of the infinite lattice (`zone`) | rigorous |
+//! | any other | the Lanczos polynomial (`lanczos`) | fails with probability [`FAILURE`] at most |
+//!
+//! The lowest of them is taken. Bodies of up to [`SMALL`] unknowns are iterated until bound and estimate agree to 0.1 %, very small ones to 1e-6; larger bodies to 1 %, or 2 % where the lattice
+//! gives the bound.
+
+mod lanczos;
+mod zone;
+
+use self::lanczos::{Lanczos, Problem};
+use self::zone::{PlaneWave, zone_maximum};
+use crate::error::{PericlesError, Result};
+use crate::system::System;
+
+/// The highest angular frequency of the linearised free vibration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HighestFrequency {
+    /// Estimate from below, 1/s: the largest Ritz value. The highest frequency is at least this.
+    pub estimate: f64,
+    /// Bound from above, 1/s. The highest frequency is at most this, but for a probability of [`failure_probability`](Self::failure_probability).
+    pub bound: f64,
+    /// The probability that the highest frequency is above the bound, over the choice of the random start vector: [`FAILURE`], or zero for rigorous bounds.
+    pub failure_probability: f64,
+    /// Whether estimate and bound agree to 2 % at least: the estimate can be relied on, and the bound costs no more than that of the step.
+    pub converged: bool,
+    /// Operator applications used.
+    pub applications: usize,
+}
+
+/// The largest probability with which a bound by Lanczos iteration is too low. The start vector is the same for every run: the probability is that of a body for which this vector is bad.
+pub const FAILURE: f64 = 1e-9;
+/// Unknowns up to which bound and estimate agree to 0.1 %.
+pub const SMALL: usize = 10_000;
+
+impl HighestFrequency {
+    /// The largest step of a scheme with the limit ω dt ≤ `limit` that is stable for certain, times a safety factor, s: that of the bound.
+    pub fn stable_step(&self, limit: f64, safety: f64) -> f64 {
+        safety * limit / self.bound
+    }
+
+    /// The step above which a scheme with the limit ω dt ≤ `limit` is certainly unstable, s: that of the estimate. Between this one and
+    /// [`stable_step`](Self::stable_step) either is possible.
+    pub fn unstable_step(&self, limit: f64) -> f64 {
+        limit / self.estimate
+    }
+
+    /// The same where something else vibrates with `omega`, 1/s.
+    #[must_use]
+    pub fn at_least(self, omega: f64) -> Self {
+        Self {
+            estimate: self.estimate.max(omega),
+            bound: self.bound.max(omega),
+            ..self
+        }
+    }
+
+    /// The higher of two frequencies.
+    #[must_use]
+    pub(super) fn or_higher(self, other: Self) -> Self {
+        Self {
+            estimate: self.estimate.max(other.estimate),
+            bound: self.bound.max(other.bound),
+            failure_probability: self.failure_probability.max(other.failure_probability),
+            converged: self.converged && other.converged,
+            applications: self.applications.max(other.applications),
+        }
+    }
+
+    /// The same for time steps that are `ratio` times smaller.
+    pub(super) fn over(self, ratio: f64) -> Self {
+        Self {
+            estimate: self.estimate / ratio,
+            bound: self.bound / ratio,
+            ..self
+        }
+    }
+}
+
+/// Relative distance of bound and estimate at which a frequency counts as known.
+const CONVERGED: f64 = 0.02;
+/// The distance (in ω) at which iteration ends, and the most products, by the number of unknowns.
+const EFFORT: [(usize, f64, usize); 3] = [
+    (1000, 1e-6, 1500),
+    (SMALL, 5e-4, 1500),
+    (usize::MAX, 0.01, 400),
+];
+/// Products between two looks at bound and estimate.
+const CHECK_EVERY: usize = 10;
+
+/// The highest frequency of M⁻¹K at displacement `u`, K being the tangent stiffness there.
+///
+/// # Errors
+/// A body without any stiffness.
+pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency> {
+    Search::new(system, u, &|vector| system.hold(vector)).run()
+}
+
+/// A frequency that the highest one is not below, by so many applications of the operator; zero where nothing resists motion.
+pub fn frequency_from_below(system: &System, u: &[f64], applications: usize) -> f64 {
+    Search::new(system, u, &|vector| system.hold(vector)).estimate_by(applications)
+}
+
+/// The same with all points held but those given, ascending.
+///
+/// # Errors
+/// Points without any stiffness.
+pub fn highest_frequency_on(
+    system: &System,
+    u: &[f64],
+    points: &[u32],
+) -> Result<HighestFrequency> {
+    let mut held = vec![true; system.points()];
+    points.iter().for_each(|&i| held[i as usize] = false);
+    let hold = |vector: &mut [f64]| {
+        system.hold(vector);
+        for component in vector.chunks_mut(held.len()) {
+            for (entry, held) in component.iter_mut().zip(&held) {
+                if *held {
+                    *entry = 0.0;
+                }
+            }
+        }
+    };
+    Search::new(system, u, &hold).run()
+}
+
+/// The search for the highest frequency of a body.
+struct Search<'a> {
+    system: &'a System,
+    u: &'a [f64],
+    hold: &'a dyn Fn(&mut [f64]),
+}
+
+impl<'a> Search<'a> {
+    fn new(system: &'a System, u: &'a [f64], hold: &'a dyn Fn(&mut [f64])) -> Self {
+        Self { system, u, hold }
+    }
+
+    fn density(&self) -> impl Fn(usize) -> f64 + '_ {
+        move |i| self.system.density().at(i)
+    }
+
+    /// Calls `work` with the matrix M⁻¹K.
+    fn with_problem<T>(&self, work: impl FnOnce(Problem<'_>) -> T) -> T {
+        let (n, volumes) = (self.system.points(), self.system.cloud().volumes());
+        let mass = |entry: usize| volumes[entry % n] * self.system.density().at(entry % n);
+        let product = |x: &[f64], y: &mut [f64]| {
+            self.system.vibration_into(self.u, x, y);
+            (self.hold)(y);
+        };
+        work(Problem {
+            product: &product,
+            mass: &mass,
+        })
+    }
+
+    fn estimate_by(&self, applications: usize) -> f64 {
+        let hold = |vector: &mut [f64]| (self.hold)(vector);
+        self.with_problem(|problem| {
+            let lanczos = Lanczos::from_noise(problem, self.u.len(), FAILURE, hold);
+            let Some(mut lanczos) = lanczos else {
+                return 0.0;
+            };
+            while lanczos.products() < applications && !lanczos.advance() {}
+            lanczos.enclosure().estimate.max(0.0).sqrt()
+        })
+    }
+
+    fn run(&self) -> Result<HighestFrequency> {
+        let operator = self.system.operator();
+        // Bounds of the body at rest hold nowhere else, unless the force is linear.
+        let known = operator.is_linear() || self.u.iter().all(|u| *u == 0.0);
+        if !known {
+            return self.iterate(f64::INFINITY);
+        }
+        if self.u.len() > SMALL
+            && let Some((bound, wave)) = self.lattice_bound()
+        {
+            return match self.confirm(bound, &wave) {
+                Some(found) => Ok(found),
+                None => self.iterate(bound),
+            };
+        }
+        let gershgorin = operator.frequency_bound(&self.density());
+        self.iterate(gershgorin * gershgorin * (1.0 + 1e-12))
+    }
+
+    /// The bound of ω² by the plane waves of the infinite lattice, and the highest of these.
+    fn lattice_bound(&self) -> Option<(f64, PlaneWave)> {
+        let springs = self.system.operator().lattice_springs()?;
+        let least = (0..self.system.points())
+            .map(self.density())
+            .fold(f64::INFINITY, f64::min);
+        let found = zone_maximum(&springs);
+        Some((found.bound / least, found.wave))
+    }
+
+    /// Shows by a few products that a body attains the bound of its lattice nearly: with its highest wave, faded out to the body's faces. None if it does not.
+    fn confirm(&self, bound: f64, wave: &PlaneWave) -> Option<HighestFrequency> {
+        /// Distances (in ω) that are good enough at once, and after [`PRODUCTS`].
+        const GOOD: f64 = 0.002;
+        const PRODUCTS: usize = 8;
+        let mut start = self.faded_wave(wave)?;
+        (self.hold)(&mut start);
+        self.with_problem(|problem| {
+            let mut lanczos = Lanczos::from_vector(problem, start)?;
+            loop {
+                let exhausted = lanczos.advance();
+                let estimate = lanczos.enclosure().estimate;
+                let distance = (bound / estimate).sqrt() - 1.0;
+                let last = exhausted || lanczos.products() == PRODUCTS;
+                if distance <= GOOD || (last && distance <= CONVERGED) {
+                    return Some(HighestFrequency {
+                        estimate: estimate.sqrt(),
+                        bound: bound.max(estimate).sqrt(),
+                        failure_probability: 0.0,
+                        converged: true,
+                        applications: lanczos.products(),
+                    });
+                }
+                if last {
+                    return None;
+                }
+            }
+        })
+    }
+
+    fn faded_wave(&self, wave: &PlaneWave) -> Option<Vec<f64>> {
+        let cloud = self.system.cloud();
+        let lattice = cloud.lattice()?;
+        let n = cloud.len();
+        let mut vector = vec![0.0; self.u.len()];
+        for i in 0..n {
+            let node = lattice.coordinates(lattice.node[i]).map(f64::from);
+            let phase: f64 = (0..3).map(|c| wave.phase[c] * node[c]).sum();
+            let fading =
+                |c: usize| (std::f64::consts::PI * (node[c] + 0.5) / lattice.shape[c] as f64).sin();
+            let amplitude = phase.cos() * (0..3).map(fading).product::<f64>();
+            for c in 0..cloud.dimension() {
+                vector[c * n + i] = amplitude * wave.polarisation[c];
+            }
+        }
+        Some(vector)
+    }
+
+    /// Lanczos iteration from noise; `bound` is one of ω² that is known already, or infinite.
+    fn iterate(&self, bound: f64) -> Result<HighestFrequency> {
+        let entries = self.u.len();
+        let effort = EFFORT.iter().find(|(most, ..)| entries <= *most);
+        let &(_, tolerance, most) = effort.unwrap_or(&EFFORT[EFFORT.len() - 1]);
+        let hold = |vector: &mut [f64]| (self.hold)(vector);
+        self.with_problem(|problem| {
+            let mut lanczos = Lanczos::from_noise(problem, entries, FAILURE, hold)
+                .ok_or(PericlesError::NoStiffness)?;
+            loop {
+                let exhausted = lanczos.advance();
+                let products = lanczos.products();
+                let last = exhausted || products == most;
+                if !last && !products.is_multiple_of(CHECK_EVERY) {
+                    continue;
+                }
+                let found = lanczos.enclosure();
+                if !(found.estimate > 0.0 && found.estimate.is_finite()) {
+                    if last {
+                        return Err(PericlesError::NoStiffness);
+                    }
+                    continue;
+                }
+                let lowest = bound.min(found.bound).max(found.estimate);
+                let distance = (lowest / found.estimate).sqrt() - 1.0;
+                if last || distance <= tolerance {
+                    return Ok(HighestFrequency {
+                        estimate: found.estimate.sqrt(),
+                        bound: lowest.sqrt(),
+                        failure_probability: if found.bound < bound { FAILURE } else { 0.0 },
+                        converged: distance <= CONVERGED,
+                        applications: products,
+                    });
+                }
+            }
+        })
+    }
+}
