@@ -444,7 +444,7 @@ impl System {
         let density = |i: usize| self.density.at(i);
         for motion in &mut self.motions {
             motion.add_acceleration(t, n, work);
-            motion.account(t, 0.0, n, work, None, &density, self.cloud.volumes());
+            motion.account(t, 0.0, n, work, None, (&density, self.cloud.volumes()));
         }
     }
 
@@ -503,7 +503,8 @@ impl System {
                 Path::Chord(load_step) => Some(load_step.u),
                 _ => None,
             };
-            let (work, impulse) = motion.account(t, dt, n, acceleration, chord, &density, volumes);
+            let (work, impulse) =
+                motion.account(t, dt, n, acceleration, chord, (&density, volumes));
             self.ledger.book(work, impulse);
         }
     }

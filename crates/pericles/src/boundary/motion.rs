@@ -258,8 +258,7 @@ impl PrescribedMotion {
         cloud_len: usize,
         acceleration: &[f64],
         chord: Option<[&[f64]; 2]>,
-        density: &dyn Fn(usize) -> f64,
-        volumes: &[f64],
+        (density, volumes): (&dyn Fn(usize) -> f64, &[f64]),
     ) -> (f64, [f64; 3]) {
         let (mut work, mut impulse) = (0.0, [0.0; 3]);
         let held = self.holds(t);

@@ -161,7 +161,7 @@ impl Implicit {
             ..LIMITS
         };
         let work = &mut self.work;
-        let solved = solver.solve(system, &self.mass, tau, &self.right, free, &limits, work);
+        let solved = solver.solve(system, &self.mass, tau, &self.right, free, (&limits, work));
         let solved = good_enough(solved, ACCEPTED * norm(&self.right));
         each(&mut self.half, free, |half, free| *half += free);
         solved

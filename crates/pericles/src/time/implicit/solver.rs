@@ -118,8 +118,7 @@ impl StepSolver {
         tau: f64,
         right: &[f64],
         x: &mut [f64],
-        limits: &SolveLimits<'_>,
-        work: &mut Work,
+        (limits, work): (&SolveLimits<'_>, &mut Work),
     ) -> Result<()> {
         let mut product = |x: &[f64], out: &mut [f64]| product_into(system, mass, tau, x, out);
         if !self.is_direct(tau, system) {
