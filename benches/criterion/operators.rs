@@ -3,6 +3,7 @@
 //! `cd benches/criterion && cargo bench --bench operators`; throughput is in directed bonds.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pericles::Interrupt;
 use pericles::bench::Case;
 use pericles::family::pairs_within;
 use pericles::operator::{BondForm, On};
@@ -50,7 +51,7 @@ fn operators(criterion: &mut Criterion) {
             b.iter(|| {
                 let next = state.t + 1e-9;
                 verlet
-                    .step(&mut system, &mut state, next)
+                    .step(&mut system, &mut state, next, Interrupt::never())
                     .expect("Verlet does not fail");
             });
         });

@@ -125,9 +125,12 @@ impl Cache for Memory {
     }
 }
 
+/// Bytes that the content of a file may take.
+pub const MEMORY: u64 = 1 << 28;
+
 /// Reads a surface; one that can be read is checked and numbered anew, as bodies are.
 pub fn surface(name: &str, content: &[u8]) {
-    let Ok(surface) = pericles_io::parse_surface(name, content) else {
+    let Ok(surface) = pericles_io::parse_surface(name, content, MEMORY) else {
         return;
     };
     if let Ok((surface, _)) = surface.checked(Default::default()) {

@@ -8,7 +8,7 @@ const PREFIX: usize = 24;
 
 pericles_fuzz::target!(|content: &[u8]| {
     for content in [content.to_vec(), sealed(content)] {
-        if let Ok(container) = Container::parse("a.chk", &content) {
+        if let Ok(container) = Container::parse("a.chk", &content, pericles_fuzz::MEMORY) {
             let _ = container.into_archive();
         }
     }

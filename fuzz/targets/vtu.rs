@@ -3,5 +3,5 @@
 
 pericles_fuzz::target!(|content: &[u8]| {
     pericles_fuzz::surface("a.vtu", content);
-    let _ = pericles_io::parse_fields("a.vtu", content);
+    let _ = pericles_io::parse_fields("a.vtu", content, pericles_fuzz::MEMORY);
 });

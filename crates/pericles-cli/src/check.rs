@@ -1,19 +1,23 @@
-//! `check`: what a run of a deck would need. Runs nothing and writes nothing.
+//! `check`: report what a run of a deck needs, without running it: as lines for people, and as JSON with every number in them.
+
+use std::path::Path;
 
 use pericles::family::geodesic::Ball;
-use pericles::material::{BondConstants, Calibration, SurfaceBond};
+use pericles::material::{BondConstants, Calibration, ElasticWaves, SurfaceBond};
 use pericles::space::surface::AreaRule;
-use pericles_deck::{Deck, Model, Scheme, SurfaceDeck, VertexAreas};
+use pericles_deck::{Deck, KernelQuality, Model, Scheme, SurfaceDeck, VertexAreas};
+use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::args::CheckArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::given;
+use crate::line::{self, Line};
 use crate::prepare::{self, Facts, Means};
 use crate::refinement::{self, Comparison};
 use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
-use crate::waves::WaveSpeeds;
 
 /// Checks a deck.
 ///
@@ -38,28 +42,67 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         Some(surface) => lines.extend(surface_material(surface)),
         None => lines.extend(material(&deck, &facts, &model.parts)),
     }
+    lines.extend(plane_waves(&deck, &model));
     lines.extend(time(&facts));
+    /// Loads with a line of their own; `run.json` has all.
+    const LOADS: usize = 20;
+    for load in facts.loads.iter().take(LOADS) {
+        lines.push(Line::new("load", load.line()));
+    }
+    if facts.loads.len() > LOADS {
+        let more = facts.loads.len() - LOADS;
+        lines.push(
+            Line::new("loads", format!("{} more", count(more as u64)))
+                .with("loads_not_listed", more),
+        );
+    }
     for end in &facts.ends {
-        lines.push(("absorbing end", end.line()));
+        lines.push(Line::new("absorbing end", end.line()));
     }
     for changed in &facts.changed_defaults {
-        lines.push(("changed default", changed.clone()));
+        lines.push(Line::new("changed default", changed.clone()));
     }
     if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
         // A step goes from static state to static state: one would be the whole run.
         let note = "that of as many iterations as each static state takes";
-        lines.push(("run time", note.into()));
+        lines.push(Line::new("run time", note));
     } else {
         let time = run_time(&deck, &facts, model, count_of_threads, &mut lines)?;
         lines.push(time);
     }
-    let title = deck.title.as_deref().unwrap_or("no title");
-    let mut text = format!("{}: {title}", args.deck.display());
-    for (name, value) in lines {
-        text += &format!("\n  {name:<18} {value}");
+    if let Some(path) = &args.json {
+        let results = json_of(&args.deck, &deck, &facts, &lines)?;
+        console::write_json(path, &results)?;
     }
-    console::print(format_args!("{text}"))?;
+    if args.json.as_deref() != Some(Path::new("-")) {
+        let title = deck.title.as_deref().unwrap_or("no title");
+        let mut text = format!("{}: {title}", args.deck.display());
+        for line in &lines {
+            text += &format!("\n  {line}");
+        }
+        console::print(format_args!("{text}"))?;
+    }
     Ok(Exit::Done)
+}
+
+/// All that `check` knows, in SI units: the facts under the keys that they have in `model` of `run.json`, and the values of the lines.
+fn json_of(path: &Path, deck: &Deck, facts: &Facts, lines: &[Line]) -> Result<Value, CliError> {
+    #[derive(Serialize)]
+    struct Named<'a> {
+        deck: String,
+        title: Option<&'a str>,
+        #[serde(flatten)]
+        facts: &'a Facts,
+    }
+    let mut json = serde_json::to_value(Named {
+        deck: path.display().to_string(),
+        title: deck.title.as_deref(),
+        facts,
+    })?;
+    if let Value::Object(object) = &mut json {
+        line::add_values(object, lines);
+    }
+    Ok(json)
 }
 
 /// How long the run will take, from a few of its steps; what that says of two time steps is added to the lines.
@@ -88,86 +131,101 @@ fn run_time(
         )?,
     };
     let seconds = step * facts.steps as f64;
-    Ok((
-        "run time",
-        format!(
-            "about {} on {} ({}), files not counted",
-            duration(seconds),
-            threads(count_of_threads),
-            facts.instruction_set
-        ),
-    ))
+    let text = format!(
+        "about {} on {} ({}), files not counted",
+        duration(seconds),
+        threads(count_of_threads),
+        facts.instruction_set
+    );
+    Ok(Line::new("run time", text)
+        .with("run_seconds", seconds)
+        .with("threads", count_of_threads))
 }
-
-type Line = (&'static str, String);
 
 fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
     let body = match &deck.surface {
-        Some(_) => "surface in 3D".into(),
-        None => format!("{}D, {}", facts.dimension, deck.body.state.name()),
+        Some(_) => Line::new("body", "surface in 3D"),
+        None => {
+            let state = deck.body.state.name();
+            let text = format!("{}D, {state}", facts.dimension);
+            Line::new("body", text).with("state", state)
+        }
     };
+    let per_point = facts.directed_bonds as f64 / facts.points as f64;
+    let ratio = facts.horizon / facts.spacing;
     let mut lines = vec![
-        ("body", body),
-        ("points", count(facts.points as u64)),
-        (
+        body,
+        Line::new("points", count(facts.points as u64)),
+        Line::new(
             "bonds",
             format!(
                 "{} ({} directed, {} per point), kept as a {}",
                 count(facts.bonds),
                 count(facts.directed_bonds),
-                significant(facts.directed_bonds as f64 / facts.points as f64, 3),
+                significant(per_point, 3),
                 facts.operator
             ),
-        ),
-        ("memory", format!("about {}", bytes(facts.memory_estimate))),
-        (
+        )
+        .with("directed_bonds_per_point", per_point),
+        Line::new("memory", format!("about {}", bytes(facts.memory_estimate))),
+        Line::new(
             "spacing, horizon",
             format!(
                 "{}, {}; ratio {}",
                 quantity(facts.spacing, "m"),
                 quantity(facts.horizon, "m"),
-                significant(facts.horizon / facts.spacing, 4)
+                significant(ratio, 4)
             ),
-        ),
+        )
+        .with("horizon_ratio", ratio),
     ];
     if facts.precut_bonds > 0 {
-        lines.insert(3, ("bonds cut before", count(facts.precut_bonds)));
+        let cut = Line::new("bonds cut before", count(facts.precut_bonds));
+        lines.insert(3, cut);
     }
     lines
 }
 
 fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     let mut lines = vec![
-        ("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
-        (
+        Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
+        Line::new(
             "bond constant c",
             format!(
                 "{:.6e} (SI, of the force density c α s)",
                 facts.micromodulus
             ),
         ),
-        ("stiffness error", stiffness_error(deck, facts)),
+        Line::new("stiffness error", stiffness_error(deck, facts)),
     ];
     let strength = facts.critical_stretch.zip(facts.fracture_energy);
-    lines.push(("breaking", breaking(strength)));
+    lines.push(Line::new("breaking", breaking(strength)));
     if !facts.crack_planes.is_empty() {
-        lines.push(("crack planes", crack_planes(facts)));
+        lines.push(Line::new("crack planes", crack_planes(facts)));
     }
     for (part, constants) in deck.material.parts.iter().zip(parts) {
-        let strength = (constants.critical_stretch, constants.fracture_energy);
-        lines.push((
-            "besides",
-            format!(
-                "{}: Young's modulus {}, {} kg/m³; breaking {}",
-                part.name,
-                quantity(constants.young, "Pa"),
-                significant(part.density, 4),
-                breaking(Some(strength).filter(|(stretch, _)| stretch.is_finite()))
-            ),
+        let strength = Some((constants.critical_stretch, constants.fracture_energy))
+            .filter(|(stretch, _)| stretch.is_finite());
+        let text = format!(
+            "{}: Young's modulus {}, {} kg/m³; breaking {}",
+            part.name,
+            quantity(constants.young, "Pa"),
+            significant(part.density, 4),
+            breaking(strength)
+        );
+        lines.push(Line::new("besides", text).with_entry(
+            "parts",
+            json!({
+                "name": part.name,
+                "youngs_modulus": constants.young,
+                "density": part.density,
+                "critical_stretch": strength.map(|(stretch, _)| stretch),
+                "fracture_energy": strength.map(|(_, energy)| energy),
+            }),
         ));
     }
     let density = deck.material.bonds.density;
-    let speeds = WaveSpeeds::of(facts.youngs_modulus, density, deck.body.state);
+    let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
     let mut waves = format!("pressure {:.0} m/s", speeds.pressure);
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
@@ -175,7 +233,14 @@ fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
             transverse.shear, transverse.rayleigh
         );
     }
-    lines.push(("waves", waves));
+    lines.push(Line::new("waves", waves).with(
+        "wave_speeds",
+        json!({
+            "pressure": speeds.pressure,
+            "shear": speeds.transverse.map(|transverse| transverse.shear),
+            "rayleigh": speeds.transverse.map(|transverse| transverse.rayleigh),
+        }),
+    ));
     lines
 }
 
@@ -217,6 +282,71 @@ fn crack_planes(facts: &Facts) -> String {
     )
 }
 
+/// What kernel and grid do to plane waves.
+fn plane_waves(deck: &Deck, model: &Model) -> Vec<Line> {
+    let Some(waves) = deck.plane_waves(model) else {
+        return Vec::new();
+    };
+    let grid = waves.grid;
+    let tolerance = percent(grid.tolerance);
+    let length = std::f64::consts::TAU / grid.wavenumber;
+    let spacings = length / model.cloud.spacing();
+    let mut lines = Vec::new();
+    if let Some(longest) = waves.model {
+        let horizons = longest / deck.material.bonds.horizon;
+        let text = format!(
+            "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
+            quantity(longest, "m"),
+            significant(horizons, 3)
+        );
+        let value =
+            json!({ "tolerance": grid.tolerance, "wavelength": longest, "horizons": horizons });
+        lines.push(Line::new("kernel dispersion", text).with("kernel_dispersion", value));
+    }
+    let reference = match waves.model {
+        Some(_) => "the nonlocal continuum",
+        None => "long waves",
+    };
+    let text = format!(
+        "phase speed within {tolerance} of {reference} from wavelengths of {} ({} spacings)",
+        quantity(length, "m"),
+        significant(spacings, 3)
+    );
+    let value = json!({ "tolerance": grid.tolerance, "wavelength": length, "spacings": spacings });
+    lines.push(Line::new("grid dispersion", text).with("grid_dispersion", value));
+    if let (Some(pair), Some(table)) = (waves.tuning, &deck.material.tuned) {
+        lines.push(tuned_kernel(pair, table.tuning.lower_bound));
+    }
+    lines
+}
+
+/// A tuned kernel beside a constant one.
+fn tuned_kernel([tuned, constant]: [KernelQuality; 2], lower_bound: Option<f64>) -> Line {
+    const TOLERANCE: f64 = 0.01;
+    let shortest = KernelQuality::SHORTEST;
+    let bound = match lower_bound {
+        Some(bound) => format!("; coefficients of at least {bound}"),
+        None => String::new(),
+    };
+    let text = format!(
+        "within {} of long waves from {} spacings per wavelength (constant kernel: {}); at most {} off from {shortest} spacings (constant: {}){bound}",
+        percent(TOLERANCE),
+        significant(tuned.spacings, 3),
+        significant(constant.spacings, 3),
+        percent(tuned.worst),
+        percent(constant.worst)
+    );
+    let quality = |quality: KernelQuality| json!({ "spacings": quality.spacings, "largest_error": quality.worst });
+    let value = json!({
+        "tolerance": TOLERANCE,
+        "shortest_spacings": shortest,
+        "tuned": quality(tuned),
+        "constant": quality(constant),
+        "lower_bound": lower_bound,
+    });
+    Line::new("tuned kernel", text).with("tuned_kernel", value)
+}
+
 /// From critical stretch and fracture energy (J/m²).
 fn breaking(strength: Option<(f64, f64)>) -> String {
     match strength {
@@ -240,6 +370,10 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
         VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
         VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
     };
+    let same_area = match surface.areas {
+        VertexAreas::Same(area) => Some(area),
+        VertexAreas::Rule(_) => None,
+    };
     let own_cell = if material.self_cell {
         "added"
     } else if material.alpha >= 0.5 {
@@ -256,23 +390,27 @@ fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
         "never".into()
     };
     vec![
-        (
+        Line::new(
             "force",
             format!(
                 "{law}; p = {}, α = {}, κ = {}",
                 material.p, material.alpha, material.kappa
             ),
+        )
+        .with(
+            "surface_law",
+            json!({ "p": material.p, "alpha": material.alpha, "kappa": material.kappa }),
         ),
-        (
+        Line::new(
             "distances",
             match surface.ball {
                 Ball::Geodesic => surface.method.to_string(),
                 Ball::Euclid => format!("{}, of the vertices in a ball of space", surface.method),
             },
         ),
-        ("areas", areas),
-        ("own cell", own_cell.into()),
-        ("breaking", breaking),
+        Line::new("areas", areas).with("vertex_area", same_area),
+        Line::new("own cell", own_cell),
+        Line::new("breaking", breaking),
     ]
 }
 
@@ -284,24 +422,25 @@ fn time(facts: &Facts) -> Vec<Line> {
         } else {
             ""
         };
-        lines.push(("highest frequency", format!("{omega:.4e} 1/s{doubt}")));
-        lines.push((
-            "stable step",
-            format!("{} ({})", quantity(limit, "s"), facts.scheme),
-        ));
+        let text = format!("{omega:.4e} 1/s{doubt}");
+        lines.push(Line::new("highest frequency", text));
+        let text = format!("{} ({})", quantity(limit, "s"), facts.scheme);
+        lines.push(Line::new("stable step", text));
     }
-    let share = facts
-        .stable_step
-        .map(|limit| format!(", {} of the stable one", percent(facts.dt / limit)))
+    let ratio = facts.stable_step.map(|limit| facts.dt / limit);
+    let share = ratio
+        .map(|ratio| format!(", {} of the stable one", percent(ratio)))
         .unwrap_or_default();
-    lines.push((
-        "steps",
-        format!(
-            "{} of {}{share}; end at {}",
-            count(facts.steps),
-            quantity(facts.dt, "s"),
-            quantity(facts.steps as f64 * facts.dt, "s")
-        ),
-    ));
+    let end = facts.steps as f64 * facts.dt;
+    let text = format!(
+        "{} of {}{share}; end at {}",
+        count(facts.steps),
+        quantity(facts.dt, "s"),
+        quantity(end, "s")
+    );
+    let steps = Line::new("steps", text)
+        .with("end", end)
+        .with("dt_over_stable_step", ratio);
+    lines.push(steps);
     lines
 }

@@ -1,7 +1,7 @@
 //! Checkpoints of a run: when they are due, and what they hold besides the state.
 //!
 //! One is written before the first step, so that a run that dies at any time can be resumed, then at the deck's schedule (by default every ten minutes
-//! of wall time), and when Ctrl-C or SIGTERM stops the run. A run that becomes unstable leaves its failing state as `failed.chk`, which is for looking
+//! of wall time; static runs also between load steps, as far as that takes no more than a twentieth of the time), and when a signal stops the run. A run that becomes unstable leaves its failing state as `failed.chk`, which is for looking
 //! at only: `resume` goes on from the last regular one.
 
 use std::path::PathBuf;
@@ -14,8 +14,12 @@ use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
 use crate::error::CliError;
+use crate::inputs::Inputs;
 
-const FAILED: &str = "failed.chk";
+/// The state of a run that became unstable.
+pub(crate) const FAILED: &str = "failed.chk";
+/// Between load steps checkpoints are as many times rarer than they take to write.
+const SHARE: u32 = 20;
 
 /// What a checkpoint says besides the state: enough to build the same run again.
 #[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
@@ -39,24 +43,31 @@ pub(crate) struct DeckText {
     pub(crate) source: String,
     /// The overrides from the command line.
     pub(crate) overrides: Vec<String>,
+    /// The files that the deck names.
+    #[serde(default, skip_serializing_if = "Inputs::is_empty")]
+    pub(crate) inputs: Inputs,
 }
 
 impl DeckText {
     /// The text of a deck that was read from `file`.
     pub(crate) fn of(deck: &Deck, file: String) -> Self {
         Self {
+            inputs: Inputs::of(deck, &file),
             file,
             source: deck.source().to_owned(),
             overrides: deck.overrides().map(str::to_owned).collect(),
         }
     }
 
-    /// Reads the deck again.
+    /// Reads the deck again, from whatever folder.
     ///
     /// # Errors
-    /// What this version no longer accepts.
+    /// What this version no longer accepts; a file that the deck names and that is no longer what it was.
     pub(crate) fn read(&self) -> Result<Deck, CliError> {
-        Ok(Deck::parse(&self.source, &self.file, &self.overrides)?)
+        let file = self.inputs.located(&self.file);
+        let deck = Deck::parse(&self.source, &file, &self.overrides)?;
+        self.inputs.check(&deck)?;
+        Ok(deck)
     }
 }
 
@@ -95,7 +106,11 @@ impl Checkpoints {
             Checkpoint::Wall(seconds) => {
                 // A deck may ask for more seconds than a clock can count.
                 let wait = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-                self.last.elapsed() >= wait
+                // A load step may take as long as a whole dynamic run, and the next one may have no static state.
+                let affordable = SHARE * self.cost;
+                let is_static = simulation.integrator().is_static();
+                let elapsed = self.last.elapsed();
+                elapsed >= wait || is_static && elapsed >= affordable
             }
             Checkpoint::Every(steps) => due(Schedule::Every(steps)),
             Checkpoint::Interval(time) => due(Schedule::Interval(time)),
@@ -169,12 +184,12 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// The newest usable checkpoint of a run.
+    /// The newest usable checkpoint of a run; its content may take so many bytes of memory.
     ///
     /// # Errors
-    /// No checkpoint that is whole, or one of another program.
-    pub(crate) fn latest(folder: &OutputFolder) -> Result<Self, CliError> {
-        let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid()?;
+    /// No checkpoint that is whole, one of another program, one that needs more memory.
+    pub(crate) fn latest(folder: &OutputFolder, memory: u64) -> Result<Self, CliError> {
+        let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid(memory)?;
         let unusable = |reason: String| CliError::Checkpoint {
             path: latest.path.clone(),
             reason,

@@ -27,6 +27,11 @@ impl Deadline {
         self.before = Instant::now();
     }
 
+    /// The time by which the run must have stopped.
+    pub(crate) fn end(&self) -> Instant {
+        self.end
+    }
+
     /// Whether another step, output included, and a checkpoint may no longer fit in; to be asked once after every step.
     pub(crate) fn is_near(&mut self, checkpoint: Duration) -> bool {
         let now = Instant::now();

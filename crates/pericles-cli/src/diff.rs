@@ -1,7 +1,9 @@
 //! `diff`: two results compared field by field and column by column.
 //!
 //! Two values a, b of a field or column differ by |a − b| / s, where s is the largest size of the field at that time, or of the whole column, in either result: what is small against
-//! it is not blown up. Pictures, checkpoints and run.json are left out: they say no more than the numbers, or differ from run to run.
+//! it is not blown up. States, and rows of tables, are compared where both results have one at the same time but for rounding; the others are counted. Pictures, checkpoints and run.json are left out: they say no more than the numbers, or differ from run to run.
+
+mod times;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -10,6 +12,7 @@ use std::path::{Path, PathBuf};
 use pericles_io::read_csv;
 use serde::Serialize;
 
+use self::times::{Matches, matched};
 use crate::args::DiffArgs;
 use crate::console;
 use crate::error::CliError;
@@ -26,6 +29,8 @@ struct Comparison {
     rows: Vec<Row>,
     /// What one of them lacks, and counts or times that differ.
     unlike: Vec<String>,
+    /// States and rows that were not compared, because the other result has none at their time or of their size.
+    skipped: usize,
     equal: bool,
 }
 
@@ -53,17 +58,18 @@ struct Row {
 /// Folders without results, files that are damaged.
 pub(crate) fn diff(args: &DiffArgs) -> Result<Exit, CliError> {
     let (a, b) = (Results::open(&args.a)?, Results::open(&args.b)?);
-    let mut unlike = Vec::new();
+    let mut unlike = Unlike::default();
     let mut rows = compare_fields(&a, &b, &mut unlike)?;
     rows.extend(compare_tables(&a, &b, &mut unlike)?);
     let within = |row: &Row| row.relative <= args.tolerance;
-    let equal = unlike.is_empty() && rows.iter().all(within);
+    let equal = unlike.words.is_empty() && rows.iter().all(within);
     let comparison = Comparison {
         a: args.a.clone(),
         b: args.b.clone(),
         tolerance: args.tolerance,
         rows,
-        unlike,
+        unlike: unlike.words,
+        skipped: unlike.skipped,
         equal,
     };
     let json_only = args.json.as_deref() == Some(Path::new("-"));
@@ -115,9 +121,47 @@ impl Comparison {
             (true, false) => "equal within the tolerance",
             (false, _) => "different",
         };
+        let skipped = match self.skipped {
+            0 => String::new(),
+            1 => "; 1 state or row was not compared".into(),
+            skipped => format!("; {skipped} states and rows were not compared"),
+        };
         console::print(format_args!(
-            "{verdict}: {same} of {fields} fields and columns are the same in all {values} values"
+            "{verdict}: {same} of {fields} fields and columns are the same in all {values} values compared{skipped}"
         ))
+    }
+}
+
+/// What only one of two results has.
+#[derive(Default)]
+struct Unlike {
+    words: Vec<String>,
+    skipped: usize,
+}
+
+impl Unlike {
+    /// Notes something, once.
+    fn note(&mut self, words: String) {
+        if !self.words.contains(&words) {
+            self.words.push(words);
+        }
+    }
+
+    /// Notes what stands alone; `times` are those of the two results.
+    fn note_alone(&mut self, place: &str, what: &str, matches: &Matches, times: [&[f64]; 2]) {
+        let results = [("first", "second"), ("second", "first")];
+        for ((alone, times), (has, lacks)) in matches.alone.iter().zip(times).zip(results) {
+            let Some(&first) = alone.first() else {
+                continue;
+            };
+            self.skipped += alone.len();
+            self.note(format!(
+                "{place}: {} of the {} {what}s of the {has}, from t = {} on, not compared: the {lacks} has none at the same time",
+                alone.len(),
+                times.len(),
+                quantity(times[first], "s"),
+            ));
+        }
     }
 }
 
@@ -172,51 +216,42 @@ impl Tally {
     }
 }
 
-fn compare_fields(
-    a: &Results,
-    b: &Results,
-    unlike: &mut Vec<String>,
-) -> Result<Vec<Row>, CliError> {
+fn compare_fields(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<Row>, CliError> {
     let (series_a, series_b) = (a.fields()?, b.fields()?);
+    let times = |series: &[FieldFile]| series.iter().map(|state| state.time).collect::<Vec<_>>();
+    let (times_a, times_b) = (times(&series_a), times(&series_b));
     if series_a.len() != series_b.len() {
-        unlike.push(format!(
+        unlike.note(format!(
             "fields: {} states against {}",
             series_a.len(),
             series_b.len()
         ));
     }
+    let matches = matched(&times_a, &times_b);
+    unlike.note_alone("fields", "state", &matches, [&times_a, &times_b]);
     let mut tallies: BTreeMap<String, Tally> = BTreeMap::new();
-    for (one, other) in series_a.iter().zip(&series_b) {
-        if one.time != other.time {
-            unlike.push(format!(
-                "fields: a state at {} against one at {}",
-                quantity(one.time, "s"),
-                quantity(other.time, "s")
-            ));
-            break;
-        }
-        if !compare_state(one, other, &mut tallies, unlike)? {
-            break;
-        }
+    for (i, j) in matches.pairs {
+        compare_state(&series_a[i], &series_b[j], &mut tallies, unlike)?;
     }
     Ok(tallies.into_values().map(|tally| tally.row).collect())
 }
 
-/// Whether the states are of the same kind, so that later ones are worth a look.
+/// Compares the fields that both states have.
 fn compare_state(
     one: &FieldFile,
     other: &FieldFile,
     tallies: &mut BTreeMap<String, Tally>,
-    unlike: &mut Vec<String>,
-) -> Result<bool, CliError> {
+    unlike: &mut Unlike,
+) -> Result<(), CliError> {
     let (a, b) = (one.read()?, other.read()?);
     if a.points.len() != b.points.len() {
-        unlike.push(format!(
+        unlike.skipped += 1;
+        unlike.note(format!(
             "fields: {} points against {}",
             a.points.len() / 3,
             b.points.len() / 3
         ));
-        return Ok(false);
+        return Ok(());
     }
     let time = quantity(one.time, "s");
     let mut tally = |name: &str, components: usize, a: &[f64], b: &[f64]| {
@@ -232,21 +267,16 @@ fn compare_state(
             .map(|field| field.name.clone())
             .collect::<Vec<_>>()
     };
-    let before = unlike.len();
     note_missing("fields", &names(&a), &names(&b), unlike);
     for field in &a.fields {
         if let Some(twin) = b.field(&field.name) {
             tally(&field.name, field.components, &field.values, &twin.values);
         }
     }
-    Ok(unlike.len() == before)
+    Ok(())
 }
 
-fn compare_tables(
-    a: &Results,
-    b: &Results,
-    unlike: &mut Vec<String>,
-) -> Result<Vec<Row>, CliError> {
+fn compare_tables(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<Row>, CliError> {
     let named = |results: &Results| -> BTreeMap<OsString, PathBuf> {
         let tables = results.tables().into_iter();
         tables
@@ -267,12 +297,28 @@ fn compare_tables(
         let file = name.to_string_lossy();
         let (one, other) = (read_csv(path)?, read_csv(twin)?);
         if one.rows() != other.rows() {
-            unlike.push(format!(
+            unlike.note(format!(
                 "{file}: {} rows against {}",
                 one.rows(),
                 other.rows()
             ));
         }
+        let matches = match (one.column("time"), other.column("time")) {
+            (Some(a), Some(b)) => {
+                let matches = matched(a, b);
+                unlike.note_alone(&file, "row", &matches, [a, b]);
+                matches
+            }
+            // Without times, rows of the same number belong together.
+            _ => {
+                unlike.skipped += one.rows().abs_diff(other.rows());
+                let common = one.rows().min(other.rows());
+                Matches {
+                    pairs: (0..common).map(|k| (k, k)).collect(),
+                    ..Matches::default()
+                }
+            }
+        };
         let columns = |data: &pericles_io::CsvData| {
             data.columns
                 .iter()
@@ -283,10 +329,10 @@ fn compare_tables(
         for (column, values) in one.columns.iter().zip(&one.values) {
             if let Some(twin) = other.column(column.name()) {
                 let mut tally = Tally::new(&file, column.name());
-                let common = values.len().min(twin.len());
-                tally.add(&values[..common], &twin[..common], |k| {
-                    format!("row {}", k + 1)
-                });
+                let pairs = &matches.pairs;
+                let ours: Vec<f64> = pairs.iter().map(|(i, _)| values[*i]).collect();
+                let theirs: Vec<f64> = pairs.iter().map(|(_, j)| twin[*j]).collect();
+                tally.add(&ours, &theirs, |k| format!("row {}", pairs[k].0 + 1));
                 rows.push(tally.row);
             }
         }
@@ -295,10 +341,10 @@ fn compare_tables(
 }
 
 /// Notes the names that only one of two has.
-fn note_missing(place: &str, a: &[String], b: &[String], unlike: &mut Vec<String>) {
+fn note_missing(place: &str, a: &[String], b: &[String], unlike: &mut Unlike) {
     for (have, lack, which) in [(a, b, "first"), (b, a, "second")] {
         for name in have.iter().filter(|name| !lack.contains(name)) {
-            unlike.push(format!("{place}: only the {which} has {name}"));
+            unlike.note(format!("{place}: only the {which} has {name}"));
         }
     }
 }

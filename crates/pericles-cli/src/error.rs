@@ -1,16 +1,16 @@
 //! What can go wrong on the way from the command line to the results, and how it is reported.
 
-use std::fmt::{self, Display};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use miette::{Diagnostic, MietteHandler, ReportHandler};
+use miette::Diagnostic;
 use pericles::space::surface::SurfaceError;
 use pericles::{PericlesError, SimulationError};
 use pericles_deck::DeckError;
 use pericles_io::{IoError, MeshError};
 
 use crate::console;
+use crate::drawn::Drawn;
 use crate::exit::Exit;
 
 /// Everything that ends a command early.
@@ -37,10 +37,12 @@ pub(crate) enum CliError {
     Io(#[from] IoError),
     /// The output folder is taken.
     #[error("{} exists already", path.display())]
-    #[diagnostic(help("choose another --out, or replace the results in it with --force"))]
     OutExists {
         /// The folder.
         path: PathBuf,
+        /// What to do.
+        #[help]
+        help: &'static str,
     },
     /// The run became unstable, or found no way on.
     #[error("{source}")]
@@ -63,6 +65,15 @@ pub(crate) enum CliError {
         /// The checkpoint.
         path: PathBuf,
         /// Why.
+        reason: String,
+    },
+    /// A file that the deck names is not what it was when the run began.
+    #[error("{} is read by the run: {reason}", path.display())]
+    #[diagnostic(help("put the file back as it was, or start a new run"))]
+    InputChanged {
+        /// The file.
+        path: PathBuf,
+        /// What has happened to it.
         reason: String,
     },
     /// There are no results.
@@ -118,6 +129,23 @@ pub(crate) enum CliError {
         /// Why.
         source: SurfaceError,
     },
+    /// A spectrum of a lattice whose waves grow.
+    #[error(
+        "the spectrum cannot be measured: the kernel is unstable on this grid, some waves grow"
+    )]
+    #[diagnostic(help("leave --measure out, or use a stable kernel"))]
+    UnstableSpectrum,
+    /// A vector with more components than the body has dimensions.
+    #[error("{option} has {given} components; the body has {dimension} dimension(s)")]
+    #[diagnostic(help("give one component for each dimension of the body"))]
+    Components {
+        /// The option.
+        option: &'static str,
+        /// Components given.
+        given: usize,
+        /// Of the body.
+        dimension: usize,
+    },
     /// A word that is neither a shape nor a file.
     #[error("\"{given}\" is no shape")]
     UnknownShape {
@@ -126,6 +154,14 @@ pub(crate) enum CliError {
         /// What is allowed.
         #[help]
         allowed: &'static str,
+    },
+    /// A vertex that a surface does not have.
+    #[error("the surface has no vertex {number}; its {vertices} vertices are numbered from 0 to {}", vertices.saturating_sub(1))]
+    NoVertex {
+        /// The number given.
+        number: usize,
+        /// How many there are.
+        vertices: usize,
     },
     /// A step of the library outside of a run.
     #[error(transparent)]
@@ -177,7 +213,9 @@ impl CliError {
                 Ok(error) => Self::Io(*error),
                 Err(source) => Self::Simulation(SimulationError::Observe(source)),
             },
-            SimulationError::Unstable { .. } | SimulationError::Stuck { .. } => Self::Unstable {
+            SimulationError::Unstable { .. }
+            | SimulationError::Stuck { .. }
+            | SimulationError::NoStaticState { .. } => Self::Unstable {
                 source: error,
                 left: left(),
             },
@@ -189,14 +227,20 @@ impl CliError {
     pub(crate) fn exit(&self) -> Exit {
         match self {
             Self::Deck(error) if error.is_too_large() => Exit::Memory,
+            Self::Io(IoError::TooLarge { .. })
+            | Self::Mesh(MeshError::Io(IoError::TooLarge { .. })) => Exit::Memory,
             Self::Deck(_)
             | Self::NoDeck { .. }
             | Self::Checkpoint { .. }
+            | Self::InputChanged { .. }
             | Self::NoRun { .. }
             | Self::NoResults { .. }
+            | Self::UnstableSpectrum
             | Self::Library(_) => Exit::Input,
             Self::Mesh(_) | Self::Surface { .. } | Self::Damaged { .. } => Exit::Input,
-            Self::UnknownShape { .. } => Exit::Usage,
+            Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
+                Exit::Usage
+            }
             Self::Io(error) if error.is_output_problem() => Exit::Output,
             Self::Io(IoError::Shape { .. } | IoError::Unsuitable { .. }) => Exit::Internal,
             Self::Io(_) => Exit::Input,
@@ -215,11 +259,12 @@ impl CliError {
         if std::io::stderr().is_terminal() {
             return match self {
                 // One by one: the error as a whole would list them all a second time.
-                Self::Deck(error) if !error.problems().is_empty() => error
-                    .problems()
-                    .iter()
-                    .for_each(|problem| console::note(format_args!("{}", Drawn(problem)))),
-                other => console::note(format_args!("{}", Drawn(other))),
+                Self::Deck(error) if !error.problems().is_empty() => {
+                    error.problems().iter().for_each(|problem| {
+                        console::note_in_colour(format_args!("{}", Drawn(problem)))
+                    })
+                }
+                other => console::note_in_colour(format_args!("{}", Drawn(other))),
             };
         }
         console::note(format_args!("error: {self}"));
@@ -227,15 +272,6 @@ impl CliError {
         if let (Some(help), false) = (self.help(), matches!(self, Self::Deck(_))) {
             console::note(format_args!("help: {help}"));
         }
-    }
-}
-
-/// A diagnostic as it looks on a terminal.
-struct Drawn<'a>(&'a dyn Diagnostic);
-
-impl Display for Drawn<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        MietteHandler::default().debug(self.0, f)
     }
 }
 
@@ -264,7 +300,13 @@ mod tests {
             (CliError::from(io(io::ErrorKind::StorageFull)), 6),
             (observed(io(io::ErrorKind::StorageFull)), 6),
             (observed(IoError::Locked { path: path() }), 6),
-            (CliError::OutExists { path: path() }, 6),
+            (
+                CliError::OutExists {
+                    path: path(),
+                    help: "",
+                },
+                6,
+            ),
             (CliError::NoRun { path: path() }, 3),
             (CliError::from(IoError::NotFound { path: path() }), 3),
             (CliError::of_run(unstable, || "left".into()), 4),

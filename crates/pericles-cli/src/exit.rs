@@ -15,13 +15,15 @@ pub(crate) enum Exit {
     Output = 6,
     StoppedEarly = 7,
     Memory = 8,
+    HungUp = 129,
     Interrupted = 130,
+    Warned = 138,
     Terminated = 143,
 }
 
 impl Exit {
     /// All statuses in the order of their numbers.
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 13] = [
         Self::Done,
         Self::Internal,
         Self::Usage,
@@ -31,7 +33,9 @@ impl Exit {
         Self::Output,
         Self::StoppedEarly,
         Self::Memory,
+        Self::HungUp,
         Self::Interrupted,
+        Self::Warned,
         Self::Terminated,
     ];
 
@@ -54,6 +58,8 @@ impl Exit {
                 "more memory would be needed than there is, or than --max-memory allows"
             }
             Self::Interrupted => "Ctrl-C, with a checkpoint (a second one ends at once)",
+            Self::HungUp => "SIGHUP (the terminal was closed), with a checkpoint",
+            Self::Warned => "SIGUSR1 (such as the warning of a batch system), with a checkpoint",
             Self::Terminated => "SIGTERM, with a checkpoint",
         }
     }
@@ -81,7 +87,7 @@ mod tests {
     #[test]
     fn the_help_page_lists_every_status_once() {
         let table = Exit::table();
-        for status in [0, 1, 2, 3, 4, 5, 6, 7, 8, 130, 143] {
+        for status in [0, 1, 2, 3, 4, 5, 6, 7, 8, 129, 130, 138, 143] {
             let line = format!("\n  {status:>3}  ");
             assert_eq!(table.matches(&line).count(), 1, "{status}");
         }

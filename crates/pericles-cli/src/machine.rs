@@ -27,13 +27,18 @@ pub(crate) fn peak_memory() -> Option<u64> {
 }
 
 /// Memory that the process may still take, bytes, where the system tells: what is free or can be freed, or less in a container with a limit.
-pub(crate) fn free_memory() -> Option<u64> {
+fn free_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
         .lines()
         .find(|line| line.starts_with("MemAvailable:"))?;
     let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(left_in_groups().map_or(1024 * kilobytes, |left| left.min(1024 * kilobytes)))
+}
+
+/// Memory that may be used, bytes, where nothing else is asked for: what is free, or any amount where the system does not tell.
+pub(crate) fn memory() -> u64 {
+    free_memory().unwrap_or(u64::MAX)
 }
 
 /// What the control groups of the process (version 2) leave it: the least of its own and all above it.

@@ -18,11 +18,14 @@ mod converge;
 mod deadline;
 mod diff;
 mod dispersion;
+mod drawn;
 mod error;
 mod exit;
 mod geodesics;
 mod given;
 mod info;
+mod inputs;
+mod line;
 mod machine;
 mod manual;
 mod mirror;
@@ -42,14 +45,15 @@ mod summary;
 mod sweep;
 mod units;
 mod watch;
-mod waves;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
+use pericles::operator::InstructionSet;
 
 use args::{Cli, Command};
+use exit::Exit;
 
 /// The command line. Who gives a deck alone is told how to run it.
 fn parsed() -> Cli {
@@ -66,7 +70,16 @@ fn parsed() -> Cli {
 
 fn main() -> ExitCode {
     bug::end_at_panics();
-    let outcome = match parsed().command {
+    let cli = parsed();
+    if let Some(set) = cli.instruction_set.filter(|set| !set.limit_process()) {
+        let name = set.name();
+        let available = InstructionSet::detect().name();
+        console::note(format_args!(
+            "--instruction-set {name} is not available: this machine has {available} and the sets below it."
+        ));
+        return Exit::Usage.into();
+    }
+    let outcome = match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args),

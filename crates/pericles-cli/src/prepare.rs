@@ -9,19 +9,25 @@ use pericles::cache::{Cache, NoCache};
 use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
 use pericles::space::surface::Surface;
-use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Resources, Scheme};
-use pericles_io::observers::{
-    Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, FragmentCourse, History, InnerColumns,
-    PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
+use pericles_deck::{
+    Deck, ExactReference, FileError, LoadReport, Model, Picture, Precision, Resources, Scheme,
 };
-use pericles_io::{DiskCache, OutputFolder, read_points, read_surface};
+use pericles_io::observers::{
+    Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, FragmentCourse, History,
+    InnerColumns, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
+};
+use pericles_io::{
+    DiskCache, IoError, MeshError, OutputFolder, PointsError, RowsError, read_points, read_rows,
+    read_surface,
+};
 use serde::Serialize;
 
 use crate::args::Caching;
+use crate::checkpoint;
 use crate::console;
 use crate::error::CliError;
 use crate::refinement::RefinementFacts;
-use crate::units::{bytes, significant};
+use crate::units::{bytes, count, quantity, significant};
 
 /// What is known about a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
@@ -62,6 +68,9 @@ pub(crate) struct Facts {
     pub(crate) scheme: &'static str,
     /// None for schemes with one time step.
     pub(crate) refinement: Option<RefinementFacts>,
+    /// The loads, in the order of the deck.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) loads: Vec<LoadFacts>,
     /// The absorbing ends.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) ends: Vec<EndFacts>,
@@ -79,6 +88,46 @@ pub(crate) struct PlaneFacts {
     pub(crate) plane: String,
     /// Energy per area over the fracture energy, less one.
     pub(crate) deviation: f64,
+}
+
+/// What a load comes to; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct LoadFacts {
+    pub(crate) set: String,
+    pub(crate) points: usize,
+    /// None for body forces.
+    pub(crate) area: Option<f64>,
+    /// The resultant when it is largest in the run, an entry per dimension.
+    pub(crate) force: Vec<f64>,
+    /// When that is first so.
+    pub(crate) force_time: f64,
+}
+
+impl LoadFacts {
+    fn of(load: &LoadReport, dimension: usize) -> Self {
+        Self {
+            set: load.set.clone(),
+            points: load.points,
+            area: load.area,
+            force: load.force[..dimension].to_vec(),
+            force_time: load.at,
+        }
+    }
+
+    /// In a line.
+    pub(crate) fn line(&self) -> String {
+        let force: Vec<String> = self.force.iter().map(|f| quantity(*f, "N")).collect();
+        let area = self.area.map_or_else(String::new, |area| {
+            format!(" on {} mm²", significant(1e6 * area, 4))
+        });
+        format!(
+            "{}: {} points{area}; total force ({}), largest at t = {}",
+            self.set,
+            count(self.points as u64),
+            force.join(", "),
+            quantity(self.force_time, "s")
+        )
+    }
 }
 
 /// How an absorbing end is made.
@@ -173,6 +222,11 @@ impl Facts {
             memory_estimate: (operator.bytes() + numbers * size_of::<f64>() + ends) as u64,
             scheme: model.integrator.name(),
             refinement: RefinementFacts::of(deck, model),
+            loads: model
+                .loads
+                .iter()
+                .map(|load| LoadFacts::of(load, dimension))
+                .collect(),
             ends: model.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
             warnings: model
@@ -229,6 +283,7 @@ pub(crate) struct Means<'a> {
 /// A deck that is refused.
 pub(crate) fn model(deck: &Deck, means: &Means<'_>) -> Result<Model, CliError> {
     let cache = means.caching.cache();
+    let cache = cache.map(|cache| cache.within(means.memory));
     let model = deck.build_with(Resources {
         cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
         memory: means.memory,
@@ -258,6 +313,15 @@ pub(crate) fn simulation(
     let exact = model.exact.take();
     let surface = model.surface.clone();
     let mut simulation = model.simulation();
+    let mut names = [
+        "run.json",
+        "report.html",
+        "history.csv",
+        "checkpoints/step-*.chk",
+    ]
+    .map(String::from)
+    .to_vec();
+    names.push(format!("checkpoints/{}", checkpoint::FAILED));
 
     let mut history = History::new(folder.file("history.csv"), dimension);
     if simulation.integrator().inner_iterations().is_some() {
@@ -272,30 +336,39 @@ pub(crate) fn simulation(
     if let Some(rate) = output.energy_bound {
         history = history.with(EnergyBoundColumns(EnergyInequality::new(rate)));
     }
+    if !output.extremes.is_empty() {
+        history = history.with(ExtremeColumns::new(output.extremes.clone(), dimension));
+    }
     simulation.observe(output.history, Box::new(history));
     if let Some(reactions) = reactions {
+        names.push("reactions.csv".into());
         simulation.observe(output.history, Box::new(reactions));
     }
     if !probes.is_empty() {
+        names.push("probes.csv".into());
         let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
         simulation.observe(output.history, Box::new(probes));
     }
     if can_break && !cracks.is_empty() {
+        names.push("cracks.csv".into());
         let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
         simulation.observe(output.cracks.schedule, Box::new(cracks));
     }
     if can_break && output.fragments.schedule != Schedule::Never {
+        names.push("fragments.csv".into());
         let smallest = output.fragments.smallest;
         let course = FragmentCourse::new(folder.file("fragments.csv"), smallest);
         simulation.observe(output.fragments.schedule, Box::new(course));
     }
     if let Some(surface) = &surface {
+        names.push("surface.csv".into());
         let measure = SurfaceMeasure::new(surface.clone());
         let course = SurfaceCourse::new(folder.file("surface.csv"), measure);
         simulation.observe(output.history, Box::new(course));
     }
     if output.fields != Schedule::Never {
+        names.extend(["fields.pvd".into(), "fields/fields_*.vtu".into()]);
         folder.subfolder("fields")?;
         let single = output.precision == Precision::Single;
         let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
@@ -304,7 +377,13 @@ pub(crate) fn simulation(
         }
         simulation.observe(output.fields, Box::new(fields));
     }
-    add_pictures(deck, folder, surface.as_ref(), &mut simulation)?;
+    names.extend(add_pictures(
+        deck,
+        folder,
+        surface.as_ref(),
+        &mut simulation,
+    )?);
+    folder.claim(&names)?;
     Ok(simulation)
 }
 
@@ -329,23 +408,39 @@ pub(crate) fn picture_of(
 pub(crate) fn readers() -> Resources<'static> {
     Resources {
         cache: &NoCache,
-        read_surface: &|path| read_surface(path).map_err(|error| error.to_string()),
-        read_points: &|path, dimension| {
-            read_points(path, dimension).map_err(|error| error.to_string())
+        read_surface: &|path, memory| {
+            read_surface(path, memory).map_err(|error| match &error {
+                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_points: &|path, dimension, memory| {
+            read_points(path, dimension, memory).map_err(|error| match &error {
+                PointsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_table: &|path, rows, columns, memory| {
+            read_rows(path, rows, columns, memory).map_err(|error| match &error {
+                RowsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
         },
         ..Resources::default()
     }
 }
 
+/// Adds the pictures that a deck asks for; their files, relative to the folder.
 fn add_pictures(
     deck: &Deck,
     folder: &OutputFolder,
     surface: Option<&Arc<Surface>>,
     simulation: &mut Simulation,
-) -> Result<(), CliError> {
+) -> Result<Vec<String>, CliError> {
     if deck.output.pictures.is_empty() {
-        return Ok(());
+        return Ok(Vec::new());
     }
+    let mut names = Vec::new();
     let place = folder.subfolder("pictures")?;
     let dimension = simulation.system().dimension();
     let mut uses: HashMap<String, u32> = HashMap::new();
@@ -358,11 +453,15 @@ fn add_pictures(
             1 => what.name(dimension),
             number => format!("{}_{number}", what.name(dimension)),
         };
+        names.push(format!("pictures/{stem}-*.png"));
+        if picture.animation {
+            names.push(format!("pictures/{stem}.apng"));
+        }
         let mut pictures = Pictures::new(&place, stem, what);
         if picture.animation {
             pictures = pictures.animated();
         }
         simulation.observe(picture.schedule, Box::new(pictures));
     }
-    Ok(())
+    Ok(names)
 }

@@ -88,6 +88,14 @@ impl Progress {
         }
     }
 
+    /// Prints a line on the standard error, above the bar.
+    pub(crate) fn note(&self, line: std::fmt::Arguments<'_>) {
+        match &self.style {
+            Style::Bar { bar, .. } => bar.suspend(|| console::note(line)),
+            _ => console::note(line),
+        }
+    }
+
     /// Takes the bar away.
     pub(crate) fn finish(&self) {
         if let Style::Bar { bar, .. } = &self.style {

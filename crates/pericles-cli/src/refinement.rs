@@ -10,10 +10,12 @@ use pericles::time::{
     HighestFrequency, Integrator, RefinementReport, RungeKutta, State, Tableau, VelocityVerlet,
     highest_frequency,
 };
-use pericles::{PericlesError, System};
+use pericles::{Interrupt, PericlesError, System};
 use pericles_deck::{Deck, FineRegion, Model, Scheme};
 use serde::Serialize;
+use serde_json::json;
 
+use crate::line::Line;
 use crate::units::{percent, quantity, significant};
 
 /// What is known of two time steps before the first; SI units.
@@ -210,7 +212,7 @@ pub(crate) fn seconds_per_step(
 ) -> Result<f64, PericlesError> {
     let mut step = || {
         let t_next = state.t + dt;
-        integrator.step(system, state, t_next)
+        integrator.step(system, state, t_next, Interrupt::never())
     };
     let mut most = most.min(MOST);
     // The first step finds cold caches and sleeping threads.
@@ -227,14 +229,14 @@ pub(crate) fn seconds_per_step(
     Ok(began.elapsed().as_secs_f64() / steps as f64)
 }
 
-/// What `check` says of two time steps, name and value.
+/// The lines of `check` about two time steps.
 pub(crate) fn lines(
     facts: &RefinementFacts,
     scheme: &str,
     dt: f64,
     comparison: &Comparison,
-) -> Vec<(&'static str, String)> {
-    let ratio = f64::from(facts.ratio);
+) -> Vec<Line> {
+    let fine_dt = dt / f64::from(facts.ratio);
     let frequencies = match (facts.omega_dt, facts.omega_dt_fine) {
         (Some(coarse), Some(fine)) => format!("; ω dt {coarse:.2} coarse, {fine:.2} fine"),
         _ => String::new(),
@@ -245,28 +247,29 @@ pub(crate) fn lines(
     } else {
         ""
     };
+    let steps = format!(
+        "{} and {} for {} of the points{following}{frequencies}",
+        quantity(dt, "s"),
+        quantity(fine_dt, "s"),
+        percent(facts.fine_fraction),
+    );
+    let over_uniform = comparison.uniform / comparison.seconds;
+    let over_verlet = comparison.verlet / comparison.seconds;
+    let cost = format!(
+        "{} evaluations per point and step; {plain} with the fine step everywhere {} times that ({} by the clock), velocity-verlet there {} times ({} by the clock)",
+        significant(facts.evaluations, 3),
+        significant(facts.speed_up, 3),
+        significant(over_uniform, 3),
+        significant(facts.speed_up_over_verlet, 3),
+        significant(over_verlet, 3),
+    );
     vec![
-        (
-            "two time steps",
-            format!(
-                "{} and {} for {} of the points{following}{frequencies}",
-                quantity(dt, "s"),
-                quantity(dt / ratio, "s"),
-                percent(facts.fine_fraction),
-            ),
+        Line::new("two time steps", steps).with("dt_fine", fine_dt),
+        Line::new("their cost", cost).with(
+            "refinement_by_clock",
+            json!({ "speed_up": over_uniform, "speed_up_over_verlet": over_verlet }),
         ),
-        (
-            "their cost",
-            format!(
-                "{} evaluations per point and step; {plain} with the fine step everywhere {} times that ({} by the clock), velocity-verlet there {} times ({} by the clock)",
-                significant(facts.evaluations, 3),
-                significant(facts.speed_up, 3),
-                significant(comparison.uniform / comparison.seconds, 3),
-                significant(facts.speed_up_over_verlet, 3),
-                significant(comparison.verlet / comparison.seconds, 3),
-            ),
-        ),
-        ("do they pay", verdict(facts, scheme, comparison)),
+        Line::new("do they pay", verdict(facts, scheme, comparison)),
     ]
 }
 

@@ -37,6 +37,8 @@ pub(crate) struct Report {
     pub(crate) status: Status,
     /// What went wrong.
     pub(crate) error: Option<String>,
+    /// The stop condition that ended a finished run before its last step.
+    pub(crate) stop_reason: Option<String>,
     pub(crate) title: Option<String>,
     program: Program,
     pub(crate) model: Facts,
@@ -108,7 +110,7 @@ pub(crate) struct Audit {
     pub(crate) largest_balance: f64,
     pub(crate) momentum: [f64; 3],
     pub(crate) impulse: [f64; 3],
-    /// |momentum − momentum at the start − impulse|
+    /// |momentum − momentum at the start − impulse|; NaN (null) for static states, which have no momentum.
     pub(crate) momentum_error: f64,
     /// The same over √(2 · kinetic energy · mass).
     pub(crate) momentum_error_relative: f64,
@@ -138,6 +140,7 @@ impl Report {
         Self {
             status: Status::Running,
             error: None,
+            stop_reason: None,
             title: deck.title.clone(),
             program: Program {
                 name: "pericles",
@@ -204,10 +207,14 @@ impl Audit {
         let balance = energies.balance();
         let momentum = system.momentum(&state.v);
         let impulse = system.ledger().impulse;
-        let error = (0..3)
-            .map(|c| (momentum[c] - start.momentum[c] - impulse[c]).powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let error = if simulation.integrator().is_static() {
+            f64::NAN
+        } else {
+            (0..3)
+                .map(|c| (momentum[c] - start.momentum[c] - impulse[c]).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
         let volumes = system.cloud().volumes();
         let mass: f64 = (0..system.points())
             .map(|i| system.density().at(i) * volumes[i])

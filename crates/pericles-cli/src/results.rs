@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::checkpoint::DeckText;
 use crate::error::CliError;
+use crate::machine;
 
 /// The folder of a run that was started once.
 pub(crate) struct Results {
@@ -29,7 +30,7 @@ impl FieldFile {
     /// # Errors
     /// A file that is gone or damaged.
     pub(crate) fn read(&self) -> Result<FieldData, CliError> {
-        Ok(read_fields(&self.path)?)
+        Ok(read_fields(&self.path, machine::memory())?)
     }
 }
 
@@ -53,10 +54,16 @@ impl Results {
         }
         let text =
             std::fs::read_to_string(&path).map_err(|error| IoError::reading(&path, error))?;
-        let report = serde_json::from_str(&text).map_err(|error| CliError::Damaged {
+        let report: Value = serde_json::from_str(&text).map_err(|error| CliError::Damaged {
             path,
             reason: error.to_string(),
         })?;
+        if report.pointer("/program/name") != Some(&Value::from("pericles")) {
+            return Err(CliError::NoResults {
+                path: folder.into(),
+                reason: "its run.json was not written by Pericles",
+            });
+        }
         Ok(Self {
             folder: folder.into(),
             report,
@@ -138,7 +145,11 @@ impl Results {
 
     /// The pictures, by name.
     pub(crate) fn pictures(&self) -> Vec<PathBuf> {
-        files(&self.folder.join("pictures"), "png")
+        let folder = self.folder.join("pictures");
+        if folder.is_symlink() {
+            return Vec::new();
+        }
+        files(&folder, "png")
     }
 
     /// The steps of the checkpoints.
@@ -152,10 +163,12 @@ impl Results {
     }
 }
 
-/// The files of a folder with an ending, sorted; none if there is no such folder.
+/// The files of a folder with an ending, sorted; none if there is no such folder. Links are left out: what they point at is no result of the run, and a report
+/// that is passed on must not carry it.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut paths: Vec<_> = entries
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()))
         .map(|entry| entry.path())
         .filter(|path| path.extension() == Some(OsStr::new(ending)))
         .collect();

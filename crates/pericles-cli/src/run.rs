@@ -1,11 +1,12 @@
 //! `run` and `resume`: a simulation in its folder, from a first step to its end or to a signal.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::{Control, Outcome, Saved, Simulation, SimulationError};
+use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
 use pericles_deck::{Deck, Model};
-use pericles_io::{IoError, OutputFolder};
+use pericles_io::{IoError, OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
 use crate::args::{ResumeArgs, RunArgs};
@@ -24,6 +25,7 @@ use crate::signals::Signals;
 use crate::summary;
 use crate::sweep;
 use crate::units::{count, quantity};
+use crate::watch::Breakage;
 
 /// Runs a deck.
 ///
@@ -43,7 +45,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     }
     // The folder is made once nothing in the deck can be wrong any more.
     let modelled = modelled(&deck, &args.options.means())?;
-    let folder = output_folder(args.out.as_deref(), args.force, &args.deck, "")?;
+    let folder = output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")?;
     let session = Session::begun(&deck, text, modelled, folder, quiet)?;
     let session = session.with_chart(args.chart);
     session.drive(deadline, &Signals::watch().map_err(CliError::Signals)?)
@@ -92,17 +94,21 @@ pub(crate) fn modelled(deck: &Deck, means: &Means<'_>) -> Result<(Model, Facts),
 /// A folder that exists, unless `force` lets its results be replaced; one that cannot be made.
 pub(crate) fn output_folder(
     out: Option<&Path>,
-    force: bool,
+    force: Option<bool>,
     deck: &Path,
     suffix: &str,
 ) -> Result<OutputFolder, CliError> {
+    let help = match force {
+        Some(_) => "choose another --out, or replace the results in it with --force",
+        None => "choose another --out, or move the folder away",
+    };
     let Some(path) = out else {
         let mut name = deck.file_stem().unwrap_or("run".as_ref()).to_owned();
         name.push(suffix);
         return Ok(OutputFolder::create_numbered(Path::new(".").join(name))?);
     };
-    OutputFolder::create(path, force).map_err(|error| match error {
-        IoError::FolderExists { path } => CliError::OutExists { path },
+    OutputFolder::create(path, force.unwrap_or(false)).map_err(|error| match error {
+        IoError::FolderExists { path } => CliError::OutExists { path, help },
         other => other.into(),
     })
 }
@@ -118,7 +124,7 @@ fn is_finished(folder: &OutputFolder) -> bool {
 }
 
 /// What may make a resumed run differ from an uninterrupted one.
-fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
+fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
     let mut doubts: Vec<String> = stored
         .refused
         .iter()
@@ -138,7 +144,38 @@ fn doubts(stored: &Stored, facts: &Facts) -> Vec<String> {
             metadata.instruction_set, facts.instruction_set
         ));
     }
+    let files = deck.files();
+    if let (Some(file), true) = (files.first(), metadata.deck.inputs.is_empty()) {
+        let file = file.display();
+        doubts.push(format!(
+            "the version that began the run did not record the content of {file}: whether it has changed since is not known"
+        ));
+    }
     doubts
+}
+
+/// Field files that the series lists and that are missing or cut short. The run needs none of them to go on, but its results lack them.
+///
+/// # Errors
+/// A series that cannot be read.
+fn incomplete(folder: &OutputFolder) -> Result<Option<String>, CliError> {
+    let series = folder.file("fields.pvd");
+    if !series.exists() {
+        return Ok(None);
+    }
+    let states = PvdSeries::read(&series)?;
+    let broken: Vec<_> = (states.iter())
+        .filter(|(_, file)| !VtuFile::is_whole(folder.file(file)))
+        .collect();
+    Ok(broken.first().map(|(time, first)| {
+        format!(
+            "{} of the {} field files of the run so far are missing or cut short, the first of them {} at t = {}: the series will have gaps there",
+            broken.len(),
+            states.len(),
+            first.display(),
+            quantity(*time, "s")
+        )
+    }))
 }
 
 /// A run in its folder.
@@ -198,10 +235,11 @@ impl Session {
         if is_finished(&folder) {
             return Ok(None);
         }
-        let stored = Stored::latest(&folder)?;
+        let stored = Stored::latest(&folder, means.memory)?;
         let deck = stored.metadata.deck.read()?;
         let (model, mut facts) = modelled(&deck, means)?;
-        facts.warnings.extend(doubts(&stored, &facts));
+        facts.warnings.extend(doubts(&stored, &deck, &facts));
+        facts.warnings.extend(incomplete(&folder)?);
         let mut simulation = prepare::simulation(&deck, model, &folder)?;
         // The state is still that of the start.
         let start = Start::of(&simulation);
@@ -283,9 +321,25 @@ impl Session {
             deadline.begin();
         }
         let mut trouble = None;
-        let outcome = self.simulation.run(|simulation| {
+        let mut breakage = Breakage::from(&self.simulation);
+        let (warnings, quiet) = (&mut self.report.model.warnings, self.quiet);
+        let cost = Cell::new(checkpoints.cost());
+        let end = deadline.as_ref().map(Deadline::end);
+        // Asked within steps that iterate, which may take longer than any other part of a run.
+        let is_over = || {
+            let late = |end: Instant| Instant::now() + 2 * cost.get() >= end;
+            signals.asked().is_some() || end.is_some_and(late)
+        };
+        let interrupt = Interrupt::when(&is_over);
+        let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
             let state = simulation.state();
             progress.step(state.step, state.t);
+            if let Some(warning) = breakage.look(simulation) {
+                if !quiet {
+                    progress.note(format_args!("warning: {warning}"));
+                }
+                warnings.push(warning);
+            }
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
             if signals.asked().is_some() || deadline.as_mut().is_some_and(late) {
                 return Control::Stop;
@@ -296,6 +350,7 @@ impl Session {
                 trouble = Some(error);
                 return Control::Stop;
             }
+            cost.set(checkpoints.cost());
             Control::Continue
         });
         progress.finish();
@@ -333,6 +388,7 @@ impl Session {
             .warnings
             .extend(animations::gaps(&self.folder.file("pictures")));
         self.report.audit = Some(audit);
+        self.report.stop_reason = self.simulation.stop_reason().map(ToString::to_string);
         let exit = match outcome {
             Outcome::Finished => {
                 self.report.status = Status::Finished;

@@ -42,6 +42,9 @@ pub(crate) fn closing(report: &Report, folder: &Path) -> Result<(), CliError> {
         threads(rayon::current_num_threads()),
         model.instruction_set,
     ))?;
+    if let Some(reason) = &report.stop_reason {
+        console::print(format_args!("ended by a stop condition: {reason}"))?;
+    }
     if let Some(audit) = &report.audit {
         energies(audit)?;
         if let Some(error) = audit.force_rounding {
@@ -76,11 +79,16 @@ fn energies(audit: &Audit) -> Result<(), CliError> {
         quantity(audit.dissipated_energy, "J"),
         quantity(audit.external_work, "J"),
     ))?;
+    // Static states have none.
+    let momentum = if audit.momentum_error.is_nan() {
+        String::new()
+    } else {
+        format!(", momentum by {:.1e} kg m/s", audit.momentum_error)
+    };
     console::print(format_args!(
-        "audit: energy off by {} ({}), momentum by {} kg m/s; {} bonds broken, largest damage {:.2}",
+        "audit: energy off by {} ({}){momentum}; {} bonds broken, largest damage {:.2}",
         quantity(audit.balance, "J"),
         percent(audit.energy_drift),
-        format_args!("{:.1e}", audit.momentum_error),
         count(audit.broken_bonds),
         audit.largest_damage,
     ))

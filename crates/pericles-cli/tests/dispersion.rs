@@ -54,7 +54,18 @@ fn directions_and_refusals() {
             .zip(y)
             .all(|(x, y)| (x - 2.0 * y).abs() < 1e-9 * (1.0 + x.abs()))
     );
-    assert_eq!(fail(place.path(), "dispersion plate.toml --out ray").0, 6);
+    let (status, message) = fail(place.path(), "dispersion plate.toml --out ray");
+    assert_eq!(status, 6);
+    assert!(
+        message.contains("move the folder away") && !message.contains("--force"),
+        "{message}"
+    );
+    let (status, message) = fail(place.path(), "dispersion plate.toml --direction 1,2,3");
+    assert_eq!(status, 2);
+    assert!(
+        message.contains("--direction has 3 components; the body has 2"),
+        "{message}"
+    );
     assert_eq!(fail(place.path(), "dispersion missing.toml").0, 3);
     assert_eq!(
         fail(place.path(), "dispersion plate.toml --direction 0,0").0,
@@ -88,4 +99,169 @@ fn cells_longer_along_one_axis() {
     assert!(length.iter().all(|r| *r <= reach) && length.len() > 14);
     // The slender cells run, too.
     succeed(place.path(), "run plate.toml --quiet --out run");
+}
+
+#[test]
+fn long_horizons_are_analysed() {
+    let place = tempfile::tempdir().unwrap();
+    let text = r#"
+body = { shape = "bar", length = 400, spacing = 1 }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 120 }
+time = { end = 1 }
+"#;
+    fs::write(place.path().join("bar.toml"), text).unwrap();
+    succeed(place.path(), "dispersion bar.toml --quiet --out long");
+    let classes = pericles_io::read_csv(place.path().join("long/classes.csv")).unwrap();
+    assert_eq!(classes.column("i").unwrap().len(), 120);
+}
+
+#[test]
+fn listed_points_have_no_lattice() {
+    let place = tempfile::tempdir().unwrap();
+    let points: String = (0..40)
+        .map(|i| format!("{} {} 1 1\n", i % 8, i / 8))
+        .collect();
+    fs::write(place.path().join("points.txt"), points).unwrap();
+    let text = r#"
+[body]
+shape = "points"
+file = "points.txt"
+spacing = 1
+dimension = 2
+plane = "strain"
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+[time]
+end = 1
+"#;
+    fs::write(place.path().join("points.toml"), text).unwrap();
+    let (status, message) = fail(place.path(), "dispersion points.toml --out none");
+    assert_eq!(status, 3);
+    assert!(
+        message.contains("points.toml:2:1: the points lie on no regular grid"),
+        "{message}"
+    );
+    assert!(!place.path().join("none").exists());
+}
+
+#[test]
+fn tuned_coefficients_wave_vectors_and_what_is_left_out() {
+    let place = tempfile::tempdir().unwrap();
+    let text = r#"
+[body]
+shape = "plate"
+size = [20, 10]
+spacing = 0.5
+plane = "strain"
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+volume_correction = "none"
+influence = { function = "tuned", method = "point-collocation", decay = "none" }
+[time]
+end = 1
+"#;
+    fs::write(place.path().join("plate.toml"), text).unwrap();
+    let shown = succeed(
+        place.path(),
+        "dispersion plate.toml --wavevector 1.5,0 --wavevector 0.3,0.4 --out tuned",
+    );
+    let shown = common::text(&shown.stdout);
+    assert!(shown.contains("ω at k = (1.500, 0, 0) rad/m"), "{shown}");
+    assert!(shown.contains("residual functionals"), "{shown}");
+    let folder = place.path().join("tuned");
+    let summary = fs::read_to_string(folder.join("dispersion.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let tuning = &summary["tuning"];
+    assert_eq!(tuning["method"], "point-collocation");
+    assert_eq!(tuning["decay"], Value::Null);
+    // Four functionals of two branches.
+    assert_eq!(tuning["functionals"].as_array().unwrap().len(), 4);
+    assert_eq!(tuning["functionals"][0].as_array().unwrap().len(), 2);
+    assert!((tuning["error_ratio"].as_f64().unwrap() - 0.3951).abs() < 1e-3);
+    // Long waves: 1.2^(1/2) and 0.4^(1/2), in this table to 1 % at |k| D = 0.25.
+    let long = &summary["wavevectors"][1]["modes"];
+    for (mode, speed) in [(0, 1.2f64.sqrt()), (1, 0.4f64.sqrt())] {
+        let found = long[mode]["phase_velocity"].as_f64().unwrap();
+        assert!((found / speed - 1.0).abs() < 0.02, "{found} {speed}");
+        let omega = long[mode]["omega"].as_f64().unwrap();
+        assert!((omega - 0.5 * found).abs() < 1e-12);
+    }
+    // The curves hold the same numbers: k = 1.5 lies on the first segment.
+    let table = pericles_io::read_csv(folder.join("wavevectors.csv")).unwrap();
+    assert_eq!(table.column("omega").unwrap().len(), 4);
+    let omega = summary["wavevectors"][0]["modes"][0]["omega"]
+        .as_f64()
+        .unwrap();
+    let curves = pericles_io::read_csv(folder.join("curves.csv")).unwrap();
+    let (k, p) = (
+        curves.column("k_x").unwrap(),
+        curves.column("omega_p").unwrap(),
+    );
+    let near = (0..201).find(|&i| k[i] >= 1.5).unwrap();
+    assert!(p[near - 1] <= omega && omega <= p[near], "{omega}");
+
+    // What plane waves of the first material know nothing of.
+    let two = text.replace(
+        "[time]",
+        "[material.inclusion]\n[sets]\nleft = { layer = { side = \"-x\", cells = 3 } }\n[time]",
+    );
+    let two = two.replace(
+        "[material.inclusion]\n",
+        "[[material.inclusion]]\nset = \"left\"\nstiffness = 2\n",
+    );
+    let two = two.replace(
+        "influence =",
+        "surface_correction = \"volume\"\ninfluence =",
+    );
+    fs::write(place.path().join("two.toml"), two).unwrap();
+    let output = succeed(place.path(), "dispersion two.toml --quiet --out two");
+    let said = common::text(&output.stderr);
+    assert!(said.contains("one inclusion is left out"), "{said}");
+    assert!(
+        said.contains("the surface correction is left out"),
+        "{said}"
+    );
+}
+
+#[test]
+fn unstable_kernels_can_be_analysed() {
+    let place = tempfile::tempdir().unwrap();
+    let text = r#"
+[body]
+shape = "plate"
+size = [20, 10]
+spacing = 1
+plane = "strain"
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+volume_correction = "none"
+influence = { function = "tuned", method = "subdomain-collocation", decay = "none", lower_bound = "none" }
+[time]
+end = 1
+"#;
+    fs::write(place.path().join("plate.toml"), text).unwrap();
+    let (status, message) = fail(place.path(), "dispersion plate.toml");
+    assert_eq!(status, 3);
+    assert!(message.contains("allow_unstable"), "{message}");
+    let shown = succeed(
+        place.path(),
+        "dispersion plate.toml --set time.allow_unstable=true",
+    );
+    assert!(common::text(&shown.stdout).contains("UNSTABLE"));
+    let (status, message) = fail(
+        place.path(),
+        "dispersion plate.toml --measure --set time.allow_unstable=true --out none",
+    );
+    assert_eq!(status, 3);
+    assert!(
+        message.contains("the spectrum cannot be measured"),
+        "{message}"
+    );
+    assert!(!place.path().join("none").exists());
 }

@@ -56,6 +56,64 @@ fn out_is_refused_if_it_exists_and_replaced_by_force() {
 }
 
 #[test]
+fn every_file_of_a_run_is_on_record_and_force_takes_nothing_else() {
+    let place = with_plate();
+    let line = "run plate.toml --out results --quiet --set time.end=1e-6 --set output.fragments.every=5 \
+                --set output.picture.0.animation=true";
+    succeed(place.path(), line);
+    let folder = place.path().join("results");
+    succeed(place.path(), "report results");
+    let mine = [
+        "measured.csv",
+        "pictures/photo.png",
+        "pictures/photo-000001.png",
+        "fields/other.vtu",
+        "checkpoints/kept.chk",
+    ];
+    for file in mine {
+        fs::write(folder.join(file), "mine").unwrap();
+    }
+    let before = common::results(&folder);
+    assert!(before.len() > 15, "{before:?}");
+    // A run that writes nothing beyond what every run does: all files of the first one are gone.
+    fs::write(
+        place.path().join("bar.toml"),
+        "[body]\nshape = \"bar\"\nlength = 10\nspacing = 1\n[material]\ndensity = 1\nyoungs_modulus = 1\nhorizon = 3\n\
+         [time]\nend = 1\n[output]\nfields = \"never\"\n",
+    )
+    .unwrap();
+    succeed(place.path(), "run bar.toml --out results --force --quiet");
+    let left: Vec<String> = common::results(&folder)
+        .into_keys()
+        .map(|path| path.to_str().unwrap().to_owned())
+        .filter(|name| ![".manifest", "history.csv"].contains(&name.as_str()))
+        .collect();
+    let mut expected = mine.to_vec();
+    // Checkpoints are not among the results.
+    expected.retain(|name| !name.starts_with("checkpoints"));
+    expected.sort_unstable();
+    assert_eq!(left, expected);
+    assert!(folder.join("checkpoints/kept.chk").exists());
+    assert_eq!(report(&folder)["status"], "finished");
+}
+
+#[test]
+fn force_is_no_permission_for_a_folder_with_the_run_json_of_another_program() {
+    let place = with_plate();
+    let folder = place.path().join("other");
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("run.json"), "{\"program\": \"other\"}").unwrap();
+    fs::write(folder.join("data.csv"), "1,2\n").unwrap();
+    let (status, message) = fail(place.path(), "run plate.toml --out other --force");
+    assert_eq!(status, 6, "{message}");
+    assert!(
+        message.contains("holds other files and no results of Pericles"),
+        "{message}"
+    );
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+}
+
+#[test]
 fn force_never_empties_a_folder_of_other_things() {
     let place = with_plate();
     fs::create_dir(place.path().join("thesis")).unwrap();

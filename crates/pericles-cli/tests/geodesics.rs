@@ -123,3 +123,54 @@ fn files_are_read_and_bad_ones_refused() {
         }
     }
 }
+
+#[test]
+fn the_distance_of_two_vertices_is_that_of_the_shortest_path() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("tetrahedron.obj"), TETRAHEDRON).unwrap();
+    let line =
+        "geodesics tetrahedron.obj --horizon 3 --methods exact,edge --between 0,3 --between 2,2";
+    let output = succeed(place.path(), &format!("{line} --json -"));
+    let results: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+    let found: Vec<(u64, f64)> = results["between"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| {
+            (
+                row["vertices"][1].as_u64().unwrap(),
+                row["distance"].as_f64().unwrap(),
+            )
+        })
+        .collect();
+    let edge = 8f64.sqrt();
+    for ((vertex, distance), (right, exact)) in
+        found.iter().zip([(3, edge), (3, edge), (2, 0.0), (2, 0.0)])
+    {
+        assert_eq!(*vertex, right);
+        assert!((distance - exact).abs() < 1e-12, "{found:?}");
+    }
+    let said = text(&succeed(place.path(), line).stdout);
+    assert!(
+        said.contains("vertices 0 and 3, exact: 2.82843 m"),
+        "{said}"
+    );
+    // Beyond the horizon: half a great circle, which paths on the triangles inside cannot exceed by much.
+    let line = "geodesics icosphere(3) --horizon 0.5 --methods exact,edge --between 0,3 --json -";
+    let results: Value = serde_json::from_str(&text(&succeed(place.path(), line).stdout)).unwrap();
+    let [exact, edge] = [0, 1].map(|k| results["between"][k]["distance"].as_f64().unwrap());
+    assert!(
+        (0.9 * std::f64::consts::PI..std::f64::consts::PI).contains(&exact),
+        "{exact}"
+    );
+    assert!(exact < edge && edge < 1.155 * exact, "{exact} {edge}");
+    let (status, message) = fail(
+        place.path(),
+        "geodesics icosphere(1) --horizon 1 --between 0,42",
+    );
+    assert_eq!(status, 2, "{message}");
+    assert!(
+        message.contains("no vertex 42; its 42 vertices are numbered from 0 to 41"),
+        "{message}"
+    );
+}

@@ -103,8 +103,69 @@ fn diff_finds_what_differs_and_how_much() {
         "{}",
         text(&differ.stdout)
     );
+    // Two of three rows of d have none in a at their time; the others are compared.
+    let json = run(place.path(), "diff a d --json -").stdout;
+    let report: Value = serde_json::from_slice(&json).unwrap();
+    assert!(report["skipped"].as_u64() > Some(20), "{report:#}");
+    let compared = |name: &str| {
+        let rows = report["rows"].as_array().unwrap();
+        let row = rows
+            .iter()
+            .find(|row| row["name"] == name && row["place"] == "history.csv");
+        let row = row.unwrap();
+        (
+            row["values"].as_u64().unwrap(),
+            row["different"].as_u64().unwrap(),
+        )
+    };
+    // Steps 0, 21, 42, 63, 84 and the last.
+    assert_eq!(compared("step"), (6, 0));
+    assert_eq!(compared("kinetic_energy"), (6, 0));
     assert_eq!(fail(place.path(), "diff a gone").0, 3);
     assert_eq!(fail(place.path(), "diff a b --tolerance -1").0, 2);
+}
+
+#[test]
+fn diff_compares_states_whose_times_differ_by_rounding_and_counts_the_others() {
+    let place = with_plate();
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --out a --set time.end=\"9us\" --set output.fields.every=30",
+    );
+    let copy = std::process::Command::new("cp")
+        .args(["-r", "a", "b"])
+        .current_dir(place.path())
+        .status();
+    assert!(copy.unwrap().success());
+    let series = place.path().join("b/fields.pvd");
+    let text_of = fs::read_to_string(&series).unwrap();
+    let times: Vec<&str> = text_of
+        .split("timestep=\"")
+        .skip(1)
+        .map(|rest| &rest[..rest.find('"').unwrap()])
+        .collect();
+    assert_eq!(times.len(), 4, "{text_of}");
+    let last: f64 = times[3].parse().unwrap();
+    let moved = |time: f64| text_of.replace(times[3], &format!("{time:e}"));
+
+    fs::write(&series, moved(f64::from_bits(last.to_bits() + 1))).unwrap();
+    let said = text(&succeed(place.path(), "diff a b").stdout);
+    assert!(
+        said.contains("the same, bit for bit") && !said.contains("not compared"),
+        "{said}"
+    );
+
+    fs::write(&series, moved(1.1 * last)).unwrap();
+    let differ = run(place.path(), "diff a b");
+    assert_eq!(differ.status.code(), Some(5));
+    let said = text(&differ.stdout);
+    for words in [
+        "fields: 1 of the 4 states of the first, from t = 9.00 µs on, not compared: the second has none at the same time",
+        "fields: 1 of the 4 states of the second, from t = 9.90 µs on, not compared: the first has none at the same time",
+        "; 2 states and rows were not compared",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
 }
 
 #[test]
@@ -119,6 +180,38 @@ fn shells_and_manuals_get_what_they_read() {
         page.contains(".TH") && page.contains(".SH PERICLES RESUME"),
         "{page}"
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_does_not_follow_links() {
+    let place = with_plate();
+    succeed(place.path(), "run plate.toml --quiet --set time.end=1e-6");
+    let secret = place.path().join("secret.png");
+    fs::write(&secret, "a private file").unwrap();
+    let link = place.path().join("plate/pictures/Damage-000099.png");
+    std::os::unix::fs::symlink(&secret, link).unwrap();
+    succeed(place.path(), "report plate");
+    let page = fs::read_to_string(place.path().join("plate/report.html")).unwrap();
+    assert!(page.contains("Damage-000002.png"));
+    assert!(!page.contains("Damage-000099.png"));
+}
+
+#[test]
+fn titles_and_names_reach_no_terminal_as_commands() {
+    let place = with_plate();
+    let deck = common::PLATE.replace("Torn plate", "Torn\\u001b[2J plate\\u0007");
+    fs::write(place.path().join("plate.toml"), deck).unwrap();
+    let ran = succeed(place.path(), "run plate.toml --set time.end=1e-6");
+    let check = succeed(place.path(), "check plate.toml");
+    let info = succeed(place.path(), "info plate");
+    let refused = run(place.path(), "check plate.toml --set \u{1b}[2J=1");
+    for output in [ran, check, info, refused] {
+        for said in [text(&output.stdout), text(&output.stderr)] {
+            let control = |c: char| c.is_control() && c != '\n';
+            assert!(!said.contains(control), "{said:?}");
+        }
+    }
 }
 
 #[test]
@@ -200,4 +293,64 @@ fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
     assert_eq!(status, 3, "{message}");
     assert!(message.contains("whole number of cells"), "{message}");
     assert_eq!(fail(place.path(), "run plate.toml --sweep spacing").0, 2);
+}
+
+#[test]
+fn the_history_holds_the_extremes_that_are_asked_for_and_files_the_volumes() {
+    let place = with_plate();
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --set output.history.extremes=[\"Velocity_y\",\"Damage\",\"Displacement\"] \
+         --set output.fields.names=[\"Volume\",\"Damage\",\"Displacement\",\"Velocity\"] --set output.history.every=90",
+    );
+    let history = pericles_io::read_csv(place.path().join("plate/history.csv")).unwrap();
+    let column = |name: &str| history.column(name).unwrap();
+    let states = pericles_io::read_fields(
+        place.path().join("plate/fields/fields_000004.vtu"),
+        u64::MAX,
+    )
+    .unwrap();
+    // The fourth output is that of step 360, as is the fifth row.
+    assert_eq!(column("step")[4], 360.0);
+    let field = |name: &str| states.field(name).unwrap().values.clone();
+    let most = |values: &[f64]| values.iter().fold(f64::NEG_INFINITY, |a: f64, b| a.max(*b));
+    let least = |values: &[f64]| values.iter().fold(f64::INFINITY, |a: f64, b| a.min(*b));
+    assert_eq!(column("max_Damage")[4], most(&field("Damage")));
+    assert_eq!(column("min_Damage")[4], least(&field("Damage")));
+    let y: Vec<f64> = field("Velocity").chunks(3).map(|v| v[1]).collect();
+    assert_eq!(
+        (column("min_Velocity_y")[4], column("max_Velocity_y")[4]),
+        (least(&y), most(&y))
+    );
+    let size: Vec<f64> = field("Displacement")
+        .chunks(3)
+        .map(|u| u[0].hypot(u[1]))
+        .collect();
+    let ratio = column("max_Displacement")[4] / most(&size);
+    assert!((ratio - 1.0).abs() < 1e-14, "{ratio}");
+    // Cells of 1 mm, 1 m thick.
+    let volume: f64 = field("Volume").iter().sum();
+    assert!((volume / (0.024 * 0.012) - 1.0).abs() < 1e-12, "{volume}");
+}
+
+#[test]
+fn a_run_json_of_another_program_is_no_result() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("run.json"), "{}").unwrap();
+    for command in ["info .", "report .", "plot ."] {
+        let (status, message) = fail(place.path(), command);
+        assert_eq!(status, 3, "{message}");
+        assert!(
+            message.contains("its run.json was not written by Pericles"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn more_threads_than_a_machine_can_use_are_refused() {
+    let place = with_plate();
+    let (status, message) = fail(place.path(), "check plate.toml --threads 8000");
+    assert_eq!(status, 2, "{message}");
+    assert!(message.contains("a whole number from 1 to"), "{message}");
 }

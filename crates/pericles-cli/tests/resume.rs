@@ -3,6 +3,9 @@
 mod common;
 
 use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 use common::{Background, assert_same_results, fail, report, succeed, text, with_plate};
 
@@ -196,4 +199,273 @@ fn a_relaxation_goes_on_to_the_same_bytes() {
         let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
         assert!(cells[iterations] > 0.0 && cells[residual] <= 1e-6, "{row}");
     }
+}
+
+/// A plate whose static state takes far longer to find than any test may.
+const SLOW: &str = "run plate.toml --threads 1 --set time={scheme='relaxation',damping=1e-6,tolerance=1e-11,iterations=100000000,end=4e-6} \
+                    --set load.0.traction=[0,0] --set material.critical_stretch=0.5";
+
+#[test]
+fn a_load_step_is_stopped_in_its_midst() {
+    let place = with_plate();
+    // By the clock.
+    let begun = Instant::now();
+    let late = common::run(place.path(), &format!("{SLOW} --out late --wall-time=1s"));
+    assert_eq!(late.status.code(), Some(7), "{}", text(&late.stderr));
+    assert!(begun.elapsed() < Duration::from_secs(20));
+    // By a signal.
+    let out = place.path().join("asked");
+    let child = common::pericles(place.path())
+        .args(format!("{SLOW} --out asked").split_whitespace())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let checkpoint = out.join("checkpoints/step-000000000000.chk");
+    let run = Background::waiting(child, || checkpoint.is_file());
+    std::thread::sleep(Duration::from_millis(300));
+    let asked = Instant::now();
+    run.signal("TERM");
+    let output = run.finish();
+    assert_eq!(output.status.code(), Some(143), "{}", text(&output.stderr));
+    assert!(asked.elapsed() < Duration::from_secs(10));
+    for name in ["late", "asked"] {
+        let report = report(&place.path().join(name));
+        assert_eq!(report["status"], "stopped");
+        // The load step under way is undone.
+        assert_eq!(report["progress"]["last_step"], 0);
+        assert_eq!(report["audit"]["elastic_energy"], 0.0);
+    }
+}
+
+#[test]
+fn hangups_and_warnings_of_batch_systems_stop_with_a_checkpoint() {
+    let place = with_plate();
+    succeed(place.path(), &format!("{LONG} --out whole"));
+    let out = place.path().join("stopped");
+    let run = Background::start(place.path(), &format!("{LONG} --out stopped"), "stopped");
+    run.signal("USR1");
+    assert_eq!(run.finish().status.code(), Some(138));
+    let step = report(&out)["progress"]["last_step"].as_u64().unwrap();
+    let rows = || {
+        let history = fs::read_to_string(out.join("history.csv"));
+        history.map_or(0, |rows| rows.lines().count())
+    };
+    let before = rows();
+    let child = common::pericles(place.path())
+        .args(["resume", "stopped", "--threads", "1"])
+        .spawn()
+        .unwrap();
+    let run = Background::waiting(child, || rows() > before + 3);
+    // Where hangups are ignored, as under nohup, they stay ignored.
+    if is_ignored("HUP") {
+        run.signal("TERM");
+        run.finish();
+    } else {
+        run.signal("HUP");
+        assert_eq!(run.finish().status.code(), Some(129));
+        assert_eq!(report(&out)["progress"]["first_step"], step);
+    }
+    succeed(place.path(), "resume stopped --quiet");
+    assert_same_results(&place.path().join("whole"), &out);
+}
+
+#[test]
+fn an_ignored_hangup_stays_ignored() {
+    let place = with_plate();
+    let line = format!(
+        "trap '' HUP; exec {} {LONG} --quiet --out kept",
+        env!("CARGO_BIN_EXE_pericles")
+    );
+    let child = std::process::Command::new("sh")
+        .args(["-c", &line])
+        .current_dir(place.path())
+        .spawn()
+        .unwrap();
+    let history = place.path().join("kept/history.csv");
+    let run = Background::waiting(child, || {
+        fs::read_to_string(&history).is_ok_and(|rows| rows.lines().count() > 4)
+    });
+    run.signal("HUP");
+    assert_eq!(run.finish().status.code(), Some(0));
+}
+
+/// Whether a shell that this process starts would find a signal ignored.
+fn is_ignored(name: &str) -> bool {
+    let script = format!("trap - {name}; kill -{name} $$; exit 0");
+    let status = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .status();
+    status.unwrap().success()
+}
+
+/// The plate is torn statically; the run ends once nothing holds it any more.
+const TORN: &str = "run plate.toml --quiet --set time={scheme='relaxation',load_steps=16,end=8e-6,stop_when=[{set='top',reaction_below=0.6}]} \
+                    --set checkpoint.every=3 --set load.0.traction=[0,0] --set output.fields.every=2 --set output.history.every=1 --set output.cracks.every=1 \
+                    --set output.picture.1.every=4";
+
+#[test]
+fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
+    let place = with_plate();
+    for name in ["whole", "begun"] {
+        succeed(place.path(), &format!("{TORN} --out {name}"));
+    }
+    let whole = report(&place.path().join("whole"));
+    assert_eq!(whole["status"], "finished");
+    let last = whole["progress"]["last_step"].as_u64().unwrap();
+    assert!((3..16).contains(&last), "{last}");
+    let reason = whole["stop_reason"].as_str().unwrap();
+    assert!(
+        reason.starts_with("the reaction of `top` has fallen to"),
+        "{reason}"
+    );
+    // The last state is in the files.
+    let history = fs::read_to_string(place.path().join("whole/history.csv")).unwrap();
+    assert!(
+        history
+            .lines()
+            .last()
+            .unwrap()
+            .starts_with(&format!("{last},"))
+    );
+    // As if it had died before the load step in which the plate failed: the peak lies before that.
+    let begun = place.path().join("begun");
+    for entry in fs::read_dir(begun.join("checkpoints")).unwrap() {
+        let path = entry.unwrap().path();
+        let step: u64 = path.file_stem().unwrap().to_str().unwrap()[5..]
+            .parse()
+            .unwrap();
+        if step + 1 > last {
+            fs::remove_file(path).unwrap();
+        }
+    }
+    let json = fs::read_to_string(begun.join("run.json")).unwrap();
+    fs::write(
+        begun.join("run.json"),
+        json.replace("\"finished\"", "\"running\""),
+    )
+    .unwrap();
+    let said = text(&succeed(place.path(), "resume begun").stdout);
+    assert!(
+        said.contains("ended by a stop condition: the reaction of `top`"),
+        "{said}"
+    );
+    assert_eq!(report(&begun)["stop_reason"], reason);
+    assert_same_results(&place.path().join("whole"), &begun);
+    let again = succeed(place.path(), "resume begun");
+    assert!(text(&again.stdout).contains("has finished"));
+}
+
+/// A ring of listed points that starts with the velocities of a file, stopped between its checkpoint and its end: the last status is taken back.
+fn stopped_ring(place: &Path, out: &str) {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/points");
+    for file in ["ring.toml", "ring.txt"] {
+        fs::copy(examples.join(file), place.join(file)).unwrap();
+    }
+    let deck = fs::read_to_string(place.join("ring.toml")).unwrap();
+    let (before, after) = deck.split_once("velocity = [{").unwrap();
+    let (_, after) = after.split_once('\n').unwrap();
+    let deck = format!("{before}file = \"start.txt\"\n{after}");
+    fs::write(place.join("ring.toml"), deck).unwrap();
+    let points = fs::read_to_string(place.join("ring.txt")).unwrap();
+    let points = points.lines().filter(|line| !line.starts_with('#'));
+    let start: String = points.map(|_| "0 0 1 0.5\n").collect();
+    fs::write(place.join("start.txt"), start).unwrap();
+    let run = format!(
+        "run ring.toml --quiet --out {out} --set time.end=10us --set time.dt=0.1us --set checkpoint.every=60"
+    );
+    succeed(place, &run);
+    let report = place.join(out).join("run.json");
+    let text = fs::read_to_string(&report).unwrap();
+    fs::write(&report, text.replacen("\"finished\"", "\"running\"", 1)).unwrap();
+}
+
+#[test]
+fn a_run_is_resumed_from_another_folder() {
+    let place = tempfile::tempdir().unwrap();
+    stopped_ring(place.path(), "ring");
+    let whole = common::results(&place.path().join("ring"));
+    let elsewhere = tempfile::tempdir().unwrap();
+    let folder = place.path().join("ring");
+    let said = succeed(elsewhere.path(), &format!("resume {}", folder.display()));
+    let said = text(&said.stderr);
+    assert!(said.contains("step 60 of 100"), "{said}");
+    assert_eq!(report(&folder)["status"], "finished");
+    assert!(common::results(&folder) == whole);
+    let inputs = &report(&folder)["deck"]["inputs"]["files"];
+    assert_eq!(inputs[0]["file"], "ring.txt");
+    assert_eq!(inputs[1]["file"], "start.txt");
+    assert_eq!(inputs[0]["sha256"].as_str().unwrap().len(), 64);
+    // Results are drawn again from there, too.
+    succeed(
+        elsewhere.path(),
+        &format!("plot {} --field Velocity", folder.display()),
+    );
+}
+
+#[test]
+fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
+    let place = tempfile::tempdir().unwrap();
+    stopped_ring(place.path(), "ring");
+    let refused = |command: &str, file: &str, says: &str| {
+        let (status, message) = fail(place.path(), command);
+        assert_eq!(status, 3, "{message}");
+        assert!(
+            message.contains(&format!("{file} is read by the run: {says}")),
+            "{message}"
+        );
+        assert!(
+            message.contains("put the file back as it was, or start a new run"),
+            "{message}"
+        );
+    };
+    let changes: [(&str, fn(&str) -> String); 3] = [
+        // The last digit of a coordinate.
+        ("ring.txt", |text| text.replacen("1 ", "2 ", 1)),
+        // The same points in another order.
+        ("ring.txt", |text| {
+            let mut lines: Vec<&str> = text.lines().collect();
+            lines.reverse();
+            lines.join("\n")
+        }),
+        ("start.txt", |text| text.replacen("0.5", "0.6", 1)),
+    ];
+    for (file, change) in changes {
+        let path = place.path().join(file);
+        let before = fs::read_to_string(&path).unwrap();
+        assert_ne!(change(&before), before);
+        fs::write(&path, change(&before)).unwrap();
+        refused(
+            "resume ring",
+            file,
+            "its content has changed since the run began",
+        );
+        refused(
+            "plot ring --field Velocity",
+            file,
+            "its content has changed",
+        );
+        fs::remove_file(&path).unwrap();
+        refused("resume ring", file, "it does not exist any more");
+        fs::write(&path, before).unwrap();
+    }
+    succeed(place.path(), "resume ring");
+}
+
+#[test]
+fn field_files_that_are_gone_or_cut_short_are_reported_when_a_run_is_resumed() {
+    let place = tempfile::tempdir().unwrap();
+    stopped_ring(place.path(), "ring");
+    let fields = place.path().join("ring/fields");
+    let file = fs::OpenOptions::new()
+        .write(true)
+        .open(fields.join("fields_000002.vtu"))
+        .unwrap();
+    file.set_len(100).unwrap();
+    fs::remove_file(fields.join("fields_000001.vtu")).unwrap();
+    let said = text(&succeed(place.path(), "resume ring").stderr);
+    assert!(
+        said.contains("2 of the 11 field files of the run so far are missing or cut short, the first of them fields/fields_000001.vtu at t = 1.00 µs"),
+        "{said}"
+    );
 }

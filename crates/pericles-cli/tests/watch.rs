@@ -78,6 +78,70 @@ output = { fields = "never" }
     warned_of(deck, &says, "--set time.dt=0.05");
 }
 
+/// A bar that is held at one end and pulled by a load that acts at once.
+const DEAD: &str = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+sets.left = { layer = { side = "-x", cells = 3 } }
+sets.right = { layer = { side = "+x", cells = 3 } }
+prescribe = [{ set = "left", displacement = [0] }]
+load = [{ set = "right", traction = [1e-3] }]
+time = { scheme = "relaxation", tolerance = 1e-9 }
+output = { fields = "never" }
+"#;
+
+#[test]
+fn a_dead_load_in_one_load_step_does_the_work_that_is_stored() {
+    let place = tempfile::tempdir().unwrap();
+    assert_eq!(warnings(place.path(), DEAD, ""), [""; 0]);
+    let audit = report(&place.path().join("out"))["audit"].clone();
+    let number = |name: &str| audit[name].as_f64().unwrap();
+    let (work, elastic) = (number("external_work"), number("elastic_energy"));
+    assert!(
+        elastic > 0.0 && (work / elastic - 1.0).abs() < 1e-5,
+        "{work} {elastic}"
+    );
+    assert!(number("energy_drift").abs() < 1e-5);
+    // Static states have no momentum.
+    assert!(audit["momentum_error"].is_null());
+    let shown = text(&succeed(place.path(), "run deck.toml --out out --force").stdout);
+    assert!(
+        shown.contains("audit: energy off by") && !shown.contains("momentum"),
+        "{shown}"
+    );
+    // Supports that are displaced at once, and an initial displacement that relaxes.
+    for more in [
+        "--set load=[] --set prescribe=[{set='left',displacement=[0]},{set='right',displacement=[0.04]}]",
+        "--set initial=[{displacement=[{expression='1e-3*sin(x)'}]}]",
+        "--set time.load_steps=5",
+    ] {
+        assert_eq!(warnings(place.path(), DEAD, more), [""; 0], "{more}");
+        let audit = report(&place.path().join("out"))["audit"].clone();
+        assert!(
+            audit["energy_drift"].as_f64().unwrap().abs() < 1e-5,
+            "{more}: {audit}"
+        );
+    }
+}
+
+#[test]
+fn work_between_static_states_that_are_far_apart() {
+    // The force is far from linear between rest and a strain of a quarter.
+    let says = [
+        "the energy balance of the static states is off by up to",
+        "grow over more load steps",
+        "time.load_steps",
+    ];
+    let stiff = DEAD
+        .replace("material = {", "material = { model = \"green-strain\",")
+        .replace("traction = [1e-3]", "traction = [0.3]");
+    warned_of(
+        &stiff,
+        &says,
+        "--set time.load_steps=40 --set load.0.function={kind='ramp',duration=1}",
+    );
+}
+
 /// Mirror images that a run has: axis, whether with the opposite sign, and the error at its end.
 fn images(place: &Path, deck: &str, more: &str) -> Vec<(String, bool, f64)> {
     warnings(place, deck, more);
@@ -252,4 +316,36 @@ output = {{ fields = "never" }}
         let list = report["model"]["warnings"].to_string();
         assert_eq!(list.contains("waves shorter than"), expected, "{list}");
     }
+}
+
+#[test]
+fn bonds_that_break_in_masses() {
+    // A bar that is torn to pieces by a spread of speeds.
+    let deck = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.01 }
+initial = [{ velocity = [{ expression = "0.1*x" }] }]
+time = { end = 20 }
+output = { fields = "never", history = "never" }
+"#;
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("deck.toml"), deck).unwrap();
+    let shown = |more: &str| {
+        let output = succeed(
+            place.path(),
+            &format!("run deck.toml --out out --force {more}"),
+        );
+        let report = report(&place.path().join("out"));
+        let warnings = report["model"]["warnings"].as_array().unwrap();
+        let in_masses = |text: &str| text.matches("falls apart in masses").count();
+        let kept = warnings.iter().filter_map(|warning| warning.as_str());
+        (
+            in_masses(&text(&output.stderr)),
+            kept.map(in_masses).sum::<usize>(),
+        )
+    };
+    // One warning, on the screen and in the report.
+    assert_eq!(shown(""), (1, 1));
+    assert_eq!(shown("--quiet"), (0, 1));
+    assert_eq!(shown("--set material.critical_stretch=30"), (0, 0));
 }

@@ -96,7 +96,16 @@ fn absorbing(table: Table<'_>) -> Option<BoundaryCondition> {
                 |tolerance| tolerance > 1e-14 && tolerance < 1.0,
             )
         });
-        verify = table.or("verify", false, |item| item.boolean());
+        let fitted =
+            form == Some(Some(HistoryForm::Exponentials)) || !matches!(tolerance, Some(None));
+        verify = table.or("verify", false, |item| {
+            let verify = item.boolean()?;
+            if verify && !fitted {
+                item.out_of_range("false, or a `tolerance` beside it: without one the history is exact, and there are no exponentials to compare");
+                return None;
+            }
+            Some(verify)
+        });
     }
     let exterior_data = match method {
         Some(KernelMethod::SemiDiscrete | KernelMethod::Historical) => {

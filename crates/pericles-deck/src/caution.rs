@@ -3,6 +3,7 @@
 use miette::Severity;
 use pericles::space::surface::SurfaceCaution;
 
+use crate::build::AreaDoubt;
 use crate::finding::Subject;
 
 /// Kinds of odd.
@@ -66,6 +67,9 @@ pub enum Caution {
         /// The longest bonds with a stiffness, in spacings.
         reach: usize,
     },
+    /// A traction on a set that is not one layer on one face.
+    #[error("{}", doubtful_area(.0))]
+    LoadedArea(AreaDoubt),
     /// A load that supports take.
     #[error("{} held along it: there it acts on the supports alone", share(*held, *points))]
     LoadOnHeld {
@@ -117,6 +121,18 @@ pub enum Caution {
         /// The limit, s.
         limit: f64,
     },
+    /// A step that does not divide the time of the run.
+    #[error(
+        "the run does not end after a whole number of steps of {given:.5e} s; all steps are shortened to {used:.5e} s, {count} of which end at time.end exactly"
+    )]
+    ShortenedStep {
+        /// The step given, s.
+        given: f64,
+        /// The step used, s.
+        used: f64,
+        /// Number of steps.
+        count: u64,
+    },
     /// A step that may exceed the stable limit.
     #[error(
         "the time step {dt:e} s exceeds {limit:e} s, up to which it is surely stable; the exact limit could not be found"
@@ -141,8 +157,9 @@ pub enum Caution {
     },
     /// Waves that the grid does not carry.
     #[error(
-        "{:.0} % of the energy of this {what} is in waves shorter than {length:.3e} m or faster than a period of {period:.3e} s, which the grid delays by more than {:.0} %",
-        100.0 * share, 100.0 * tolerance
+        "{:.0} % of the energy of this {what} is in waves shorter than {} or with periods below {}: on this grid their speed differs by more than {:.0} % from {}",
+        100.0 * share, prefixed(*length, "m"), prefixed(*period, "s"), 100.0 * tolerance,
+        if *nonlocal { "that in the nonlocal continuum" } else { "that of long waves" }
     )]
     ShortWaves {
         /// What sends them out.
@@ -151,10 +168,73 @@ pub enum Caution {
         share: f64,
         /// The deviation of their speed, relative.
         tolerance: f64,
+        /// Whether the speed in the nonlocal continuum is the reference; that of long waves otherwise.
+        nonlocal: bool,
         /// The shortest period that the grid carries, s.
         period: f64,
         /// The shortest wave that it carries, m.
         length: f64,
+    },
+    /// Coefficients of both signs with which some waves grow.
+    #[error(
+        "the coefficients of this influence function make the lattice unstable: some waves grow (smallest ω²/k² = {smallest:.3e} m²/s²)"
+    )]
+    GrowingWaves {
+        /// The smallest ω²/k², m²/s².
+        smallest: f64,
+    },
+    /// Tuned coefficients that disperse more than a constant influence function.
+    #[error(
+        "the tuned influence function carries waves worse than a constant one: within 1 % of the speed of long waves from {} spacings per wavelength (constant: {}), at most {:.1} % off from {shortest} spacings on (constant: {:.1} %)",
+        short(spacings[0]), short(spacings[1]), 100.0 * worst[0], 100.0 * worst[1]
+    )]
+    PoorTuning {
+        /// Spacings per wavelength from which on the phase speed is within 1 %: tuned, constant.
+        spacings: [f64; 2],
+        /// The largest relative error down to `shortest`: tuned, constant.
+        worst: [f64; 2],
+        /// Spacings per wavelength.
+        shortest: f64,
+    },
+    /// A speed at which bodies break in masses.
+    #[error(
+
+        "this {what} reaches {} m/s, above the {wave} of {} m/s: bonds break in masses, not along cracks",
+        short(*speed), short(*limit)
+
+    )]
+    FastMotion {
+        /// What moves.
+        what: &'static str,
+        /// Its largest speed, m/s.
+        speed: f64,
+        /// The speed that cracks do not exceed, m/s.
+        limit: f64,
+        /// What that speed is.
+        wave: &'static str,
+    },
+    /// Bonds that break before any wave has run.
+    #[error(
+        "the first time step ({}) stretches bonds of {points} of {of} points beyond the critical stretch",
+        prefixed(*dt, "s")
+    )]
+    TornAtOnce {
+        /// Points with such bonds.
+        points: usize,
+        /// All points.
+        of: usize,
+        /// The step, s.
+        dt: f64,
+    },
+    /// Bonds that break but carry nothing.
+    #[error(
+        "{empty} of {of} classes of bonds have the coefficient 0: these bonds carry no force, but they break and count as damage"
+    )]
+    EmptyClasses {
+        /// Classes without stiffness.
+        empty: usize,
+        /// All classes.
+        of: usize,
     },
     /// Kernels whose errors grow.
     #[error(
@@ -163,6 +243,26 @@ pub enum Caution {
     HistoricalKernels {
         /// The error of the Green functions.
         growth: f64,
+    },
+    /// Exponentials that miss their tolerance.
+    #[error(
+        "no sum of exponentials meets the tolerance {tolerance:.0e} (the best has the error {residual:.1e}): the exact blocked history is used"
+    )]
+    ExactHistory {
+        /// What was asked for.
+        tolerance: f64,
+        /// What the best fit has.
+        residual: f64,
+    },
+    /// An initial field that is not zero at an absorbing end.
+    #[error(
+        "the initial field at the absorbing end {side} is {share:.1e} of its largest value; it counts as zero beyond, which is an error of that size"
+    )]
+    FieldAtEnd {
+        /// The side.
+        side: &'static str,
+        /// The largest value in the outer layer over that of the body.
+        share: f64,
     },
     /// Two time steps that are one.
     #[error("with ratio = 1 both time steps are the same")]
@@ -201,6 +301,9 @@ impl Subject for Caution {
             }
             Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
             Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
+            Self::LoadedArea(_) => {
+                "give `area`, or use a layer of one face, such as layer = { side = \"+x\", cells = 3 }, and one [[load]] for each face"
+            }
             Self::LoadOnHeld { .. } => "take other points, or leave the load out",
             Self::Pieces { points: 1, .. } => {
                 "a crack that passes through points takes all their bonds: shift it by half a cell; else look at holes and the horizon, unless loose points are meant"
@@ -214,15 +317,37 @@ impl Subject for Caution {
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::ShortenedStep { .. } => {
+                "give a dt that divides end, or an end that is a multiple of dt, to choose both"
+            }
             Self::Surface(_) => "usual: 3 to 6 median edges",
             Self::ShortPeriod { .. } => {
                 "a longer body, a shorter run or a smaller exact.window brings it down"
             }
             Self::ShortWaves { .. } => {
-                "a finer grid, a smoother course or a tuned influence function carries more; `pericles dispersion` shows what the grid does to waves"
+                "use a finer grid, a smoother time function or field, or a tuned influence function; `pericles dispersion` shows the speeds of all waves"
+            }
+            Self::GrowingWaves { .. } => {
+                "a run of such a body gains energy without limit; use positive coefficients"
+            }
+            Self::PoorTuning { .. } => {
+                "decay = 1 (the default) and method = \"least-squares\" do best; lower_bound limits what tuning can do"
+            }
+            Self::FastMotion { .. } => "check the value and its unit (m/s); use a lower speed",
+            Self::TornAtOnce { .. } => {
+                "check speeds, displacements and the critical stretch; use a ramp or a lower speed, or no_fail for the points near supports"
+            }
+            Self::EmptyClasses { .. } => {
+                "use a positive lower_bound such as 0.5, or a shorter horizon"
             }
             Self::HistoricalKernels { .. } => {
                 "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
+            }
+            Self::ExactHistory { .. } => {
+                "it costs memory that grows with the number of steps; history = \"blocked\" avoids the attempt, a larger tolerance may be met"
+            }
+            Self::FieldAtEnd { .. } => {
+                "`exterior_data` continues the field beyond the end; or move the end outwards"
             }
             Self::EqualSteps => "a plain scheme does the same with less",
             Self::GrowingPredictor { .. } => {
@@ -242,14 +367,22 @@ impl Subject for Caution {
             Self::ShearStiffness { .. } => "little shear stiffness",
             Self::FastWaves { .. } => "very light",
             Self::IdleClasses { .. } => "no stiffness",
+            Self::LoadedArea(_) => "which area?",
             Self::LoadOnHeld { .. } => "held",
             Self::NoSupport { .. } => "loose parts",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::ShortenedStep { .. } => "shortened",
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
+            Self::GrowingWaves { .. } => "unstable",
+            Self::PoorTuning { .. } => "poorly tuned",
+            Self::EmptyClasses { .. } => "no stiffness",
+            Self::FastMotion { .. } | Self::TornAtOnce { .. } => "breaks at once",
             Self::HistoricalKernels { .. } => "historical",
+            Self::ExactHistory { .. } => "exact history",
+            Self::FieldAtEnd { .. } => "field at the end",
             Self::EqualSteps => "no effect",
             Self::GrowingPredictor { .. } => "growing waves",
         }
@@ -261,6 +394,56 @@ fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded: f64 = format!("{percent:.2e}").parse().unwrap_or(percent);
     format!("{rounded} %")
+}
+
+/// An area with four digits.
+fn square_millimetres(area: f64) -> String {
+    format!("{} mm²", short(1e6 * area))
+}
+
+fn doubtful_area(doubt: &AreaDoubt) -> String {
+    let name = |axis: &usize| ['x', 'y', 'z'][*axis];
+    match doubt {
+        AreaDoubt::Thinner {
+            axis,
+            area,
+            other,
+            face,
+        } => format!(
+            "this traction acts on {}, the set as seen along {}; the set is a layer normal to {}, whose face has {}",
+            square_millimetres(*area),
+            name(axis),
+            name(other),
+            square_millimetres(*face)
+        ),
+        AreaDoubt::Parts { axis, area } => format!(
+            "the set of this traction is not one layer on one face: the force on {}, the set as seen along {}, is spread over all its points",
+            square_millimetres(*area),
+            name(axis)
+        ),
+    }
+}
+
+/// `4.21 mm`, `0.812 µs`: three digits with the prefix that keeps the number between 1 and 1000.
+fn prefixed(value: f64, unit: &str) -> String {
+    const PREFIXES: [(f64, &str); 7] = [
+        (1.0, ""),
+        (1e-3, "m"),
+        (1e-6, "µ"),
+        (1e-9, "n"),
+        (1e-12, "p"),
+        (1e3, "k"),
+        (1e6, "M"),
+    ];
+    let fits = |(scale, _): &&(f64, &str)| (1.0..999.5).contains(&(value / scale));
+    match PREFIXES.iter().find(fits) {
+        Some((scale, prefix)) => {
+            let number = value / scale;
+            let decimals = 2 - number.log10().floor().clamp(0.0, 2.0) as usize;
+            format!("{number:.decimals$} {prefix}{unit}")
+        }
+        None => format!("{value:.3e} {unit}"),
+    }
 }
 
 /// (1e-3, 2e-3)

@@ -1,10 +1,12 @@
 //! `[[initial]]`, `[[prescribe]]`, `[[load]]` and `[[probe]]`: what is done to the body, and where it is watched.
 
+use std::path::PathBuf;
+
 use pericles::boundary::{MotionKind, TimeFunction};
 use pericles::space::Point;
 
 use crate::component::{Component, Variables, VectorField, component, vector_field};
-use crate::course::function;
+use crate::course::{function, smooth_function};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -20,6 +22,8 @@ pub struct Initial {
     pub displacement: Option<VectorField>,
     /// Velocity, m/s.
     pub velocity: Option<VectorField>,
+    /// A file with displacement and velocity of all points, in place of both; a relative path starts at the folder of the deck.
+    pub file: Option<PathBuf>,
     /// Random velocities, added to that.
     pub random_velocity: Option<RandomVelocity>,
 }
@@ -111,21 +115,32 @@ pub(crate) fn initial(
         dimension,
         time: false,
     };
-    let displacement = table.maybe("displacement", |item| {
-        vector_field(&item, Quantity::Length, variables)
-    });
-    let velocity = table.maybe("velocity", |item| {
-        vector_field(&item, Quantity::Velocity, variables)
-    });
+    let file = table.maybe("file", |item| item.text());
+    let vector = |key, quantity| {
+        if matches!(file, Some(None)) {
+            table.maybe(key, |item| vector_field(&item, quantity, variables))
+        } else {
+            table.forbid(
+                key,
+                "`file` gives both displacement and velocity; give either `file` or these",
+            );
+            Some(None)
+        }
+    };
+    let displacement = vector("displacement", Quantity::Length);
+    let velocity = vector("velocity", Quantity::Velocity);
     let random_velocity = table.maybe("random_velocity", |item| random(item.table()?));
-    if let (Some(None), Some(None), Some(None)) = (&displacement, &velocity, &random_velocity) {
-        table.lacks_one_of(&["displacement", "velocity", "random_velocity"]);
+    if let (Some(None), Some(None), Some(None), Some(None)) =
+        (&displacement, &velocity, &random_velocity, &file)
+    {
+        table.lacks_one_of(&["displacement", "velocity", "random_velocity", "file"]);
     }
     table.finish();
     Some(Initial {
         set: set?,
         displacement: displacement?,
         velocity: velocity?,
+        file: file?.map(PathBuf::from),
         random_velocity: random_velocity?,
     })
 }
@@ -159,7 +174,7 @@ pub(crate) fn prescribe(
             };
             Some((kind, amplitude(&item, quantity, dimension)?))
         });
-    let function = function(&table);
+    let function = smooth_function(&table);
     let until = table.maybe("until", |item| item.positive(Quantity::Time));
     table.finish();
     let (kind, amplitude) = motion?;

@@ -8,6 +8,7 @@ use pericles::boundary::{TimeCourse, TimeFunction, TimeTable};
 
 use crate::component;
 use crate::expression::{Expression, Rates};
+use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
@@ -20,7 +21,17 @@ enum Kind {
     Expression,
 }
 
+/// Of a load.
 pub(crate) fn function(table: &Table<'_>) -> Option<TimeFunction> {
+    read(table, false)
+}
+
+/// Of a prescribed motion, whose acceleration is its derivative.
+pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeFunction> {
+    read(table, true)
+}
+
+fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
     const KINDS: [(&str, Kind); 5] = [
         ("constant", Kind::Constant),
         ("ramp", Kind::Ramp),
@@ -47,7 +58,12 @@ pub(crate) fn function(table: &Table<'_>) -> Option<TimeFunction> {
         Kind::Table => table.required("rows").and_then(|item| rows(&item)),
         Kind::Expression => table.required("expression").and_then(|item| {
             let expression = component::expression(&item, &["t"])?;
-            Some(TimeFunction::Course(Arc::new(Course::new(expression))))
+            let course = Course::new(expression);
+            if smooth && !course.has_rates() {
+                item.report(course.rough());
+                return None;
+            }
+            Some(TimeFunction::Course(Arc::new(course)))
         }),
     };
     table.finish();
@@ -95,6 +111,16 @@ impl Course {
                 Some(rates) => rates.values(place, t)[(order - 1).min(1) as usize],
                 None => f64::NAN,
             },
+        }
+    }
+
+    /// The fault of a prescribed motion that has jumps or kinks.
+    pub(crate) fn rough(&self) -> Fault {
+        Fault::BadExpression {
+            text: self.value.text().into(),
+            reason: "it has no derivative in time where abs, ceil, floor, round, sign or step of t has a jump or kink, and a prescribed motion needs one; allowed: a smooth expression, or \
+                     function = { kind = \"table\", rows = [[time, value], …] }, linear between its rows, which moves the support as the expression would"
+                .into(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The deck as a whole.
 
-use std::path::Path as FilePath;
+use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
@@ -18,7 +18,7 @@ use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
 use crate::set::{self, NamedSet, SetNames};
 use crate::source::Sources;
-use crate::surface::{self, SurfaceDeck};
+use crate::surface::{self, SurfaceDeck, SurfaceShape};
 use crate::time::{self, Time};
 
 /// Everything a deck says, in SI units.
@@ -98,7 +98,9 @@ impl Deck {
         match deck {
             Some(deck) if closed.problems.is_empty() => {
                 let record = closed.record;
-                Ok((Self { record, ..deck }, closed.survey))
+                let deck = Self { record, ..deck };
+                deck.refuse_unstable_table()?;
+                Ok((deck, closed.survey))
             }
             _ => Err(DeckError::refused(closed.problems)),
         }
@@ -117,6 +119,30 @@ impl Deck {
     /// The text it was read from, without overrides.
     pub fn source(&self) -> &str {
         self.record.sources.text(0)
+    }
+
+    /// The files that the deck names, as it names them.
+    pub fn files(&self) -> Vec<&FilePath> {
+        let listed = self.body.listed.iter().map(|listed| &listed.path);
+        let surface = self
+            .surface
+            .iter()
+            .filter_map(|surface| match &surface.shape {
+                SurfaceShape::File { path, .. } => Some(path),
+                _ => None,
+            });
+        let initial = self
+            .initial
+            .iter()
+            .filter_map(|initial| initial.file.as_ref());
+        let all = listed.chain(surface).chain(initial);
+        all.map(PathBuf::as_path).collect()
+    }
+
+    /// Where a file is that the deck names: a relative path starts at the deck's folder.
+    pub fn beside(&self, path: &FilePath) -> PathBuf {
+        let folder = FilePath::new(self.record.sources.name()).parent();
+        folder.unwrap_or(FilePath::new("")).join(path)
     }
 
     /// The overrides that were applied.

@@ -50,7 +50,7 @@ impl DeckError {
         let too_large = |problem: &Problem| {
             matches!(
                 problem.subject(),
-                Fault::TooLarge { .. } | Fault::LongHistory { .. }
+                Fault::TooLarge { .. } | Fault::LongHistory { .. } | Fault::LargeFile { .. }
             )
         };
         !self.problems().is_empty() && self.problems().iter().all(too_large)

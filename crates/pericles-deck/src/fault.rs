@@ -100,6 +100,24 @@ pub enum Fault {
         /// What is wrong, and what is allowed.
         reason: String,
     },
+    /// A load or motion that ceases to have a value.
+    #[error("the {what} on `{set}` has no finite value at t = {t:.4e} s, within the run")]
+    LostValue {
+        /// Load or prescribed motion.
+        what: &'static str,
+        /// Its set.
+        set: String,
+        /// When first, s.
+        t: f64,
+    },
+    /// A stop condition that nothing can meet.
+    #[error("the stop condition on `{set}` can never be met: {reason}")]
+    NeverStops {
+        /// The set.
+        set: String,
+        /// Why not.
+        reason: &'static str,
+    },
     /// A surface that cannot be had from its file.
     #[error("{file} gives no surface: {reason}")]
     BadSurfaceFile {
@@ -121,6 +139,20 @@ pub enum Fault {
     BadPoints {
         /// What is wrong, with the file and the line in it.
         reason: String,
+    },
+    /// A file whose content does not fit into the memory.
+    #[error("{reason}")]
+    LargeFile {
+        /// The file, and what it needs.
+        reason: String,
+    },
+    /// An initial state that cannot be read from its file.
+    #[error("{reason}")]
+    BadInitialFile {
+        /// What is wrong, with the file and the line in it.
+        reason: String,
+        /// The points of the body.
+        points: usize,
     },
     /// Listed points whose volumes belong to another spacing.
     #[error(
@@ -251,6 +283,28 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
+    /// A window of comparison without points.
+    #[error(
+        "the window of {window:.4e} m around x = {centre:.4e} m contains no point: the nearest one is {nearest:.4e} m away"
+    )]
+    EmptyWindow {
+        /// Half its width, m.
+        window: f64,
+        /// Its middle, m.
+        centre: f64,
+        /// Distance of the nearest point, m.
+        nearest: f64,
+    },
+    /// An exact solution that is too expensive.
+    #[error(
+        "the exact solution would need a sum of {terms:.1e} terms for each point at the end of the run; at most {most:.0e} are allowed"
+    )]
+    LongSum {
+        /// Terms.
+        terms: f64,
+        /// Terms that are allowed.
+        most: f64,
+    },
     /// A body that would need more memory than there is.
     #[error(
         "the body would have {} points and need some {} of memory; {} may be taken",
@@ -276,6 +330,14 @@ pub enum Fault {
         needed: f64,
         /// What may be taken, bytes.
         memory: u64,
+    },
+    /// Tuned coefficients with which waves grow.
+    #[error(
+        "the tuned coefficients make the lattice unstable: the smallest ω²/k² of its waves is {smallest:.3} E/ρ, it must be positive"
+    )]
+    UnstableTable {
+        /// The smallest ω²/k² over E/ρ.
+        smallest: f64,
     },
     /// The library refuses the value.
     #[error(transparent)]
@@ -331,18 +393,37 @@ impl Subject for Fault {
             Self::BadSurfaceFile { .. } => {
                 "a surface is closed, in one part and oriented outwards, unless open, several or flip = true; `pericles geodesics FILE` tells more".into()
             }
+            Self::LostValue { .. } => "its expression must have a finite value, and that of a motion finite derivatives, at all times of the run; end the run or the load (`until`) before, or change it".into(),
+            Self::NeverStops { .. } => {
+                "reaction_below needs a set that a [[prescribe]] holds, damage_above a material that can break".into()
+            }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
+            Self::EmptyWindow { .. } => {
+                "give a larger window, or move the centre of the exact solution into the body".into()
+            }
+            Self::LongSum { .. } => {
+                "the number of terms is 2 (distance from the centre + 6 c end)/width: move exact.centre into the body, give a larger width, or shorten the run".into()
+            }
             Self::BadCondition { .. } => {
                 "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m".into()
             }
             Self::BadPoints { .. } => {
                 "a file of points has a line `x y z block volume` for each, in m and m³; a relative path starts at the deck's folder".into()
             }
+            Self::LargeFile { .. } => {
+                "the limit is what the machine has free, or what was given as the most".into()
+            }
+            Self::BadInitialFile { points, .. } => format!(
+                "the file has a line for each of the {points} points, in the order of the field files (listed points: of their file): the components of the displacement in m, then those of the velocity in m/s; a relative path starts at the deck's folder"
+            ),
             Self::OtherSpacing { section: Some(section), .. } => format!(
                 "places in the file are in m and volumes in m³; `{section}` is part of the volumes"
             ),
             Self::OtherSpacing { .. } => "places in the file are in m and volumes in m³".into(),
+            Self::UnstableTable { .. } => {
+                "use lower_bound = \"auto\" (the default), another method, another decay or another horizon; time.allow_unstable = true accepts the deck for `pericles dispersion`".into()
+            }
             Self::TooLarge { .. } => {
                 "a larger spacing or a shorter horizon needs less; lengths without a unit are in m".into()
             }
@@ -382,13 +463,21 @@ impl Subject for Fault {
             | Self::BadExpression { .. }
             | Self::BadCondition { .. }
             | Self::BadPoints { .. }
+            | Self::BadInitialFile { .. }
             | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
+            Self::LostValue { .. } => "not finite",
+            Self::NeverStops { .. } => "never met",
             Self::UnknownArea { .. } => "which area?",
             Self::NoExactSolution { .. } => "of another problem",
-            Self::TooLarge { .. } | Self::LongHistory { .. } => "too large",
+            Self::EmptyWindow { .. } => "no point",
+            Self::LongSum { .. } => "too many terms",
+            Self::TooLarge { .. } | Self::LongHistory { .. } | Self::LargeFile { .. } => {
+                "too large"
+            }
+            Self::UnstableTable { .. } => "unstable",
             Self::Model(_) => "refused",
         }
     }

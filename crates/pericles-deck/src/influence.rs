@@ -1,7 +1,6 @@
 //! The influence function of a material.
 
-use pericles::PericlesError;
-use pericles::analysis::tuning::{Combination, Method, ScalingModel, Tuning, Weights};
+use pericles::analysis::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
 use pericles::material::StressState;
@@ -22,10 +21,18 @@ pub(crate) struct Setting {
     pub(crate) correction: Option<VolumeCorrection>,
 }
 
+/// The influence function of a material.
+pub(crate) struct InfluenceRead {
+    pub(crate) influence: Influence,
+    /// How its coefficients were found, if they are tuned.
+    pub(crate) tuned: Option<TunedTable>,
+}
+
 /// The influence function in a material's table.
-pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<Influence> {
+pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<InfluenceRead> {
     let table = table.table_or_empty("influence")?;
-    let function = function(&table, setting);
+    let mut tuned = None;
+    let function = function(&table, setting, &mut tuned);
     let acts_on = table.choice_or_first(
         "acts_on",
         "argument",
@@ -43,7 +50,7 @@ pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<Influenc
         table.accept(influence.check(dimension, horizon));
     }
     table.finish();
-    Some(influence)
+    Some(InfluenceRead { influence, tuned })
 }
 
 #[derive(Clone, Copy)]
@@ -59,7 +66,11 @@ enum Form {
     Tuned,
 }
 
-fn function(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+fn function(
+    table: &Table<'_>,
+    setting: &Setting,
+    tuned_table: &mut Option<TunedTable>,
+) -> Option<InfluenceFunction> {
     const FORMS: [(&str, Form); 9] = [
         ("constant", Form::Constant),
         ("conical", Form::Conical),
@@ -99,7 +110,12 @@ fn function(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
             None
         }
         Form::Classes => classes(table, setting),
-        Form::Tuned => tuned(table, setting),
+        Form::Tuned => {
+            let found = tuned(table, setting)?;
+            let influence = table.accept(found.influence(setting.dimension?, setting.spacing?))?;
+            *tuned_table = Some(found);
+            Some(influence.function)
+        }
     }
 }
 
@@ -184,17 +200,58 @@ fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
     Some((offset, value?))
 }
 
+/// The least coefficient of a tuned kernel.
+#[derive(Clone, Copy)]
+enum LowerBound {
+    /// None if the kernel is stable without, else zero.
+    Auto,
+    None,
+    Value(f64),
+}
+
 /// Coefficients tuned against dispersion for this very grid.
-fn tuned(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
+fn tuned(table: &Table<'_>, setting: &Setting) -> Option<TunedTable> {
+    const NONE: &str = "none";
+    const AUTO: &str = "auto";
     let methods = Method::ALL.map(|method| (method.name(), method));
     let method = table.choice_or_first("method", "method of tuning", &methods);
     let combinations = Combination::ALL.map(|combination| (combination.name(), combination));
     let combination =
         table.choice_or_first("combination", "combination of branches", &combinations);
-    let weight = |key| table.or(key, 1.0, |item| item.positive(Quantity::Number));
+    let weight = |key| {
+        if setting.dimension == Some(1) {
+            table.forbid(
+                key,
+                "a bar has one kind of waves, so that weights change nothing",
+            );
+            return Some(1.0);
+        }
+        table.or(key, 1.0, |item| item.positive(Quantity::Number))
+    };
     let (pressure, shear) = (weight("pressure_weight"), weight("shear_weight"));
-    let decay = table.maybe("decay", |item| item.positive(Quantity::Number));
-    let lower_bound = table.maybe("lower_bound", |item| item.quantity(Quantity::Number));
+    let decay = match table.optional("decay") {
+        Some(item) if item.is_keyword(NONE) => Some(None),
+        Some(item) => item
+            .within(
+                Quantity::Number,
+                "a positive number of rad per spacing (usual: 1), or \"none\"",
+                |decay| decay > 0.0,
+            )
+            .map(Some),
+        None => {
+            table.record("decay", Weights::DECAY);
+            Some(Some(Weights::DECAY))
+        }
+    };
+    let lower_bound = match table.optional("lower_bound") {
+        Some(item) if item.is_keyword(AUTO) => Some(LowerBound::Auto),
+        Some(item) if item.is_keyword(NONE) => Some(LowerBound::None),
+        Some(item) => item.quantity(Quantity::Number).map(LowerBound::Value),
+        None => {
+            table.record("lower_bound", AUTO);
+            Some(LowerBound::Auto)
+        }
+    };
     let tuning = Tuning {
         method: method?,
         combination: combination?,
@@ -203,7 +260,10 @@ fn tuned(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
             shear: shear?,
             decay: decay?,
         },
-        lower_bound: lower_bound?,
+        lower_bound: match lower_bound? {
+            LowerBound::Value(bound) => Some(bound),
+            LowerBound::Auto | LowerBound::None => None,
+        },
     };
     let spacing = setting.spacing?;
     let ratio = setting.horizon? / spacing;
@@ -212,14 +272,10 @@ fn tuned(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
         ratio,
         setting.correction?,
     ))?;
-    let found = table.accept(model.tune(tuning))?;
-    if !found.assessment.stability.is_stable() {
-        return table.accept(Err(PericlesError::UnstableTable {
-            smallest: found.assessment.stability.smallest,
-        }));
-    }
-    let influence = table.accept(found.influence(setting.dimension?, spacing))?;
-    Some(influence.function)
+    table.accept(match lower_bound? {
+        LowerBound::Auto => model.tune_stable(tuning),
+        _ => model.tune(tuning),
+    })
 }
 
 fn pair(row: &Item<'_>, quantity: Quantity) -> Option<(f64, f64)> {

@@ -107,6 +107,7 @@ mod schema;
 mod scheme;
 mod set;
 mod source;
+mod stop;
 mod surface;
 mod time;
 mod units;
@@ -114,7 +115,10 @@ mod vocabulary;
 
 pub use body::{Body, Quadrature};
 pub use boundary::BoundaryCondition;
-pub use build::{ExactReference, Model, PointsReader, Resources, Sets, SurfaceReader};
+pub use build::{
+    AreaDoubt, ExactReference, FileError, KernelQuality, LoadReport, Model, PlaneWaves,
+    PointsReader, Resources, Sets, SurfaceReader, TableReader,
+};
 pub use caution::Caution;
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
@@ -134,5 +138,6 @@ pub use schema::{json_schema, reference};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
+pub use stop::{StopCondition, StopWhen};
 pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use time::{Time, TimeStep};

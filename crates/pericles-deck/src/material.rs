@@ -1,5 +1,6 @@
 //! `[material]`: constants, horizon, influence function and breaking.
 
+use pericles::analysis::tuning::TunedTable;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Treatment};
@@ -9,7 +10,7 @@ use crate::body::BodyRead;
 use crate::constants::{
     ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
 };
-use crate::influence::{Setting, influence};
+use crate::influence::{InfluenceRead, Setting, influence};
 use crate::part::{self, MaterialInterface, Part};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -23,6 +24,8 @@ pub struct Material {
     pub name: Option<String>,
     /// Law, constants, horizon and breaking.
     pub bonds: BondMaterial,
+    /// How the coefficients of the influence function were found, if it is tuned against dispersion.
+    pub tuned: Option<TunedTable>,
     /// Sets whose bonds never break.
     pub no_fail: Vec<String>,
     /// Parts that are stiffer or softer, later ones before earlier ones.
@@ -88,6 +91,10 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             correction: volume_correction,
         },
     );
+    let (influence, tuned) = match influence {
+        Some(InfluenceRead { influence, tuned }) => (Some(influence), tuned),
+        None => (None, None),
+    };
     let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
     let fracture = fracture(&table);
     let fracture_calibration = fracture_calibration(&table, body);
@@ -124,6 +131,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             volume_correction: volume_correction?,
             fracture: fracture?,
         },
+        tuned,
         no_fail: no_fail?,
         inclusions: inclusions.into_iter().collect::<Option<_>>()?,
         parts: parts?,

@@ -16,6 +16,8 @@ pub struct Output {
     pub names: Vec<Field>,
     /// When a row is added to the tables of energies, probes and reactions.
     pub history: Schedule,
+    /// Fields, or components of them, whose least and greatest value are columns of the history.
+    pub extremes: Vec<(Field, Option<usize>)>,
     /// The table of crack tips.
     pub cracks: CrackOutput,
     /// The table of fragments.
@@ -94,7 +96,7 @@ impl Default for Checkpoint {
 /// `driven`: whether supports move.
 pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> Option<Output> {
     let (fields, names) = fields(&table, dimension);
-    let history = scheduled(&table, "history", 200);
+    let (history, extremes) = history(&table, dimension);
     let cracks = cracks(&table, history);
     let fragments = fragments(&table);
     let precision = table.choice_or_first(
@@ -121,6 +123,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, driven: bool) -> 
         fields: fields?,
         names: names?,
         history: history?,
+        extremes: extremes?,
         cracks: cracks?,
         fragments: fragments?,
         precision: precision?,
@@ -150,15 +153,24 @@ pub(crate) fn checkpoint(table: Table<'_>) -> Option<Checkpoint> {
 /// The word for a schedule that is never due.
 const NEVER: &str = "never";
 
-/// A table that holds a schedule and nothing else, or the word "never".
-fn scheduled(table: &Table<'_>, key: &'static str, count: u64) -> Option<Schedule> {
-    if is_never(table, key) {
-        return Some(Schedule::Never);
+/// When rows are added to the history, and the fields whose extremes it holds.
+fn history(
+    table: &Table<'_>,
+    dimension: Option<usize>,
+) -> (Option<Schedule>, Option<Vec<(Field, Option<usize>)>>) {
+    if is_never(table, "history") {
+        return (Some(Schedule::Never), Some(Vec::new()));
     }
-    let table = table.table_or_empty(key)?;
-    let schedule = schedule(&table, Schedule::Count(count));
+    let Some(table) = table.table_or_empty("history") else {
+        return (None, None);
+    };
+    let schedule = schedule(&table, Schedule::Count(200));
+    let extremes = match table.optional("extremes") {
+        None => Some(Vec::new()),
+        Some(item) => each_once(&item, |item| field(item, dimension)),
+    };
     table.finish();
-    schedule
+    (schedule, extremes)
 }
 
 /// When field files are written, and which fields.
@@ -187,9 +199,27 @@ fn names(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Field>> {
             None
         }
     };
+    each_once(item, one)
+}
+
+/// A list of fields, none of them twice.
+fn each_once<T: PartialEq>(
+    item: &Item<'_>,
+    one: impl Fn(&Item<'_>) -> Option<T>,
+) -> Option<Vec<T>> {
     let items = item.list("a list of names of fields")?;
-    let fields: Vec<Option<Field>> = items.iter().map(one).collect();
-    fields.into_iter().collect()
+    let mut fields = Some(Vec::new());
+    for item in &items {
+        match (one(item), &mut fields) {
+            (Some(field), Some(known)) if known.contains(&field) => {
+                item.out_of_range("each field once");
+                fields = None;
+            }
+            (Some(field), Some(known)) => known.push(field),
+            _ => fields = None,
+        }
+    }
+    fields
 }
 
 fn is_never(table: &Table<'_>, key: &'static str) -> bool {
@@ -319,6 +349,7 @@ fn quantity(field: Field) -> Quantity {
         Field::Stress => Quantity::Traction,
         Field::Damage | Field::Strain => Quantity::Number,
         Field::StrainEnergyDensity => Quantity::EnergyDensity,
+        Field::Volume => Quantity::Number,
     }
 }
 
@@ -326,10 +357,12 @@ impl Output {
     /// Whether stress or strain is wanted, which only listed bonds give.
     pub(crate) fn wants_tensors(&self) -> bool {
         let drawn = self.pictures.iter().map(|picture| picture.field);
+        let extremes = self.extremes.iter().map(|(field, _)| *field);
         self.names
             .iter()
             .copied()
             .chain(drawn)
+            .chain(extremes)
             .any(Field::is_tensor)
     }
 }

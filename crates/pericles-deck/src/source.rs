@@ -74,7 +74,37 @@ impl std::fmt::Display for Location {
 
 /// The texts a deck is read from.
 #[derive(Debug, Clone)]
-pub(crate) struct Sources(Vec<Arc<NamedSource<String>>>);
+pub(crate) struct Sources(Vec<Source>);
+
+/// A text with its name.
+#[derive(Debug, Clone)]
+struct Source {
+    name: String,
+    text: String,
+    /// Both as reports show them: control characters, which terminals may take for commands, are others of the same length.
+    shown: Arc<NamedSource<String>>,
+}
+
+impl Source {
+    fn new(name: &str, text: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            shown: Arc::new(NamedSource::new(visible(name), visible(text))),
+        }
+    }
+}
+
+/// A text with a blank for each control character of one byte and `¿` for each of two; line ends and tabs stay.
+fn visible(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\n' | '\r' | '\t' => c,
+        c if c.is_ascii_control() => ' ',
+        c if c.is_control() => '¿',
+        c => c,
+    };
+    text.chars().map(shown).collect()
+}
 
 impl Default for Sources {
     /// One empty text.
@@ -85,23 +115,22 @@ impl Default for Sources {
 
 impl Sources {
     pub(crate) fn new(name: &str, text: &str) -> Self {
-        Self(vec![Arc::new(NamedSource::new(name, text.to_owned()))])
+        Self(vec![Source::new(name, text)])
     }
 
     /// Adds a text; returns its number.
     pub(crate) fn add(&mut self, name: &str, text: &str) -> usize {
-        self.0
-            .push(Arc::new(NamedSource::new(name, text.to_owned())));
+        self.0.push(Source::new(name, text));
         self.0.len() - 1
     }
 
     /// The name of the deck's file.
     pub(crate) fn name(&self) -> &str {
-        self.0.first().map_or("", |named| named.name())
+        self.0.first().map_or("", |source| &source.name)
     }
 
     pub(crate) fn text(&self, source: usize) -> &str {
-        self.0.get(source).map_or("", |named| named.inner())
+        self.0.get(source).map_or("", |source| &source.text)
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -110,7 +139,7 @@ impl Sources {
 
     pub(crate) fn locate(&self, place: Place) -> Location {
         let source = place.source.min(self.0.len() - 1);
-        let text = Arc::clone(&self.0[source]);
+        let text = Arc::clone(&self.0[source].shown);
         let inner = text.inner();
         let floor = |mut at: usize| {
             at = at.min(inner.len());
@@ -152,6 +181,16 @@ mod tests {
         assert_eq!((value.line(), value.column()), (2, 5));
         assert_eq!(value.excerpt(), "\"ü\"");
         assert_eq!(value.to_string(), "a.toml:2:5");
+        // Control characters are not shown, and change no place.
+        let odd = Sources::new("a\u{1b}[1m.toml", "µ\u{9b}\u{1b} = 1\n");
+        assert_eq!(odd.text(0), "µ\u{9b}\u{1b} = 1\n");
+        let value = odd.locate(Place {
+            source: 0,
+            start: 8,
+            end: 9,
+        });
+        assert_eq!((value.excerpt(), value.file()), ("1", "a [1m.toml"));
+        assert_eq!(value.text().inner(), "µ¿  = 1\n");
         // Between the bytes of a letter, and beyond the end.
         assert_eq!(at(7, 8).column(), 1);
         assert_eq!(at(999, 1000).excerpt(), "");

@@ -455,6 +455,7 @@ pub(crate) fn no_bonds() -> Material {
             volume_correction: pericles::family::VolumeCorrection::None,
             fracture: Fracture::Unbreakable,
         },
+        tuned: None,
         no_fail: Vec::new(),
         inclusions: Vec::new(),
         parts: Vec::new(),

@@ -5,6 +5,7 @@ use crate::reader::Table;
 use crate::relaxation;
 use crate::scheme::{self, Scheme};
 use crate::set::SetNames;
+use crate::stop::{StopWhen, stop_when};
 
 /// The course of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Time {
     pub scheme: Scheme,
     /// Whether a step beyond the stable limit is accepted.
     pub allow_unstable: bool,
+    /// Conditions that end the run before its end.
+    pub stop_when: Vec<StopWhen>,
 }
 
 /// The time step.
@@ -48,12 +51,18 @@ pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
         ),
     };
     let allow_unstable = table.or("allow_unstable", false, |item| item.boolean());
+    let stops: Vec<Option<StopWhen>> = table
+        .tables("stop_when")
+        .into_iter()
+        .map(|table| stop_when(table, names))
+        .collect();
     table.finish();
     Some(Time {
         end: end?,
         step: step?,
         scheme: scheme?,
         allow_unstable: allow_unstable?,
+        stop_when: stops.into_iter().collect::<Option<_>>()?,
     })
 }
 

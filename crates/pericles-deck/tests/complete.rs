@@ -125,12 +125,14 @@ fn conditions_time_and_output_arrive() {
                 set: "all".into(),
                 displacement: None,
                 velocity: Some([0.0, 1.0, 0.0].map(Into::into)),
+                file: None,
                 random_velocity: None,
             },
             Initial {
                 set: "top".into(),
                 displacement: Some([1e-6, 0.0, 0.0].map(Into::into)),
                 velocity: Some([0.0, 20.0, 0.0].map(Into::into)),
+                file: None,
                 random_velocity: None,
             }
         ]
@@ -200,6 +202,7 @@ fn conditions_time_and_output_arrive() {
             step: TimeStep::Fixed(25e-9),
             scheme: Scheme::VelocityVerlet,
             allow_unstable: true,
+            stop_when: vec![],
         }
     );
     let damage = Picture {
@@ -226,6 +229,7 @@ fn conditions_time_and_output_arrive() {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
+            extremes: Vec::new(),
             energy_bound: None,
             cracks: CrackOutput {
                 schedule: Schedule::Count(92),

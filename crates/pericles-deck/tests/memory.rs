@@ -9,7 +9,7 @@ use pericles_deck::{Deck, DeckError, Resources};
 fn built(text: &str, [old, new]: [&str; 2], memory: u64) -> Result<(), DeckError> {
     assert!(text.contains(old), "{old}");
     let deck = Deck::parse(&text.replace(old, new), "a.toml", &[])?;
-    let read_points = |_: &Path, _: usize| {
+    let read_points = |_: &Path, _: usize, _: u64| {
         // A line of points.
         let places = (0..20_000).map(|k| [f64::from(k), 0.0, 0.0]);
         let mut points = ListedPoints::default();

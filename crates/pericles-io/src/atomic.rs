@@ -54,16 +54,22 @@ pub fn write_atomically<T>(
 pub(crate) fn remove_unfinished(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
-        if entry.file_name().to_str().is_some_and(is_unfinished) {
+        if entry.file_name().to_str().and_then(finished_name).is_some() {
             fs::remove_file(entry.path())?;
         }
     }
     Ok(())
 }
 
-/// Whether a file of this name is one that [`write_atomically`] did not finish.
-pub(crate) fn is_unfinished(name: &str) -> bool {
-    name.starts_with('.') && name.ends_with(UNFINISHED)
+/// The name that a file was to get which [`write_atomically`] did not finish; none for other files.
+pub(crate) fn finished_name(name: &str) -> Option<&str> {
+    let (name, numbers) = name
+        .strip_prefix('.')?
+        .strip_suffix(UNFINISHED)?
+        .rsplit_once('.')?;
+    let (process, count) = numbers.split_once('-')?;
+    let number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    (number(process) && number(count)).then_some(name)
 }
 
 /// The folder a path lies in; `.` for a bare name.

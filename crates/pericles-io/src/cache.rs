@@ -29,6 +29,7 @@ use crate::{Container, IoError};
 #[derive(Debug)]
 pub struct DiskCache {
     folder: PathBuf,
+    memory: u64,
     notes: Mutex<Vec<String>>,
 }
 
@@ -37,6 +38,7 @@ impl DiskCache {
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self {
             folder: folder.into(),
+            memory: u64::MAX,
             notes: Mutex::default(),
         }
     }
@@ -51,6 +53,12 @@ impl DiskCache {
             .or_else(|| variable("LOCALAPPDATA").map(PathBuf::from))
             .or_else(|| variable("HOME").map(|home| Path::new(&home).join(".cache")))?;
         Some(Self::new(base.join("pericles")))
+    }
+
+    /// The same; an entry may take so many bytes of memory.
+    #[must_use]
+    pub fn within(self, memory: u64) -> Self {
+        Self { memory, ..self }
     }
 
     /// Where it is.
@@ -81,7 +89,7 @@ impl DiskCache {
 impl Cache for DiskCache {
     fn load(&self, key: &Key) -> Option<Archive> {
         let path = self.path(key);
-        let stored = match Container::read(&path) {
+        let stored = match Container::read(&path, self.memory) {
             Ok(container) if container.metadata == name(key) => container.into_archive(),
             Ok(_) => Err("it holds something else than its name says".to_owned()),
             Err(IoError::NotFound { .. }) => return None,

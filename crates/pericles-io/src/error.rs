@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::picture::quantity;
+
 /// Errors of reading and writing the files of a run. Every variant names the path.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -80,6 +82,17 @@ pub enum IoError {
         newest: u32,
     },
 
+    /// The content of a file would take more memory than there is.
+    #[error("{} needs about {} of memory, and {} may be used; use a smaller file, or free or allow more memory", path.display(), size(*needed), size(*memory))]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// What its content would take, bytes.
+        needed: u64,
+        /// What may be used, bytes.
+        memory: u64,
+    },
+
     /// None of the checkpoints in a folder can be used.
     #[error("{} holds no usable checkpoint ({} refused{})", path.display(), refused.len(), first_reason(refused))]
     NoValidCheckpoint {
@@ -128,6 +141,11 @@ pub enum IoError {
         /// The system's reason.
         source: io::Error,
     },
+}
+
+/// A number of bytes for people.
+fn size(bytes: u64) -> String {
+    quantity(bytes as f64, "B")
 }
 
 fn first_reason(refused: &[IoError]) -> String {
@@ -198,6 +216,7 @@ impl IoError {
             | Self::NotFound { path }
             | Self::Damaged { path, .. }
             | Self::UnsupportedVersion { path, .. }
+            | Self::TooLarge { path, .. }
             | Self::NoValidCheckpoint { path, .. }
             | Self::Shape { path, .. }
             | Self::Unsuitable { path, .. }

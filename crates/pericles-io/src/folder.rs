@@ -1,29 +1,27 @@
-//! The output folder of a run: created without races, locked for one run, emptied only of what Pericles writes.
+//! The output folder of a run: created without races, locked for one run, emptied only of what an earlier run wrote.
 //!
 //! ```text
 //! branching/
 //!   run.json  history.csv  reactions.csv  …  fields.pvd
 //!   fields/fields_000000.vtu …    pictures/*.png    checkpoints/step-000000001840.chk …
 //!   .lock                         held while a run writes; stays behind, empty and unlocked
+//!   .manifest                     the names of all files that the run may write, on record before it does
 //! ```
+
+mod manifest;
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use self::manifest::{MANIFEST, Manifest};
 use crate::IoError;
-use crate::atomic::{folder_of, is_unfinished, remove_unfinished};
+use crate::atomic::{finished_name, folder_of, remove_unfinished};
 
 const LOCK: &str = ".lock";
 
-const PICTURES: &str = "pictures";
-
-/// The sub-folders of a run and the endings of the files Pericles writes there.
-const SUBFOLDERS: [(&str, &[&str]); 3] = [
-    ("fields", &["vtu"]),
-    (PICTURES, &["png", "apng"]),
-    ("checkpoints", &["chk"]),
-];
+/// The sub-folders of a run.
+const SUBFOLDERS: [&str; 3] = ["fields", "pictures", "checkpoints"];
 
 /// The folder of one run, locked against other runs while this value lives.
 ///
@@ -46,9 +44,9 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Creates the folder `path`, and its parents where they are missing.
     ///
-    /// If it exists, `force` decides: without, it is refused; with, the files of an earlier run are removed from it (run.json,
-    /// *.csv, fields.pvd, report.html, fields/*.vtu, pictures/*.png, checkpoints/*.chk) and everything else in it stays. A folder that holds
-    /// other files and none of an earlier run is refused even then; tables alone do not make a folder one of Pericles.
+    /// If it exists, `force` decides: without, it is refused; with, the files that the manifest of an earlier run names are removed from it and
+    /// everything else in it stays. A folder that is not empty and not that of a run is refused even then. Folders of versions without a manifest are
+    /// told by the content of their `run.json`, or by holding nothing but a lock and files with the names of results.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<Self, IoError> {
         let path = path.into();
         create_parents(&path)?;
@@ -59,9 +57,9 @@ impl OutputFolder {
             }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 // Before the lock file is made: a refused folder stays untouched.
-                check_ours(&path)?;
+                let manifest = owned(&path)?;
                 let folder = Self::lock(path)?;
-                folder.remove_results()?;
+                folder.remove_results(&manifest)?;
                 Ok(folder)
             }
             Err(error) => Err(IoError::writing(&path, error)),
@@ -120,6 +118,15 @@ impl OutputFolder {
         }
     }
 
+    /// Puts files on record as the run's, before they are written: these names are what a later run may remove if it is to replace this one. `*` stands for
+    /// one or more digits, as in `fields/fields_*.vtu`.
+    ///
+    /// # Errors
+    /// A record that cannot be written.
+    pub fn claim(&self, names: &[String]) -> Result<(), IoError> {
+        Manifest::add(&self.path, names)
+    }
+
     fn lock(path: PathBuf) -> Result<Self, IoError> {
         let lock = path.join(LOCK);
         // The lock file is never removed: a run that waits at the old file and one that makes a new one would both own the folder.
@@ -138,32 +145,39 @@ impl OutputFolder {
 
     /// The folder itself and its sub-folders that exist.
     fn places(&self) -> Vec<PathBuf> {
-        let subfolders = SUBFOLDERS.iter().map(|(name, _)| self.path.join(name));
+        let subfolders = SUBFOLDERS.iter().map(|name| self.path.join(name));
         std::iter::once(self.path.clone())
-            .chain(subfolders.filter(|place| place.is_dir()))
+            .chain(subfolders.filter(|place| is_folder(place)))
             .collect()
     }
 
-    fn remove_results(&self) -> Result<(), IoError> {
-        for entry in entries(&self.path)? {
-            if entry.is_file && (is_result(&entry.name) || is_unfinished(&entry.name)) {
-                remove(&self.path.join(&entry.name))?;
-            }
-        }
-        for (subfolder, endings) in SUBFOLDERS {
-            let place = self.path.join(subfolder);
-            if !place.is_dir() {
+    fn remove_results(&self, manifest: &Manifest) -> Result<(), IoError> {
+        for (prefix, place) in std::iter::once((String::new(), self.path.clone()))
+            .chain(SUBFOLDERS.map(|name| (format!("{name}/"), self.path.join(name))))
+        {
+            if !is_folder(&place) {
                 continue;
             }
             for entry in entries(&place)? {
-                if entry.is_file && (has_one_of(&entry.name, endings) || is_unfinished(&entry.name))
-                {
+                let name = finished_name(&entry.name).unwrap_or(&entry.name);
+                if entry.is_file && manifest.has(&format!("{prefix}{name}")) {
                     remove(&place.join(&entry.name))?;
                 }
             }
         }
-        Ok(())
+        // Last: what a kill in between leaves is on record still.
+        match fs::remove_file(self.path.join(MANIFEST)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(IoError::writing(&self.path.join(MANIFEST), error))
+            }
+            _ => Ok(()),
+        }
     }
+}
+
+/// Whether a path is a folder itself, and no link to one.
+fn is_folder(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
 struct Entry {
@@ -187,51 +201,32 @@ fn entries(folder: &Path) -> Result<Vec<Entry>, IoError> {
     list().map_err(|source| IoError::writing(folder, source))
 }
 
-fn check_ours(path: &Path) -> Result<(), IoError> {
-    let all = entries(path)?;
-    let mut ours = all
-        .iter()
-        .any(|entry| entry.is_file && (entry.name == "run.json" || entry.name == "fields.pvd"));
-    for (subfolder, endings) in SUBFOLDERS {
-        let place = path.join(subfolder);
-        if !ours && subfolder != PICTURES && place.is_dir() {
-            ours = entries(&place)?
-                .iter()
-                .any(|entry| entry.is_file && has_one_of(&entry.name, endings));
-        }
+/// What an earlier run may have written into a folder.
+///
+/// # Errors
+/// A folder that holds other things than a run.
+fn owned(path: &Path) -> Result<Manifest, IoError> {
+    if let Some(manifest) = Manifest::of(path)? {
+        return Ok(manifest);
     }
-    let empty = all
-        .iter()
-        .all(|entry| entry.name == LOCK || is_unfinished(&entry.name));
-    // A run that died before its first report leaves the lock, sub-folders and tables behind.
-    let begun = all.iter().any(|entry| entry.name == LOCK)
-        && all.iter().all(|entry| {
-            let name = &entry.name;
-            let subfolder = SUBFOLDERS.iter().any(|(folder, _)| name == folder);
-            name == LOCK
-                || is_unfinished(name)
-                || if entry.is_file {
-                    is_result(name)
-                } else {
-                    subfolder
-                }
-        });
-    if ours || empty || begun {
-        Ok(())
+    let all = entries(path)?;
+    let usual = Manifest::usual();
+    let locked = all.iter().any(|entry| entry.name == LOCK);
+    // A run of a version without a manifest that died before its first report leaves the lock, sub-folders and tables behind.
+    let begun = all.iter().all(|entry| {
+        let name = finished_name(&entry.name);
+        entry.name == LOCK
+            || name.is_some()
+            || locked && entry.is_file && entry.name != "run.json" && usual.has(&entry.name)
+            || locked && !entry.is_file && SUBFOLDERS.contains(&entry.name.as_str())
+    });
+    if begun {
+        Ok(usual)
     } else {
         Err(IoError::FolderNotOurs {
             path: path.to_path_buf(),
         })
     }
-}
-
-fn is_result(name: &str) -> bool {
-    ["run.json", "fields.pvd", "report.html"].contains(&name) || has_one_of(name, &["csv"])
-}
-
-fn has_one_of(name: &str, endings: &[&str]) -> bool {
-    let found = Path::new(name).extension();
-    found.is_some_and(|found| endings.iter().any(|ending| found == *ending))
 }
 
 fn remove(path: &Path) -> Result<(), IoError> {
@@ -274,8 +269,60 @@ mod tests {
         assert!(folder.subfolder("fields").unwrap().is_dir());
     }
 
+    const STRAYS: [&str; 10] = [
+        "notes.txt",
+        "measured.csv",
+        "fields/mine.vtu",
+        "fields/fields_best.vtu",
+        "pictures/me.png",
+        "pictures/a.svg",
+        "more/run.json",
+        "checkpoints/README",
+        "checkpoints/kept.chk",
+        ".notes.part",
+    ];
+
+    fn assert_removed(path: &Path, results: &[&str]) {
+        for file in results {
+            assert!(!path.join(file).exists(), "{file}");
+        }
+        for file in STRAYS {
+            assert!(path.join(file).exists(), "{file}");
+        }
+    }
+
     #[test]
-    fn force_removes_results_and_nothing_else() {
+    fn force_removes_what_is_on_record_and_nothing_else() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("out");
+        let names = [
+            "run.json",
+            "own.csv",
+            "fields/fields_*.vtu",
+            "pictures/a.apng",
+        ];
+        let folder = OutputFolder::create(&path, false).unwrap();
+        folder.claim(&names.map(String::from)).unwrap();
+        drop(folder);
+        let results = [
+            "run.json",
+            "own.csv",
+            "fields/fields_000000.vtu",
+            "pictures/a.apng",
+            "fields/.fields_000001.vtu.7-0.part",
+        ];
+        populate(&path, &results);
+        populate(&path, &STRAYS);
+        // A table that this run does not write.
+        populate(&path, &["history.csv"]);
+        let _folder = OutputFolder::create(&path, true).unwrap();
+        assert_removed(&path, &results);
+        assert!(path.join("history.csv").exists());
+        assert!(!path.join(MANIFEST).exists());
+    }
+
+    #[test]
+    fn results_without_a_manifest_are_told_by_their_report() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("out");
         let results = [
@@ -283,27 +330,42 @@ mod tests {
             "history.csv",
             "fields.pvd",
             "fields/fields_000000.vtu",
-            "pictures/a.png",
-            "pictures/a.apng",
+            "pictures/Damage-000001.png",
+            "pictures/Velocity_y_2.apng",
             "checkpoints/step-000000000001.chk",
             "fields/.fields_000001.vtu.7-0.part",
         ];
-        let strays = [
-            "notes.txt",
-            "fields/mine.vtp",
-            "pictures/a.svg",
-            "more/run.json",
-            "checkpoints/README",
-        ];
         populate(&path, &results);
-        populate(&path, &strays);
+        populate(&path, &STRAYS);
+        // The report of another program is no permission.
+        for foreign in [
+            "x",
+            "{}",
+            r#"{"program": {"name": "other"}, "deck": {"source": ""}}"#,
+        ] {
+            fs::write(path.join("run.json"), foreign).unwrap();
+            let error = OutputFolder::create(&path, true).unwrap_err();
+            assert!(matches!(error, IoError::FolderNotOurs { .. }), "{error}");
+            assert!(path.join("history.csv").exists());
+        }
+        let ours = r#"{"program": {"name": "pericles"}, "deck": {"source": ""}}"#;
+        fs::write(path.join("run.json"), ours).unwrap();
         let _folder = OutputFolder::create(&path, true).unwrap();
-        for file in results {
-            assert!(!path.join(file).exists(), "{file}");
-        }
-        for file in strays {
-            assert!(path.join(file).exists(), "{file}");
-        }
+        assert_removed(&path, &results);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn force_does_not_follow_links() {
+        let place = tempfile::tempdir().unwrap();
+        let (path, other) = (place.path().join("out"), place.path().join("other"));
+        populate(&other, &["fields_000000.vtu"]);
+        let folder = OutputFolder::create(&path, false).unwrap();
+        folder.claim(&["fields/fields_*.vtu".into()]).unwrap();
+        drop(folder);
+        std::os::unix::fs::symlink(&other, path.join("fields")).unwrap();
+        OutputFolder::create(&path, true).unwrap();
+        assert!(other.join("fields_000000.vtu").exists());
     }
 
     #[test]
@@ -335,6 +397,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("out");
         let first = OutputFolder::create(&path, false).unwrap();
+        first.claim(&["run.json".into()]).unwrap();
         populate(&path, &["run.json"]);
         for second in [OutputFolder::open(&path), OutputFolder::create(&path, true)] {
             assert!(matches!(second, Err(IoError::Locked { .. })), "{second:?}");

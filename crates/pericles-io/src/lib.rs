@@ -8,13 +8,15 @@
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
 //! | text `x y z block volume` | bodies whose points are listed | [`read_points`] |
+//! | text with a line of numbers for each point | initial states | [`read_rows`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
 //! | cached results | all runs of a user | [`DiskCache`] |
 //! | all of these but checkpoints | a simulation, state by state | [`observers`] |
 //!
 //! But for the observers, everything takes plain slices in the layout of Pericles, one component after the other (`u[c * n + i]`), in SI units, and
 //! knows nothing of physics. Field files, pictures and checkpoints are written whole or not at all ([`write_atomically`]), and their bytes
-//! depend on the data alone: no clock, path or thread count. [`IoError`] tells apart what a user can do something about.
+//! depend on the data alone: no clock, path or thread count. What is read is given the `memory` in bytes that its content may take, and is refused
+//! before it takes more. [`IoError`] tells apart what a user can do something about.
 //!
 //! ```
 //! use pericles_io::{CheckpointFolder, Column, CsvTable, OutputFolder, PvdSeries, VtkField, VtuFile};
@@ -48,7 +50,9 @@ mod mesh;
 pub mod observers;
 mod picture;
 mod points;
+mod rows;
 mod vtk;
+mod whole;
 
 pub use atomic::write_atomically;
 pub use cache::DiskCache;
@@ -64,4 +68,5 @@ pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
 pub use points::{PointsError, parse_points, read_points};
+pub use rows::{RowsError, parse_rows, read_rows};
 pub use vtk::{PvdSeries, VtkField, VtuFile, escaped};

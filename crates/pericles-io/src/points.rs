@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use pericles::space::ListedPoints;
 
 use crate::IoError;
+use crate::whole::read_whole;
 
 /// Why a file gives no points.
 #[derive(Debug, thiserror::Error)]
@@ -43,10 +44,16 @@ pub enum PointsError {
 /// Reads the points of a body of this dimension. Coordinates beyond it must be the same for all points and are left out.
 ///
 /// # Errors
-/// A file that cannot be read or holds no point; the first line that is wrong, with what is allowed there.
-pub fn read_points(path: impl AsRef<Path>, dimension: usize) -> Result<ListedPoints, PointsError> {
+/// A file that cannot be read, needs more than `memory` bytes or holds no point; the first line that is wrong, with what is allowed there.
+pub fn read_points(
+    path: impl AsRef<Path>,
+    dimension: usize,
+    memory: u64,
+) -> Result<ListedPoints, PointsError> {
+    /// A point takes 44 bytes, twice that while the list grows; the shortest line has ten.
+    const EXPANSION: u64 = 10;
     let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
+    let bytes = read_whole(path, EXPANSION, memory)?;
     parse_points(path, &bytes, dimension)
 }
 
@@ -159,7 +166,7 @@ fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> 
 }
 
 /// What a line holds besides its comment.
-fn words(text: &str) -> Vec<&str> {
+pub(crate) fn words(text: &str) -> Vec<&str> {
     let text = text.split(['#', '!']).next().unwrap_or("");
     text.split(|c: char| c == ',' || c.is_whitespace())
         .filter(|word| !word.is_empty())
@@ -388,17 +395,17 @@ mod tests {
     fn messages_name_the_file() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("cloud.txt");
-        let missing = read_points(&path, 3).unwrap_err().to_string();
+        let missing = read_points(&path, 3, u64::MAX).unwrap_err().to_string();
         assert!(missing.contains("cloud.txt"), "{missing}");
         std::fs::write(&path, "0 0 0 1 one\n").unwrap();
-        let wrong = read_points(&path, 3).unwrap_err().to_string();
+        let wrong = read_points(&path, 3, u64::MAX).unwrap_err().to_string();
         assert!(
             wrong.contains("cloud.txt:1: the volume is `one`"),
             "{wrong}"
         );
         std::fs::write(&path, "").unwrap();
         assert!(
-            read_points(&path, 3)
+            read_points(&path, 3, u64::MAX)
                 .unwrap_err()
                 .to_string()
                 .contains("no point")

@@ -286,6 +286,16 @@ fn a_bar_is_drawn_over_its_length_in_any_order_of_points() {
 }
 
 #[test]
+fn a_symmetric_displacement_of_a_bar_is_drawn_symmetrically() {
+    // As large as the hump is wide: over displaced places the curve would lean over.
+    let x: Vec<f64> = (0..101).map(|i| f64::from(i) * 0.1 - 5.0).collect();
+    let u: Vec<f64> = x.iter().map(|x| (-x * x).exp()).collect();
+    let picture = FieldPicture::new(1, &x, &u, CellSize::Uniform(0.1)).label("Displacement", "m");
+    let (at_rest, displaced) = (draw(&picture), draw(&picture.clone().displacement(&u, 3.0)));
+    assert!(at_rest.rgb == displaced.rgb);
+}
+
+#[test]
 fn equal_data_give_equal_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let x = grid([20, 20], 1.0);

@@ -6,12 +6,15 @@ use std::path::Path;
 
 use pericles_io::{Container, SURFACE_ENDINGS, parse_fields, parse_points, parse_surface};
 
+/// Bytes that the content of a file may take.
+const MEMORY: u64 = 1 << 26;
+
 /// What reading a file says; none if it is accepted.
 fn refusal(path: &Path) -> Option<String> {
     let content = fs::read(path).unwrap();
     let ending = path.extension().unwrap().to_str().unwrap();
     match ending {
-        "chk" => Container::parse(path, &content)
+        "chk" => Container::parse(path, &content, MEMORY)
             .err()
             .map(|e| e.to_string()),
         "txt" => (1..=3)
@@ -21,9 +24,11 @@ fn refusal(path: &Path) -> Option<String> {
         _ => {
             assert!(SURFACE_ENDINGS.contains(&ending), "{}", path.display());
             if ending.starts_with("vt") {
-                let _ = parse_fields(path, &content);
+                let _ = parse_fields(path, &content, MEMORY);
             }
-            parse_surface(path, &content).err().map(|e| e.to_string())
+            parse_surface(path, &content, MEMORY)
+                .err()
+                .map(|e| e.to_string())
         }
     }
 }

@@ -8,6 +8,7 @@ mod clock;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use pericles::Interrupt;
 use pericles::bench::{Case, Timing, run, run_by_clock};
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::material::StressState;
@@ -114,7 +115,12 @@ fn fracture(cells: usize, steps: usize, form: BondForm) -> pericles::Result<()> 
     verlet.start(&mut system, &mut state);
     let begin = cpu_seconds();
     for step in 1..=steps {
-        verlet.step(&mut system, &mut state, 1e-7 * step as f64)?;
+        verlet.step(
+            &mut system,
+            &mut state,
+            1e-7 * step as f64,
+            Interrupt::never(),
+        )?;
     }
     let time = (cpu_seconds() - begin) / steps as f64;
     let mut damage = vec![0.0; n];

@@ -46,8 +46,20 @@ pub(crate) enum Path<'a> {
         u: [&'a [f64]; 2],
         v: [&'a [f64]; 2],
     },
-    /// Straight from one equilibrium to another, pushed by the mean of the forces at both.
-    Chord([&'a [f64]; 2]),
+    /// Straight from one equilibrium to another, pushed by forces that change linearly between their values at both.
+    Chord(LoadStep<'a>),
+}
+
+/// A step from one static state to the next.
+///
+/// Loads and supports change slowly within it, from their values at the last equilibrium to those at the next, so that they do the work of their means. The first equilibrium of a run is
+/// the body without loads: in the first load step all loads grow from zero, whatever their time functions say at t = 0, and supports move their points from where they are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LoadStep<'a> {
+    /// Displacement at the equilibria before and after, m.
+    pub(crate) u: [&'a [f64]; 2],
+    /// Whether it is the first of the run.
+    pub(crate) first: bool,
 }
 
 impl Path<'_> {
@@ -62,7 +74,10 @@ impl Path<'_> {
     ) -> (f64, [f64; 3]) {
         let n = volumes.len();
         let times = [t - dt, t - 0.5 * dt, t];
-        let factors = times.map(|t| load.factor(t));
+        let mut factors = times.map(|t| load.factor(t));
+        if let Self::Chord(LoadStep { first: true, .. }) = self {
+            factors[0] = 0.0;
+        }
         let (mut work, mut impulse) = (0.0, [0.0; 3]);
         if factors == [0.0; 3] {
             return (work, impulse);
@@ -91,11 +106,11 @@ impl Path<'_> {
                 let push = 0.5 * dt * (last + first);
                 (push, push * mean[entry])
             }
-            // The middle velocity of the cubic is 3/2 Δu/dt − (v₀ + v₁)/4, and Simpson's rule becomes what stands here.
-            Self::Chord(u) => {
+            Self::Chord(LoadStep { u, .. }) => {
                 let mean = 0.5 * (first + last);
                 (dt * mean, mean * (u[1][entry] - u[0][entry]))
             }
+            // The middle velocity of the cubic is 3/2 Δu/dt − (v₀ + v₁)/4, and Simpson's rule becomes what stands here.
             Self::Cubic { u, v } => (
                 dt / 6.0 * (first + 4.0 * middle + last),
                 middle * (u[1][entry] - u[0][entry])

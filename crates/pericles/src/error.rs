@@ -132,6 +132,14 @@ pub enum PericlesError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A field that is made of single bonds, of a body that does not know them.
+    #[error(
+        "{field} is a sum over single bonds, which this form of the bonds does not have: use a list or a grid of bonds, or leave the field out"
+    )]
+    NoSuchField {
+        /// The field.
+        field: &'static str,
+    },
     /// Plane waves were asked for on a body without a grid.
     #[error("the points lie on no regular grid: plane waves are known for grids only")]
     NoLattice,
@@ -169,15 +177,6 @@ pub enum PericlesError {
         with: &'static str,
         /// What is allowed.
         allowed: &'static str,
-    },
-    /// A tuned table with which waves grow.
-    #[error(
-        "the tuned coefficients make the lattice unstable: some waves have ω²/k² = {smallest:e} (over E/ρ, spacings), it must be positive; use a \
-         lower bound, another method or another horizon"
-    )]
-    UnstableTable {
-        /// The smallest ω²/k² over E/ρ.
-        smallest: f64,
     },
     /// A tuning problem without a unique solution.
     #[error(
@@ -378,11 +377,11 @@ pub enum PericlesError {
         /// What stands in the way.
         cause: &'static str,
     },
+    /// A step was asked to stop.
+    #[error("the step was interrupted")]
+    Interrupted,
     /// A load step without an equilibrium.
-    #[error(
-        "at t = {t:e} s no equilibrium was found: after {iterations} iterations the forces that are out of balance are {residual:e} of those that act, \
-         {tolerance:e} was asked for; usual causes: a part without support, a load beyond what the body bears, too few iterations"
-    )]
+    #[error("{}", no_equilibrium(*t, *iterations, *residual, *tolerance))]
     NoEquilibrium {
         /// Time of the load step, s.
         t: f64,
@@ -439,5 +438,16 @@ pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64> {
         Ok(value)
     } else {
         Err(PericlesError::NotPositive { quantity, value })
+    }
+}
+fn no_equilibrium(t: f64, iterations: u32, residual: f64, tolerance: f64) -> String {
+    if residual.is_finite() {
+        format!(
+            "at t = {t:.4e} s the forces out of balance are {residual:.3e} of those that act after {iterations} iterations; the tolerance is {tolerance:.1e}"
+        )
+    } else {
+        format!(
+            "at t = {t:.4e} s the forces grow without bound after {iterations} iterations, as where a body becomes much stiffer within a load step"
+        )
     }
 }

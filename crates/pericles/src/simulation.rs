@@ -4,7 +4,9 @@ use crate::archive::{Archive, Saved};
 use crate::boundary::absorbing::AbsorbingError;
 use crate::error::PericlesError;
 use crate::guard::{Alarm, Cause, Watched};
+use crate::interrupt::Interrupt;
 use crate::observe::{ObserveError, Observer, Schedule, Snapshot, StartEnergy};
+use crate::stop::{StopReason, StopWhen};
 use crate::system::System;
 use crate::time::{Integrator, State};
 
@@ -68,12 +70,54 @@ pub enum SimulationError {
         /// Its speed, m/s.
         speed: f64,
     },
+    /// A load step has no static state, or none was found.
+    #[error(
+        "no static state was found for the load step that follows step {step}, t = {t:.4e} s: {source}. The largest force out of balance acts on point {point} at ({}, {}, {}) m; \
+         {}. {}",
+        short(place[0]), short(place[1]), short(place[2]), broke(*broken), no_state_advice(*broken)
+    )]
+    NoStaticState {
+        /// Load steps that were completed.
+        step: u64,
+        /// Time of the last static state, s.
+        t: f64,
+        /// Why.
+        source: Box<PericlesError>,
+        /// The point with the largest force out of balance, in the user's numbering.
+        point: usize,
+        /// Its reference position, m.
+        place: [f64; 3],
+        /// Bonds that broke in the load step.
+        broken: u64,
+    },
     /// The parts of the run do not fit together.
     #[error(transparent)]
     Misfit(#[from] PericlesError),
     /// An observer failed, usually because it could not write.
     #[error("{0}")]
     Observe(#[source] ObserveError),
+}
+
+/// Four digits are enough to find a place.
+fn short(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+fn broke(bonds: u64) -> String {
+    match bonds {
+        0 => "no bond broke in this load step".into(),
+        1 => "1 bond broke in this load step".into(),
+        _ => format!("{bonds} bonds broke in this load step"),
+    }
+}
+
+fn no_state_advice(broken: u64) -> &'static str {
+    if broken > 0 {
+        "The body can probably not bear this load any more. A stop condition (reaction_below or damage_above) ends such a run in time; a prescribed displacement in place of a \
+         load follows the failure; more load steps or iterations help where it only converges slowly"
+    } else {
+        "Usual causes: a part of the body that no support holds, a load beyond buckling, too few iterations, or load steps so large that the body becomes much stiffer within one"
+    }
 }
 
 /// An observer with its schedule.
@@ -90,6 +134,8 @@ pub struct Simulation {
     dt: f64,
     steps: u64,
     observers: Vec<Scheduled>,
+    stops: Vec<StopWhen>,
+    stopped: Option<StopReason>,
     start: StartEnergy,
 }
 
@@ -114,6 +160,8 @@ impl Simulation {
             dt,
             steps,
             observers: Vec::new(),
+            stops: Vec::new(),
+            stopped: None,
             start,
         }
     }
@@ -121,6 +169,16 @@ impl Simulation {
     /// Adds an observer.
     pub fn observe(&mut self, schedule: Schedule, observer: Box<dyn Observer>) {
         self.observers.push(Scheduled { schedule, observer });
+    }
+
+    /// Adds a condition that ends the run before its last step.
+    pub fn stop_when(&mut self, condition: StopWhen) {
+        self.stops.push(condition);
+    }
+
+    /// The condition that ended the run, if one did.
+    pub fn stop_reason(&self) -> Option<&StopReason> {
+        self.stopped.as_ref()
     }
 
     /// The equation of motion.
@@ -164,28 +222,47 @@ impl Simulation {
 
     /// Runs to the end, or until `control` says stop; `control` is asked after every step.
     ///
-    /// Observers see the initial state of a fresh run, every state their schedule names, and the last; then they hear that the run has come to its end.
+    /// Observers see the initial state of a fresh run, every state their schedule names, and the last; then they hear that the run has come to its end. A run that one
+    /// of its [conditions](Simulation::stop_when) ends has finished as well: its last state is that in which the condition was met.
     ///
     /// # Errors
     /// Instability, a failing integrator, a failing observer. The state is then the one at which it happened.
     pub fn run(
         &mut self,
+        control: impl FnMut(&Self) -> Control,
+    ) -> Result<Outcome, SimulationError> {
+        self.run_interruptible(Interrupt::never(), control)
+    }
+
+    /// The same; schemes that iterate also poll `interrupt` within a step, which may take much longer than a step of an explicit scheme. A step that is interrupted is
+    /// undone: the run is then stopped at the last complete step, and a run that is continued from there takes the same path, bit for bit.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn run_interruptible(
+        &mut self,
+        interrupt: Interrupt<'_>,
         mut control: impl FnMut(&Self) -> Control,
     ) -> Result<Outcome, SimulationError> {
         self.check_boundaries()?;
         if self.state.step == 0 {
-            self.show()?;
+            self.show(false)?;
         }
         while self.state.step < self.steps {
             // From the step's number, not by adding up, so that time carries no error.
             let t_next = (self.state.step + 1) as f64 * self.dt;
-            let stepped = self
-                .integrator
-                .step(&mut self.system, &mut self.state, t_next);
-            stepped.map_err(|source| self.stuck(source))?;
-            let last = self.state.step == self.steps;
+            let broken = self.system.operator().broken_bonds();
+            match self.step(t_next, interrupt) {
+                Err(PericlesError::Interrupted) => return Ok(Outcome::Stopped),
+                stepped => stepped.map_err(|source| self.stuck(source, broken))?,
+            }
+            self.stopped = self.met();
+            let last = self.state.step == self.steps || self.stopped.is_some();
             self.guard(last)?;
-            self.show()?;
+            self.show(last)?;
+            if self.stopped.is_some() {
+                break;
+            }
             if !last && control(self) == Control::Stop {
                 return Ok(Outcome::Stopped);
             }
@@ -195,6 +272,41 @@ impl Simulation {
             finished.map_err(SimulationError::Observe)?;
         }
         Ok(Outcome::Finished)
+    }
+
+    /// One step; one that is interrupted is undone.
+    fn step(&mut self, t_next: f64, interrupt: Interrupt<'_>) -> Result<(), PericlesError> {
+        let evaluated = self.system.evaluated_points();
+        let copied = interrupt.is_possible() && self.integrator.changes_within_step();
+        let copy = copied.then(|| {
+            let mut archive = Archive::default();
+            self.save_motion(&mut archive);
+            archive
+        });
+        let stepped = self
+            .integrator
+            .step(&mut self.system, &mut self.state, t_next, interrupt);
+        if matches!(stepped, Err(PericlesError::Interrupted)) {
+            self.system.set_evaluated_points(evaluated);
+            if let Some(copy) = copy {
+                self.restore_motion(&copy)?;
+            }
+        }
+        stepped
+    }
+
+    /// What steps change.
+    fn save_motion(&self, archive: &mut Archive) {
+        self.state.save(archive);
+        self.system.save(archive);
+        self.integrator.save(archive);
+    }
+
+    fn restore_motion(&mut self, archive: &Archive) -> Result<(), PericlesError> {
+        self.state.restore(archive)?;
+        self.check_time()?;
+        self.system.restore(archive)?;
+        self.integrator.restore(archive)
     }
 
     /// Waits until the observers have kept what they have seen; a state saved before may know of outputs that are not there.
@@ -230,8 +342,25 @@ impl Simulation {
         Ok(())
     }
 
-    fn show(&mut self) -> Result<(), SimulationError> {
-        let (step, dt, steps) = (self.state.step, self.dt, self.steps);
+    /// The first condition that the present state meets; all of them look at it.
+    fn met(&mut self) -> Option<StopReason> {
+        let mut met = None;
+        for stop in &mut self.stops {
+            let found = stop.look(&self.system);
+            met = met.or(found.map(|found| StopReason {
+                set: stop.set.clone(),
+                step: self.state.step,
+                t: self.state.t,
+                found,
+            }));
+        }
+        met
+    }
+
+    /// Shows the present state to the observers that are due; the last one to all that are ever due.
+    fn show(&mut self, last: bool) -> Result<(), SimulationError> {
+        let (step, dt) = (self.state.step, self.dt);
+        let steps = if last { step } else { self.steps };
         let due = |s: &Scheduled| s.schedule.is_due(step, dt, steps);
         if !self.observers.iter().any(due) {
             return Ok(());
@@ -287,7 +416,10 @@ impl Simulation {
             })
     }
 
-    fn stuck(&self, source: PericlesError) -> SimulationError {
+    fn stuck(&self, source: PericlesError, broken: u64) -> SimulationError {
+        if self.integrator.is_static() {
+            return self.no_static_state(source, broken);
+        }
         let watched = self.watched();
         let point = watched.fastest();
         SimulationError::Stuck {
@@ -301,21 +433,44 @@ impl Simulation {
     }
 }
 
+impl Simulation {
+    /// Of a load step before which `broken` bonds had broken.
+    fn no_static_state(&self, source: PericlesError, broken: u64) -> SimulationError {
+        let (system, state) = (&self.system, &self.state);
+        let (cloud, n) = (system.cloud(), system.points());
+        // Loads are those that the step goes to.
+        let t_next = (state.step + 1) as f64 * self.dt;
+        let mut force = vec![0.0; state.u.len()];
+        system.force_density_into(t_next, &state.u, &mut force);
+        system.hold_at(t_next, &mut force);
+        let size = |i: usize| -> f64 {
+            let components = (0..system.dimension()).map(|c| force[c * n + i]);
+            components.map(|f| f * f).sum::<f64>().sqrt() * cloud.volumes()[i]
+        };
+        let worst = (0..n).fold(0, |best, i| if size(i) > size(best) { i } else { best });
+        SimulationError::NoStaticState {
+            step: state.step,
+            t: state.t,
+            source: source.into(),
+            point: cloud.user_number(worst),
+            place: cloud.point(worst),
+            broken: system.operator().broken_bonds().saturating_sub(broken),
+        }
+    }
+}
+
 impl Saved for Simulation {
     fn save(&self, archive: &mut Archive) {
-        self.state.save(archive);
-        self.system.save(archive);
-        self.integrator.save(archive);
+        self.save_motion(archive);
+        self.stops.save(archive);
         for scheduled in &self.observers {
             scheduled.observer.save(archive);
         }
     }
 
     fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
-        self.state.restore(archive)?;
-        self.check_time()?;
-        self.system.restore(archive)?;
-        self.integrator.restore(archive)?;
+        self.restore_motion(archive)?;
+        self.stops.restore(archive)?;
         for scheduled in &mut self.observers {
             scheduled.observer.restore(archive)?;
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::accounts::{Completed, Ledger, Path};
+use crate::accounts::{Completed, Ledger, LoadStep, Path};
 use crate::archive::{Archive, Counter, Saved, Values};
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
@@ -149,6 +149,11 @@ impl System {
     /// Points whose force has been evaluated so far: an evaluation of the whole body counts as many as it has points.
     pub fn evaluated_points(&self) -> u64 {
         self.evaluated.get()
+    }
+
+    /// Sets the count of a step that was undone back.
+    pub(crate) fn set_evaluated_points(&mut self, points: u64) {
+        self.evaluated = points.into();
     }
 
     /// Whether there are boundaries with a state of their own.
@@ -401,15 +406,35 @@ impl System {
         }
     }
 
-    /// Books the way from one equilibrium to another, u = [before, after], that ended at time t and took dt: loads and supports act as the mean of both ends, without
+    /// Books the way from one equilibrium to another that ended at time t and took dt: loads and supports act as the mean of both ends, without
     /// inertia. With dt = 0 they do not change on the way. `work` is for accelerations.
-    pub fn book_equilibrium(&mut self, t: f64, dt: f64, u: [&[f64]; 2], work: &mut [f64]) {
-        self.free_acceleration(t, u[1], &On::All, work);
+    pub(crate) fn book_equilibrium(
+        &mut self,
+        t: f64,
+        dt: f64,
+        load_step: LoadStep<'_>,
+        work: &mut [f64],
+    ) {
+        self.free_acceleration(t, load_step.u[1], &On::All, work);
         let n = self.points();
         for motion in &self.motions {
             motion.add_acceleration(t, n, work);
         }
-        self.book(Path::Chord(u), t, dt, work);
+        self.book(Path::Chord(load_step), t, dt, work);
+    }
+
+    /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet. `work` is for accelerations.
+    pub(crate) fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
+        self.zero(&On::All, work);
+        self.count(&On::All);
+        self.operator.add_force(t, u, On::All, work);
+        self.divide_by_density(&On::All, work);
+        let n = self.points();
+        let density = |i: usize| self.density.at(i);
+        for motion in &mut self.motions {
+            motion.add_acceleration(t, n, work);
+            motion.account(t, 0.0, n, work, None, &density, self.cloud.volumes());
+        }
     }
 
     /// Kinetic energy, J.
@@ -463,7 +488,11 @@ impl System {
         }
         let density = |i: usize| self.density.at(i);
         for motion in &mut self.motions {
-            let (work, impulse) = motion.account(t, dt, n, acceleration, &density, volumes);
+            let chord = match &path {
+                Path::Chord(load_step) => Some(load_step.u),
+                _ => None,
+            };
+            let (work, impulse) = motion.account(t, dt, n, acceleration, chord, &density, volumes);
             self.ledger.book(work, impulse);
         }
     }

@@ -665,3 +665,53 @@ fn the_fastest_form_is_the_grid_where_there_is_one() {
     let scattered = Arc::new(scattered);
     assert_eq!(form(&scattered, BondForm::Fastest).form, BondForm::List);
 }
+
+/// The bonds that a stencil shows one by one are those whose forces it sums.
+#[test]
+fn single_bonds_add_up_to_the_force() {
+    for holes in [false, true] {
+        let cloud = body(&[13.0, 7.0], holes);
+        let material = material(
+            Influence::default(),
+            VolumeCorrection::Extended,
+            Fracture::Unbreakable,
+        );
+        let constants = material
+            .constants(&cloud, StressState::PlaneStress)
+            .unwrap();
+        let crack = Crack::Segment {
+            from: [0.3, -0.065],
+            to: [0.36, -0.065],
+        };
+        let operator = GridForce::<BondStretch, 2>::new(
+            cloud.clone(),
+            &material,
+            &constants,
+            &[(crack, EndRule::Closed)],
+            &[],
+            DamageMeasure::default(),
+        )
+        .unwrap();
+        let n = cloud.len();
+        let u: Vec<f64> = (0..2 * n).map(|k| 1e-5 * (k as f64 * 0.73).sin()).collect();
+        let mut force = vec![0.0; 2 * n];
+        operator.add_force(0.0, &u, On::All, &mut force);
+        let scale = force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
+        let (bonds, mut count) = (operator.as_bonds().unwrap(), 0);
+        for i in 0..n {
+            let mut sum = [0.0; 3];
+            bonds.for_each_bond(&u, i, &mut |bond| {
+                count += 1;
+                for c in 0..2 {
+                    let xi = cloud.point(bond.neighbour)[c] - cloud.point(i)[c];
+                    assert!((bond.xi[c] - xi).abs() < 1e-12);
+                    sum[c] += bond.force[c];
+                }
+            });
+            for c in 0..2 {
+                assert!((sum[c] - force[c * n + i]).abs() < 1e-9 * scale, "{i}");
+            }
+        }
+        assert_eq!(count, operator.directed_bonds());
+    }
+}

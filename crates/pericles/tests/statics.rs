@@ -13,8 +13,11 @@ use pericles::material::{
 };
 use pericles::operator::{BondBody, BondForm, CompositeBody, DamageMeasure, ForceOperator, On};
 use pericles::space::PointCloud;
-use pericles::time::{Damping, Relaxation, RelaxationOptions, State};
-use pericles::{Control, PericlesError, PointScalar, Simulation, SimulationError, System};
+use pericles::time::{Damping, Relaxation, RelaxationOptions, State, VelocityVerlet};
+use pericles::{
+    Control, Found, Outcome, PericlesError, PointScalar, Simulation, SimulationError,
+    StopCondition, StopWhen, System,
+};
 
 const CELLS: usize = 100;
 const DX: f64 = 0.01;
@@ -195,7 +198,7 @@ fn a_load_without_support_has_no_equilibrium() {
         ..fine()
     };
     match relaxed(system, options, 1) {
-        Err(SimulationError::Stuck { source, .. }) => {
+        Err(SimulationError::NoStaticState { source, .. }) => {
             let found = matches!(
                 *source,
                 PericlesError::NoEquilibrium {
@@ -397,8 +400,15 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
     }
 }
 
+/// On lists and on stencils.
 #[test]
 fn stress_and_strain_of_a_uniform_state() {
+    for form in [BondForm::List, BondForm::Grid] {
+        uniform_state(form);
+    }
+}
+
+fn uniform_state(form: BondForm) {
     use pericles::observe::{Field, Snapshot, StartEnergy};
     let cloud = boxed([0.0; 3], &[0.16, 0.12], DX, 0.01);
     let mut steel = steel(Fracture::Unbreakable);
@@ -413,7 +423,7 @@ fn stress_and_strain_of_a_uniform_state() {
         stiffness: &[],
         damage: DamageMeasure::default(),
     };
-    let operator = body.operator(BondForm::List).unwrap().operator;
+    let operator = body.operator(form).unwrap().operator;
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
     let n = cloud.len();
     let mut state = State::at_rest(2 * n);
@@ -426,6 +436,7 @@ fn stress_and_strain_of_a_uniform_state() {
     }
     let snapshot = Snapshot::new(&system, &state, StartEnergy::default(), 0.0);
     let (stress, strain) = (snapshot.field(Field::Stress), snapshot.field(Field::Strain));
+    snapshot.check(Field::Stress).unwrap();
     // Strain everywhere, stress where no bond is missing: E/(1 - nu) strain.
     let exact = YOUNG / (2.0 / 3.0) * stretch;
     for i in 0..n {
@@ -439,4 +450,141 @@ fn stress_and_strain_of_a_uniform_state() {
             }
         }
     }
+}
+
+/// A bar whose right third is softer and breaks, pulled apart in so many load steps.
+fn torn_bar() -> System {
+    let cloud = bar();
+    let brittle = steel(Fracture::CriticalStretch(1e-3));
+    let soft = BondMaterial {
+        modulus: Modulus {
+            value: ElasticModulus::Young(0.5 * YOUNG),
+            ..brittle.modulus
+        },
+        ..brittle.clone()
+    };
+    let of_point = (0..cloud.len())
+        .map(|i| u8::from(cloud.point(i)[0] > 0.66))
+        .collect();
+    let both = [constants(&brittle, &cloud), constants(&soft, &cloud)];
+    let classes = PairClasses::new(of_point, &both, InterfaceRule::Harmonic).unwrap();
+    let force = operator(&cloud, &brittle, Some(&classes), SurfaceCorrection::None);
+    held(&cloud, force, &Pull::Move(2e-3))
+}
+
+#[test]
+fn stop_conditions_end_static_and_dynamic_runs() {
+    const STEPS: u64 = 24;
+    let all = (0..bar().len() as u32).collect();
+    let conditions = [
+        StopCondition::ReactionBelow {
+            share: 0.02,
+            motions: vec![1],
+        },
+        StopCondition::DamageAbove {
+            damage: 0.4,
+            points: all,
+        },
+    ];
+    for condition in conditions {
+        let system = torn_bar();
+        let scheme = Relaxation::new(fine(), &system).unwrap();
+        let state = State::at_rest(system.points());
+        let dt = 1.0 / STEPS as f64;
+        let mut run = Simulation::new(system, Box::new(scheme), state, dt, STEPS);
+        run.stop_when(StopWhen::new("right".into(), condition.clone()));
+        let mut states = 0;
+        let ended = run.run(|_| {
+            states += 1;
+            Control::Continue
+        });
+        assert_eq!(ended.unwrap(), Outcome::Finished);
+        let reason = run.stop_reason().expect("a condition is met");
+        assert_eq!((reason.step, reason.t), (run.state().step, run.state().t));
+        assert!(run.state().step < STEPS && run.state().step == states + 1);
+        // The bar has just torn, and in no load step before.
+        assert!(run.system().operator().broken_bonds() > 0, "{reason}");
+        match (&condition, reason.found) {
+            (StopCondition::ReactionBelow { .. }, Found::Reaction { now, peak }) => {
+                assert!(now < 0.02 * peak, "{reason}");
+                // No more than the soft part bears; bonds of the held layer are stretched more than the mean and break earlier.
+                let strength = 1e-3 * 0.5 * YOUNG * AREA;
+                assert!(peak > 0.5 * strength && peak < strength, "{peak}");
+            }
+            (StopCondition::DamageAbove { .. }, Found::Damage { damage, .. }) => {
+                assert!(damage > 0.4, "{reason}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    // Pulled apart within some wave transits.
+    let system = torn_bar();
+    let n = system.points();
+    let dt = 1e-6;
+    let mut state = State::at_rest(n);
+    for i in 0..n {
+        state.v[i] = 20.0 * system.cloud().point(i)[0].max(0.0);
+    }
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, dt, 2000);
+    run.stop_when(StopWhen::new(
+        "all".into(),
+        StopCondition::DamageAbove {
+            damage: 0.3,
+            points: (0..n as u32).collect(),
+        },
+    ));
+    assert_eq!(run.run(|_| Control::Continue).unwrap(), Outcome::Finished);
+    assert!(run.stop_reason().is_some() && run.state().step < 2000);
+}
+
+#[test]
+fn a_body_that_fails_under_its_load_is_said_to_have_no_static_state() {
+    // A dead load beyond the strength: once the bar is torn nothing holds its end.
+    let cloud = bar();
+    let brittle = steel(Fracture::CriticalStretch(0.5 * FORCE / (YOUNG * AREA)));
+    let force = operator(&cloud, &brittle, None, SurfaceCorrection::None);
+    let system = held(&cloud, force, &Pull::Force);
+    let options = RelaxationOptions {
+        iterations: 2000,
+        ..fine()
+    };
+    let error = relaxed(system, options, 4).err().expect("no static state");
+    let message = error.to_string();
+    for part in [
+        "no static state was found for the load step that follows step",
+        "bonds broke in this load step",
+        "can probably not bear this load any more",
+        "reaction_below or damage_above",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(!message.contains("m/s"), "{message}");
+}
+
+#[test]
+fn stress_of_a_body_without_single_bonds_is_refused() {
+    use pericles::observe::{Field, Snapshot, StartEnergy};
+    let cloud = boxed([0.0; 3], &[0.16, 0.12], DX, 0.01);
+    let mut steel = steel(Fracture::Unbreakable);
+    steel.law = pericles::material::PairLaw::Linear;
+    let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
+    let body = BondBody {
+        cloud: &cloud,
+        material: &steel,
+        constants: &constants,
+        cracks: &[],
+        no_fail: &[],
+        stiffness: &[],
+        damage: DamageMeasure::default(),
+    };
+    let operator = body.operator(BondForm::Convolution).unwrap().operator;
+    let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
+    let state = State::at_rest(2 * cloud.len());
+    let snapshot = Snapshot::new(&system, &state, StartEnergy::default(), 0.0);
+    let refused = snapshot.check(Field::Stress).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("Stress is a sum over single bonds"),
+        "{refused}"
+    );
+    snapshot.check(Field::Velocity).unwrap();
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use pericles::PericlesError;
+use pericles::analysis::PhaseErrors;
 use pericles::analysis::tuning::{
     Combination, Method, ScalingModel, TunedTable, Tuning, Weights, continuum_speeds,
 };
@@ -505,4 +506,76 @@ fn tables_are_made_quickly() {
     assert!(stability(&three.lattice(&[1.0; 9])).is_stable());
     // The goals are 1 s and 10 s on a free machine.
     assert!(plate < 4.0 && space < 40.0, "{plate} {space}");
+}
+
+/// The decay that decks take by default against equal weights and against a constant influence function: fewer spacings per wavelength for an error of 1 %, and
+/// smaller errors down to four spacings.
+#[test]
+fn the_default_decay_improves_on_a_constant_kernel() {
+    for (state, n, least) in [
+        (StressState::Uniaxial, 2.0, 3.9),
+        (StressState::Uniaxial, 3.0, 3.1),
+        (StressState::Uniaxial, 5.0, 2.6),
+        (StressState::PlaneStress, 2.0, 14.0),
+        (StressState::PlaneStrain, 3.0, 6.0),
+        (StressState::PlaneStrain, 4.0, 3.7),
+        (StressState::PlaneStrain, 5.0, 16.0),
+        (StressState::Spatial, 3.0, 16.0),
+    ] {
+        let model = ScalingModel::new(state, n, VolumeCorrection::None).unwrap();
+        let quality = |alpha: &[f64]| {
+            let lattice = model.lattice(alpha);
+            let errors = PhaseErrors::new(&lattice);
+            let spacings = std::f64::consts::TAU / errors.resolved(0.01).wavenumber;
+            (spacings, errors.largest(0.5 * std::f64::consts::PI))
+        };
+        let decayed = Tuning {
+            weights: Weights {
+                decay: Some(Weights::DECAY),
+                ..Default::default()
+            },
+            ..Default::default()
+        };
+        let (tuned, equal) = (
+            model.tune_stable(decayed).unwrap(),
+            model.tune(Tuning::default()).unwrap(),
+        );
+        assert!(tuned.assessment.stability.is_stable());
+        let constant = quality(&vec![1.0; model.classes().len()]);
+        let (tuned, equal) = (quality(&tuned.alpha), quality(&equal.alpha));
+        eprintln!("{state:?} {n}: tuned {tuned:?}, equal weights {equal:?}, constant {constant:?}");
+        assert!(tuned.0 < constant.0 && tuned.0 < equal.0 && tuned.0 < least);
+        assert!(tuned.1 < constant.1 && tuned.1 < equal.1);
+    }
+}
+
+/// The functionals that are reported are those that were made small.
+#[test]
+fn residual_functionals() {
+    let model = ScalingModel::new(StressState::Uniaxial, 3.0, VolumeCorrection::None).unwrap();
+    let with = |method| {
+        model
+            .tune(Tuning {
+                method,
+                ..Default::default()
+            })
+            .unwrap()
+    };
+    // As many functionals as unknowns left: all are zero.
+    for method in [
+        Method::PointCollocation,
+        Method::Subdomain,
+        Method::Galerkin,
+    ] {
+        let table = with(method);
+        assert_eq!(table.functionals.len(), 2);
+        assert!(table.functionals.iter().flatten().all(|f| f.abs() < 1e-10));
+    }
+    let squares = with(Method::LeastSquares);
+    let norm = squares.functionals[0][0];
+    assert!((norm / squares.assessment.error.square - 1.0).abs() < 1e-6);
+    let absolute = with(Method::Absolute);
+    let sum = absolute.functionals[0][0];
+    assert!((sum / absolute.assessment.error.absolute - 1.0).abs() < 1e-3);
+    assert!(squares.functionals[0][0] > 0.0 && absolute.assessment.error.absolute > 0.0);
 }

@@ -19,7 +19,7 @@ use pericles::time::{
     FunctionMethod, Implicit, ImplicitRule, Integrator, LinearSolver, LoadRule, State,
     Trigonometric, TrigonometricOptions, VelocityVerlet,
 };
-use pericles::{PointScalar, Saved, System};
+use pericles::{Interrupt, PointScalar, Saved, System};
 
 const UNIT_LINE: LineSolution = LineSolution {
     young: 1.0,
@@ -146,7 +146,9 @@ fn steps(
 ) -> State {
     scheme.start(system, &mut state);
     for k in 1..=count {
-        scheme.step(system, &mut state, k as f64 * dt).unwrap();
+        scheme
+            .step(system, &mut state, k as f64 * dt, Interrupt::never())
+            .unwrap();
     }
     state
 }
@@ -761,7 +763,7 @@ fn a_run_by_a_factor_goes_on_where_it_stopped() {
     let march = |body: &mut System, scheme: &mut Implicit, state: &mut State, to: u64| {
         while state.step < to {
             let t = (state.step + 1) as f64 * dt;
-            scheme.step(body, state, t).unwrap();
+            scheme.step(body, state, t, Interrupt::never()).unwrap();
         }
     };
     let scheme = |body: &System| {

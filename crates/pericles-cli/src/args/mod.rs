@@ -7,15 +7,16 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use pericles::family::geodesic::GeodesicMethod;
+use pericles::operator::InstructionSet;
 
 use crate::exit::Exit;
 use crate::plot::Frames;
 use crate::sweep::Axis;
 
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
-pub(crate) use values::{Direction, Format, Length, Range};
+pub(crate) use values::{Direction, Format, Length, Pair, Range};
 
-use values::{direction, length, range, ratio, tolerance};
+use values::{direction, instruction_set, length, pair, range, ratio, tolerance};
 
 const ABOUT: &str = "Peridynamics from a deck: bonds, waves, cracks";
 
@@ -48,6 +49,9 @@ Examples:
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Use no vector instructions beyond a set, for tests and comparisons: baseline, avx2 or avx512 [default: the best of this machine]
+    #[arg(long, value_name = "SET", global = true, hide_short_help = true, value_parser = instruction_set)]
+    pub(crate) instruction_set: Option<InstructionSet>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -98,6 +102,7 @@ Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the f
   curves.csv, .png  ω(k) with phase and group velocity, the time-discrete curve, the continuum
   polar.csv, .png   speed of long waves by direction
   classes.csv       α of every class of bonds
+  wavevectors.csv   frequencies at the wave vectors of --wavevector
   spectrum_*, peaks what --measure found")]
     Dispersion(DispersionArgs),
     /// Compare ways to find distances along a surface
@@ -175,7 +180,7 @@ pub(crate) struct RunArgs {
     /// Folder for the results; must not exist
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Let --out replace the results of an earlier run; other files in the folder stay
+    /// Let --out replace the results of an earlier run: the files that it put on record; other files in the folder stay
     #[arg(long, requires = "out")]
     pub(crate) force: bool,
     #[command(flatten)]
@@ -195,6 +200,9 @@ pub(crate) struct RunArgs {
 pub(crate) struct CheckArgs {
     /// The deck, a TOML file
     pub(crate) deck: PathBuf,
+    /// Write all numbers as JSON, in SI units, to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]
@@ -212,6 +220,9 @@ pub(crate) struct DispersionArgs {
     /// Follow waves along this direction instead of the border of the irreducible zone, such as 2,1 or 1,1,0
     #[arg(long, value_name = "X,Y,Z", value_parser = direction)]
     pub(crate) direction: Option<Direction>,
+    /// Report the frequencies at this wave vector, rad/m, such as 1000,0; may be given several times
+    #[arg(long, value_name = "KX,KY,KZ", value_parser = direction, allow_hyphen_values = true)]
+    pub(crate) wavevector: Vec<Direction>,
     /// Also measure the spectrum in a time-domain run of a periodic box
     #[arg(long, conflicts_with = "direction")]
     pub(crate) measure: bool,
@@ -239,6 +250,9 @@ pub(crate) struct GeodesicsArgs {
         default_value = "exact,edge,edge-diagonals,steiner(2),steiner(3)"
     )]
     pub(crate) methods: Vec<GeodesicMethod>,
+    /// Also report the distance between two vertices, numbered from 0 as in the file, such as 0,41; may be given several times
+    #[arg(long, value_name = "I,J", value_parser = pair)]
+    pub(crate) between: Vec<Pair>,
     /// Allow edges with one triangle
     #[arg(long)]
     pub(crate) open: bool,

@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use pericles_io::DiskCache;
 
-use super::values::wall_time;
+use super::values::{threads, wall_time};
 use crate::machine;
 use crate::prepare::Means;
 
@@ -83,7 +83,7 @@ pub(crate) struct Memory {
 impl Memory {
     /// Bytes that a run may take; without a limit from the user those that are free, where the system tells.
     pub(crate) fn bytes(&self) -> u64 {
-        self.most.or_else(machine::free_memory).unwrap_or(u64::MAX)
+        self.most.unwrap_or_else(machine::memory)
     }
 }
 
@@ -101,7 +101,7 @@ pub(crate) struct Execution {
 #[derive(Debug, Args)]
 pub(crate) struct Threads {
     /// Threads [default: one per core]; results do not depend on it
-    #[arg(long = "threads", value_name = "N")]
+    #[arg(long = "threads", value_name = "N", value_parser = threads)]
     count: Option<NonZeroUsize>,
 }
 

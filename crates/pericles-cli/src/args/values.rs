@@ -1,30 +1,98 @@
 //! Values of options.
 
+use std::num::NonZeroUsize;
 use std::time::Duration;
 
 use clap::ValueEnum;
+use pericles::operator::InstructionSet;
 
-/// A direction; missing components are zero.
+use crate::error::CliError;
+
+/// A vector other than zero; missing components are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Direction(pub(crate) [f64; 3]);
+pub(crate) struct Direction {
+    vector: [f64; 3],
+    /// Components given.
+    given: usize,
+}
+
+impl Direction {
+    /// The vector, missing components zero.
+    pub(crate) fn vector(self) -> [f64; 3] {
+        self.vector
+    }
+
+    /// The vector, for a body of so many dimensions.
+    ///
+    /// # Errors
+    /// More components than the body has; `option` is what they were given to.
+    pub(crate) fn of(self, dimension: usize, option: &'static str) -> Result<[f64; 3], CliError> {
+        if self.given <= dimension {
+            return Ok(self.vector);
+        }
+        Err(CliError::Components {
+            option,
+            given: self.given,
+            dimension,
+        })
+    }
+}
 
 /// One to three numbers, such as `2,1` or `1,1,0`.
 pub(super) fn direction(text: &str) -> Result<Direction, String> {
-    let mut vector = [0.0; 3];
+    let mut vector = [0.0_f64; 3];
     let numbers: Vec<&str> = text.split(',').collect();
     let allowed = "one to three numbers with commas between them, not all zero";
-    if numbers.len() > 3 {
+    let given = numbers.len();
+    if given > 3 {
         return Err(allowed.into());
     }
     for (component, number) in vector.iter_mut().zip(numbers) {
         *component = number.trim().parse().map_err(|_| allowed.to_owned())?;
     }
+    let largest = vector.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let length: f64 = vector.iter().map(|x| x * x).sum();
-    if length > 0.0 && length.is_finite() {
-        Ok(Direction(vector))
+    if vector.iter().all(|x| x.is_finite()) && largest > 0.0 {
+        if length == 0.0 || !length.is_finite() {
+            // The direction is right, its square is not.
+            vector = vector.map(|x| x / largest);
+        }
+        Ok(Direction { vector, given })
     } else {
         Err(allowed.into())
     }
+}
+
+/// An instruction set by its name.
+pub(super) fn instruction_set(name: &str) -> Result<InstructionSet, String> {
+    InstructionSet::named(name).ok_or_else(|| "allowed: baseline, avx2, avx512".to_owned())
+}
+
+/// Two numbers of vertices.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pair(pub(crate) [usize; 2]);
+
+/// Reads two numbers of vertices.
+pub(super) fn pair(text: &str) -> Result<Pair, String> {
+    let numbers = text
+        .split_once(',')
+        .and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+    numbers
+        .map(Pair)
+        .ok_or_else(|| "two numbers of vertices with a comma between them, such as 0,41".to_owned())
+}
+
+/// Reads a number of threads.
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    /// More than one for each core make a run slower, and thousands take minutes to start.
+    const PER_CORE: usize = 4;
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let most = (PER_CORE * cores).max(64);
+    let number = text
+        .parse()
+        .ok()
+        .filter(|number: &NonZeroUsize| number.get() <= most);
+    number.ok_or_else(|| format!("a whole number from 1 to {most}; this machine has {cores} cores"))
 }
 
 /// Kinds of picture files.

@@ -2,12 +2,12 @@
 
 pub(crate) mod curves;
 pub(crate) mod spectrum;
+mod wavevectors;
 
 use pericles::analysis::spectrum::{SpectrumRun, measure};
-use pericles::analysis::tuning::{ScalingModel, continuum_speeds};
+use pericles::analysis::tuning::{TunedTable, bond_classes, continuum_speeds};
 use pericles::analysis::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
-use pericles::material::StressState;
-use pericles_deck::{Deck, Model};
+use pericles_deck::{Deck, KernelQuality, Model, PlaneWaves};
 use pericles_io::{OutputFolder, write_atomically};
 use serde_json::{Value as Json, json};
 
@@ -16,22 +16,33 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::given;
+use crate::prepare;
 use crate::run;
 use crate::units::{percent, quantity, significant};
 use curves::{Curves, STEPS, write_bonds, write_classes, write_polar};
 use spectrum::write_spectrum;
+use wavevectors::AtWaveVector;
 
 /// Analyses the lattice of a deck and writes curves, polar plot, classes and a summary.
 ///
 /// # Errors
-/// A deck that is refused, output that cannot be written, a spectrum of an unstable lattice.
+/// A deck that is refused, a direction with more components than the body has dimensions, output that cannot be written, a spectrum of an unstable lattice.
 pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let model = deck.build()?;
+    let model = deck.build_with(prepare::readers())?;
     let lattice = deck.bond_lattice(&model)?;
-    let folder = run::output_folder(args.out.as_deref(), false, &args.deck, "-dispersion")?;
-    let study = Analysis::of(&deck, &model, lattice, args);
+    let study = Analysis::of(&deck, &model, lattice, args)?;
+    if args.measure && !study.stability.is_stable() {
+        return Err(CliError::UnstableSpectrum);
+    }
+    let folder = run::output_folder(args.out.as_deref(), None, &args.deck, "-dispersion")?;
+    let left_out = left_out(&deck);
+    for part in &left_out {
+        console::note(format_args!(
+            "warning: plane waves are those of [material] in the interior of the body: {part}"
+        ));
+    }
     let title = deck.title.clone().unwrap_or_default();
     let curves = study.curves();
     curves.write(&folder.file("curves.csv"))?;
@@ -46,11 +57,17 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
         )?;
     }
     study.write_classes(&deck, &folder)?;
+    if !study.wavevectors.is_empty() {
+        wavevectors::write(&folder.file("wavevectors.csv"), &study.wavevectors)?;
+    }
     let measured = match args.measure {
         false => Json::Null,
         true => study.measure(&folder, &title)?,
     };
-    let summary = study.summary(&deck, &measured);
+    let mut summary = study.summary(&deck, &measured);
+    summary["left_out"] = json!(left_out);
+    summary["tuning"] = deck.material.tuned.as_ref().map_or(Json::Null, tuning);
+    summary["plane_waves"] = deck.plane_waves(&model).map_or(Json::Null, plane_waves);
     let text = serde_json::to_string_pretty(&summary)?;
     write_atomically(&folder.file("dispersion.json"), |file| {
         use std::io::Write;
@@ -58,6 +75,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     })?;
     if !args.execution.quiet {
         study.print(&measured)?;
+        deck.material.tuned.as_ref().map_or(Ok(()), print_tuning)?;
         console::print(format_args!("results in {}", folder.path().display()))?;
     }
     Ok(Exit::Done)
@@ -76,14 +94,26 @@ struct Analysis {
     /// Speed of the bar wave √(E/ρ), m/s.
     bar: f64,
     dt: f64,
+    wavevectors: Vec<AtWaveVector>,
 }
 
 impl Analysis {
-    fn of(deck: &Deck, model: &Model, lattice: BondLattice, args: &DispersionArgs) -> Self {
+    fn of(
+        deck: &Deck,
+        model: &Model,
+        lattice: BondLattice,
+        args: &DispersionArgs,
+    ) -> Result<Self, CliError> {
+        let dimension = lattice.dimension();
         let contour = match args.direction {
-            Some(direction) => Contour::ray(&lattice, direction.0),
+            Some(direction) => Contour::ray(&lattice, direction.of(dimension, "--direction")?),
             None => Contour::irreducible(&lattice),
         };
+        let wavevectors = args.wavevector.iter().map(|k| {
+            let k = k.of(dimension, "--wavevector")?;
+            Ok(AtWaveVector::of(&lattice, k, model.dt))
+        });
+        let wavevectors = wavevectors.collect::<Result<_, CliError>>()?;
         let bar = (model.constants.young / deck.material.bonds.density).sqrt();
         let speeds = continuum_speeds(deck.body.state);
         let speeds: Vec<f64> = (0..lattice.dimension())
@@ -98,7 +128,7 @@ impl Analysis {
             .collect();
         let followed = lattice.is_cubic() || args.direction.is_some();
         let targets = speeds.iter().map(|speed| followed.then_some(*speed));
-        Self {
+        Ok(Self {
             points: trace(&lattice, &contour, STEPS),
             stability: stability(&lattice),
             contour,
@@ -106,8 +136,9 @@ impl Analysis {
             speeds,
             bar,
             dt: model.dt,
+            wavevectors,
             lattice,
-        }
+        })
     }
 
     fn curves(&self) -> Curves<'_> {
@@ -124,19 +155,17 @@ impl Analysis {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
         }
-        let model = scaling_model(deck)?;
+        let classes = bond_classes(&self.lattice);
         let material = &deck.material.bonds;
         let spacing = deck.body.grid.spacing;
-        let alpha = model
-            .classes()
+        let alpha = classes
             .iter()
             .map(|class| {
                 let xi = class.offset.map(|c| f64::from(c) * spacing);
                 material.influence.alpha_of(xi, material.horizon)
             })
             .collect();
-        let kappa = model
-            .classes()
+        let kappa = classes
             .iter()
             .map(|class| {
                 let length = class.length * spacing;
@@ -148,7 +177,7 @@ impl Analysis {
             ("alpha".to_owned(), alpha),
             ("volume_factor".to_owned(), kappa),
         ];
-        write_classes(&folder.file("classes.csv"), model.classes(), &tables)
+        write_classes(&folder.file("classes.csv"), &classes, &tables)
     }
 
     fn measure(&self, folder: &OutputFolder, title: &str) -> Result<Json, CliError> {
@@ -221,6 +250,7 @@ impl Analysis {
             "dt": self.dt,
             "shortest_wavelength_in_spacings": self.resolved(0.01),
             "measured_spectrum": measured,
+            "wavevectors": wavevectors::summary(&self.wavevectors),
             "conventions": {
                 "contour": "border of the irreducible zone, or a ray, by arc length; segments share their corners",
                 "branches": "followed by the polarisation that symmetry fixes; else by likeness of polarisations",
@@ -271,6 +301,7 @@ impl Analysis {
                 significant(wavelength, 3)
             ))?;
         }
+        wavevectors::print(&self.wavevectors)?;
         if found.is_stable() {
             console::print(format_args!(
                 "highest frequency   {:.4e} 1/s; largest stable step {}, the deck's {}",
@@ -294,10 +325,75 @@ impl Analysis {
     }
 }
 
-/// The classes of the deck's lattice.
-fn scaling_model(deck: &Deck) -> Result<ScalingModel, CliError> {
-    let material = &deck.material.bonds;
-    let state: StressState = deck.body.state;
-    let ratio = material.horizon / deck.body.grid.spacing;
-    Ok(ScalingModel::new(state, ratio, material.volume_correction)?)
+/// What a deck has that the plane waves of its first material know nothing of.
+fn left_out(deck: &Deck) -> Vec<String> {
+    let material = &deck.material;
+    let counted = |count: usize, what: &str| match count {
+        0 => None,
+        1 => Some(format!("one {what} is left out")),
+        _ => Some(format!("{count} {what}s are left out")),
+    };
+    let correction = material.surface_correction != Default::default();
+    [
+        counted(material.parts.len(), "other material"),
+        counted(material.inclusions.len(), "inclusion"),
+        counted(deck.body.finer.len(), "region with a finer grid"),
+        correction.then(|| "the surface correction is left out".to_owned()),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// How tuned coefficients were found and what is left of the functionals; lengths in spacings, speeds over √(E/ρ).
+fn tuning(table: &TunedTable) -> Json {
+    let (tuning, error) = (&table.tuning, &table.assessment.error);
+    json!({
+        "method": tuning.method.name(),
+        "combination": tuning.combination.name(),
+        "pressure_weight": tuning.weights.pressure,
+        "shear_weight": tuning.weights.shear,
+        "decay": tuning.weights.decay,
+        "lower_bound": tuning.lower_bound,
+        "coefficients_at_the_bound": table.active.len(),
+        "condition": table.condition,
+        "optimality": table.kkt,
+        "functionals": table.functionals,
+        "constraints": table.assessment.constraints,
+        "error_absolute": error.absolute,
+        "error_ratio": error.ratio,
+        "error_square": error.square,
+    })
+}
+
+fn print_tuning(table: &TunedTable) -> Result<(), CliError> {
+    let error = &table.assessment.error;
+    let functionals = table.functionals.iter().map(|branches| {
+        let values = branches.iter().map(|value| significant(*value, 3));
+        values.collect::<Vec<_>>().join(", ")
+    });
+    console::print(format_args!(
+        "tuned coefficients  ∮|R| {} ({} of the constant kernel's), residual functionals {}",
+        significant(error.absolute, 4),
+        significant(error.ratio, 3),
+        functionals.collect::<Vec<_>>().join("; ")
+    ))
+}
+
+/// What kernel and grid do to plane waves of any direction; SI units.
+fn plane_waves(waves: PlaneWaves) -> Json {
+    let quality = |kernel: KernelQuality| {
+        json!({
+            "spacings_per_wavelength": kernel.spacings,
+            "largest_error": kernel.worst,
+        })
+    };
+    json!({
+        "tolerance": waves.grid.tolerance,
+        "kernel_shortest_wavelength": waves.model,
+        "grid_shortest_wavelength": std::f64::consts::TAU / waves.grid.wavenumber,
+        "grid_shortest_period": std::f64::consts::TAU / waves.grid.frequency,
+        "tuned": waves.tuning.map(|[tuned, _]| quality(tuned)),
+        "constant": waves.tuning.map(|[_, constant]| quality(constant)),
+    })
 }

@@ -2,14 +2,17 @@
 
 mod shape;
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::family::geodesic::{GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_pairs};
+use pericles::family::geodesic::{
+    GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_distance, geodesic_pairs,
+};
 use pericles::space::surface::{Surface, SurfaceChecks, SurfaceReport};
 use serde::Serialize;
 
-use crate::args::GeodesicsArgs;
+use crate::args::{GeodesicsArgs, Pair};
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -33,6 +36,19 @@ struct Results {
     horizon: f64,
     cautions: Vec<String>,
     methods: Vec<MethodResult>,
+    /// Distances between two vertices.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    between: Vec<Distance>,
+}
+
+/// The distance between two vertices by a method.
+#[derive(Serialize)]
+struct Distance {
+    /// Numbers of the vertices as the user counts them.
+    vertices: [usize; 2],
+    method: String,
+    /// m; none if no path joins them.
+    distance: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -64,6 +80,7 @@ pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
     })?;
     args.threads.start()?;
     let surface = surface.renumbered();
+    let between = between(&surface, args)?;
     let (truth, seconds) = timed(&surface, args.horizon, GeodesicMethod::Exact)?;
     let methods = args
         .methods
@@ -87,6 +104,7 @@ pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
         horizon: args.horizon,
         cautions: cautions.iter().map(ToString::to_string).collect(),
         methods,
+        between,
     };
     if let Some(path) = &args.json {
         console::write_json(path, &results)?;
@@ -95,6 +113,31 @@ pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
         print(&results, &report, mean_neighbours)?;
     }
     Ok(Exit::Done)
+}
+
+/// The distances that are asked for, by all methods.
+fn between(surface: &Surface, args: &GeodesicsArgs) -> Result<Vec<Distance>, CliError> {
+    let numbers: HashMap<usize, usize> = (0..surface.len())
+        .map(|vertex| (surface.user_number(vertex), vertex))
+        .collect();
+    let mut found = Vec::new();
+    for &Pair(pair) in &args.between {
+        let mut vertices = [0; 2];
+        for (vertex, number) in vertices.iter_mut().zip(pair) {
+            *vertex = *numbers.get(&number).ok_or(CliError::NoVertex {
+                number,
+                vertices: surface.len(),
+            })?;
+        }
+        for &method in &args.methods {
+            found.push(Distance {
+                vertices: pair,
+                method: method.to_string(),
+                distance: geodesic_distance(surface, vertices, method)?,
+            });
+        }
+    }
+    Ok(found)
 }
 
 fn timed(
@@ -187,6 +230,18 @@ fn print(results: &Results, report: &SurfaceReport, mean_neighbours: f64) -> Res
             percent(method.lost),
             duration(method.seconds)
         ))?;
+    }
+    for Distance {
+        vertices: [a, b],
+        method,
+        distance,
+    } in &results.between
+    {
+        let distance = match distance {
+            Some(distance) => format!("{} m", significant(*distance, 6)),
+            None => "no path joins them".into(),
+        };
+        console::print(format_args!("vertices {a} and {b}, {method}: {distance}"))?;
     }
     Ok(())
 }

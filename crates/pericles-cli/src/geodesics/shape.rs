@@ -4,6 +4,7 @@ use pericles::space::surface::{Surface, SurfaceError};
 use pericles_io::read_surface;
 
 use crate::error::CliError;
+use crate::machine;
 
 const ALLOWED: &str = "icosphere(LEVEL), icosphere(LEVEL,RADIUS), uv-sphere(SEGMENTS,RINGS,RADIUS), ellipsoid(LEVEL,A,B,C), \
                        torus(MAJOR,MINOR,AROUND,ACROSS), capsule(RADIUS,LENGTH,SEGMENTS), or a file";
@@ -14,7 +15,7 @@ const ALLOWED: &str = "icosphere(LEVEL), icosphere(LEVEL,RADIUS), uv-sphere(SEGM
 /// An unknown shape, numbers out of its range, a file that gives no surface.
 pub(super) fn surface(word: &str) -> Result<Surface, CliError> {
     let Some((name, numbers)) = word.strip_suffix(')').and_then(|word| word.split_once('(')) else {
-        return Ok(read_surface(word)?);
+        return Ok(read_surface(word, machine::memory())?);
     };
     let unknown = || CliError::UnknownShape {
         given: word.into(),

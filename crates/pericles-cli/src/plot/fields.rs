@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use pericles::observe::Field;
 use pericles::space::PointCloud;
-use pericles_deck::Deck;
+use pericles_deck::{Deck, Resources};
 use pericles_io::observers::{DrawnState, PictureOf};
 use pericles_io::{FieldData, write_animation};
 
@@ -14,6 +14,7 @@ use super::Frames;
 use crate::args::{Format, PlotArgs};
 use crate::checkpoint::DeckText;
 use crate::error::CliError;
+use crate::machine;
 use crate::prepare::{picture_of, readers};
 use crate::results::{FieldFile, Results};
 
@@ -32,7 +33,10 @@ pub(super) fn draw(
     };
     let deck: DeckText = results.deck()?;
     let deck = deck.read()?;
-    let (cloud, surface) = deck.body_points(readers())?;
+    let (cloud, surface) = deck.body_points(Resources {
+        memory: machine::memory(),
+        ..readers()
+    })?;
     let body = Body {
         rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
         cloud,
@@ -44,7 +48,7 @@ pub(super) fn draw(
             surface: surface.clone(),
             steady: args.animation,
             width: args.width,
-            view: args.view.map(|view| view.0).or(what.view),
+            view: args.view.map(|view| view.vector()).or(what.view),
             scale: args.scale.unwrap_or(what.scale),
             ..what
         })

@@ -123,7 +123,7 @@ impl Sweep {
         for member in &members {
             member.deck.read()?;
         }
-        let folder = run::output_folder(out, false, deck, suffix)?;
+        let folder = run::output_folder(out, None, deck, suffix)?;
         let text = serde_json::to_string_pretty(&record)?;
         write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
         Ok(Self {
@@ -343,6 +343,7 @@ mod tests {
                 file: "a.toml".into(),
                 source: String::new(),
                 overrides: vec!["time.end=1".into()],
+                inputs: Default::default(),
             },
             axes: vec![
                 "body.spacing=1 mm,1/mm".parse().unwrap(),

@@ -1,6 +1,6 @@
 //! The area that a traction acts on, when the deck leaves it out.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pericles::space::{PointCloud, Region};
 
@@ -22,29 +22,95 @@ pub(crate) fn normal_axis(
     }
 }
 
+/// Whether a set is a layer of a face.
+pub(crate) fn is_layer(region: Option<&Region>) -> bool {
+    matches!(region, Some(Region::Layer { .. }))
+}
+
+/// Why the area that is seen along an axis may not be that of the face meant.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum AreaDoubt {
+    /// The set is thinner along another axis.
+    Thinner {
+        /// The axis along which the area is seen.
+        axis: usize,
+        /// That area, m².
+        area: f64,
+        /// The axis along which the set is thinner.
+        other: usize,
+        /// The area seen along that one, m².
+        face: f64,
+    },
+    /// The set has parts that hide each other, or reaches much deeper in some places than in most.
+    Parts {
+        /// The axis along which the area is seen.
+        axis: usize,
+        /// That area, m².
+        area: f64,
+    },
+}
+
+/// What is doubtful about the area of a set that is no layer by its definition, seen along `axis`: a set that is one layer on one face has none.
+pub(crate) fn doubt(cloud: &PointCloud, points: &[u32], axis: usize) -> Option<AreaDoubt> {
+    /// How much deeper a layer may be along the axis than along another.
+    const DEEPER: f64 = 1.5;
+    /// How much deeper a column may be than the median one: caps of balls and cylinders are.
+    const UNEVEN: usize = 4;
+    let area = seen_along(cloud, points, axis);
+    let depth = |axis: usize| points.len() as f64 / columns(cloud, points, axis).len() as f64;
+    let others = (0..cloud.dimension()).filter(|&c| c != axis);
+    let thinnest = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)));
+    if let Some(other) = thinnest.filter(|&other| depth(axis) > DEEPER * depth(other)) {
+        let face = seen_along(cloud, points, other);
+        return Some(AreaDoubt::Thinner {
+            axis,
+            area,
+            other,
+            face,
+        });
+    }
+    let columns = columns(cloud, points, axis);
+    let apart = |levels: &BTreeSet<i64>| {
+        let (first, last) = (levels.first(), levels.last());
+        first
+            .zip(last)
+            .is_some_and(|(first, last)| last - first + 1 > levels.len() as i64)
+    };
+    let mut depths: Vec<usize> = columns.values().map(BTreeSet::len).collect();
+    depths.sort_unstable();
+    let uneven = depths[depths.len() - 1] > UNEVEN * depths[depths.len() / 2];
+    (uneven || columns.values().any(apart)).then_some(AreaDoubt::Parts { axis, area })
+}
+
 /// The area of a set seen along an axis, m²: that of the cells which no other cell of the set hides. For a box it is a face of the box, for a
 /// layer of a cylinder the cells of its base.
 pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
+    let count = columns(cloud, points, axis).len();
+    let across = (0..cloud.dimension()).filter(|&c| c != axis);
+    let cell: f64 = across.map(|c| cloud.cell_side(c)).product();
+    count as f64 * cloud.section() * cell
+}
+
+/// The cells of a set by columns along an axis: the levels that each column has.
+fn columns(cloud: &PointCloud, points: &[u32], axis: usize) -> BTreeMap<[i64; 3], BTreeSet<i64>> {
     let dimension = cloud.dimension();
     let [corner, _] = cloud.bounds();
-    let columns: BTreeSet<[i64; 3]> = points
-        .iter()
-        .map(|&i| {
-            let place = cloud.point(i as usize);
-            // Centres of cells, divided ones too, lie well inside the large cells.
-            let cell = |c: usize| ((place[c] - corner[c]) / cloud.cell_side(c)).floor() as i64;
-            std::array::from_fn(|c| {
-                if c == axis || c >= dimension {
-                    0
-                } else {
-                    cell(c)
-                }
-            })
-        })
-        .collect();
-    let across = (0..dimension).filter(|&c| c != axis);
-    let cell: f64 = across.map(|c| cloud.cell_side(c)).product();
-    columns.len() as f64 * cloud.section() * cell
+    let mut columns: BTreeMap<[i64; 3], BTreeSet<i64>> = BTreeMap::new();
+    for &i in points {
+        let place = cloud.point(i as usize);
+        // Centres of cells, divided ones too, lie well inside the large cells.
+        let cell = |c: usize| ((place[c] - corner[c]) / cloud.cell_side(c)).floor() as i64;
+        let column = std::array::from_fn(|c| {
+            if c == axis || c >= dimension {
+                0
+            } else {
+                cell(c)
+            }
+        });
+        columns.entry(column).or_default().insert(cell(axis));
+    }
+    columns
 }
 
 #[cfg(test)]
@@ -91,6 +157,55 @@ mod tests {
         let rod = points(rod, 1.0);
         // Twenty cells along the axis hide each other.
         close(area(&rod, 0), rod.len() as f64 / 20.0 * 0.01);
+    }
+
+    #[test]
+    fn sets_that_are_no_single_layer_are_doubted() {
+        let plate = Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![8.0, 4.0],
+            },
+            spacing: 0.1,
+            section: 1.0,
+            holes: vec![],
+        };
+        let cloud = plate.points().unwrap();
+        let set = |inside: &dyn Fn(f64, f64) -> bool| -> Vec<u32> {
+            let all = 0..cloud.len() as u32;
+            all.filter(|&i| {
+                let [x, y, _] = cloud.point(i as usize);
+                inside(x, y)
+            })
+            .collect()
+        };
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        let right = set(&|x, _| x > 7.7);
+        assert_eq!(doubt(&cloud, &right, 0), None);
+        // Shear on a box three cells deep: the load's own axis sees its narrow side.
+        match doubt(&cloud, &right, 1) {
+            Some(AreaDoubt::Thinner {
+                axis: 1,
+                area,
+                other: 0,
+                face,
+            }) => {
+                close(area, 0.3);
+                close(face, 4.0);
+            }
+            other => panic!("{other:?}"),
+        }
+        // Opposite faces, and two that meet in an edge.
+        for union in [
+            set(&|x, _| !(0.3..7.7).contains(&x)),
+            set(&|x, y| x > 7.7 || y > 3.7),
+        ] {
+            let doubt = doubt(&cloud, &union, 0);
+            assert!(
+                matches!(doubt, Some(AreaDoubt::Parts { axis: 0, .. })),
+                "{doubt:?}"
+            );
+        }
     }
 
     #[test]

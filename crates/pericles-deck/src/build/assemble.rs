@@ -53,6 +53,7 @@ impl Deck {
             .constants_of(material, &cloud)
             .map_err(|error| self.at_material(error))?;
         warnings.extend(self.judge_speed(&constants));
+        warnings.extend(self.judge_classes(&constants));
         let no_fail = self.union_of(&sets, &self.material.no_fail)?;
         let stiffness = self.stiffness_of(&self.material.inclusions, &cloud, &sets)?;
         let Composition {
@@ -82,7 +83,7 @@ impl Deck {
         if self.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
             let error = PericlesError::FormNotUsable {
                 form: bonds.form.name(),
-                reason: "stress and strain are made of listed bonds: \"list\", or leave these fields out",
+                reason: "stress and strain are sums over single bonds, which this form does not have; use \"list\" or \"grid\", or leave these fields out",
             };
             return Err(self.at("output", error));
         }

@@ -2,7 +2,7 @@
 
 use pericles::boundary::absorbing::{
     AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
-    LatticeStep, MidpointEnd, OuterLayer, Side,
+    LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
 };
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
@@ -15,6 +15,7 @@ use crate::boundary::BoundaryCondition;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
+use crate::fault::Fault;
 use crate::finding::Warning;
 use crate::reader::Path;
 use crate::set::ALL;
@@ -42,6 +43,7 @@ impl Deck {
         let no_fail = self.union_of(sets, &self.material.no_fail)?;
         let mut ends = Vec::new();
         let mut sides: Vec<Side> = Vec::new();
+        let mut exterior = 0.0;
         for (k, boundary) in self.boundaries.iter().enumerate() {
             let path = Path::from("boundary").index(k);
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
@@ -81,8 +83,9 @@ impl Deck {
             let (layer, beyond) = match exterior_data {
                 None => (OuterLayer::of(system, side, state, &no_fail), None),
                 Some(depth) => {
-                    let sites = depth / system.cloud().spacing();
-                    self.check_exterior(&path.key("exterior_data"), sites, resources)?;
+                    self.refuse_initial_files()?;
+                    exterior += depth / system.cloud().spacing();
+                    self.check_exterior(&path.key("exterior_data"), exterior, resources)?;
                     let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
                     (layer, Some(self.fields_beyond(side, depth, system.cloud())))
                 }
@@ -96,6 +99,23 @@ impl Deck {
             });
         }
         Ok(ends)
+    }
+
+    /// Refuses initial states from files where the initial fields are continued beyond the body.
+    fn refuse_initial_files(&self) -> Result<(), DeckError> {
+        let Some(k) = self
+            .initial
+            .iter()
+            .position(|initial| initial.file.is_some())
+        else {
+            return Ok(());
+        };
+        let fault = Fault::Misplaced {
+            key: "file".into(),
+            table: "an [[initial]] of a deck with `exterior_data`".into(),
+            allowed: "a file holds no values beyond the body; give `displacement` and `velocity` as expressions".into(),
+        };
+        Err(self.at_path(&Path::from("initial").index(k).key("file"), fault))
     }
 
     /// The initial fields of all points, continued beyond an end; displacement and velocity of each site.
@@ -125,13 +145,18 @@ impl Deck {
         &self,
         system: &mut System,
         ends: Vec<End>,
+        start: &State,
         steps: &Steps,
         resources: &Resources<'_>,
         warnings: &mut Vec<Warning>,
     ) -> Result<Vec<(Side, EndReport)>, DeckError> {
+        /// An initial field of this share at an end is worth a warning.
+        const NOTABLE_FIELD: f64 = 1e-10;
+        let largest =
+            [&start.u, &start.v].map(|field| field.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
         let mut reports = Vec::new();
         let mut sites = 0;
-        for end in ends {
+        for mut end in ends {
             let path = end.path;
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
             let stencil = end.layer.stencil.clone();
@@ -141,16 +166,44 @@ impl Deck {
             };
             step.check(&stencil).map_err(refuse)?;
             warnings.extend(self.judge_reach(&stencil, system.cloud()));
+            let neglected = end.layer.neglected;
+            if neglected > NOTABLE_FIELD {
+                let side = end.layer.side.name();
+                warnings.push(self.finding(
+                    &path,
+                    Caution::FieldAtEnd {
+                        side,
+                        share: neglected,
+                    },
+                ));
+            }
             let count = steps.count as usize;
+            let own = stencil.reach() * if end.beyond.is_some() { 3 } else { 1 };
             if !end.plan.forgets() {
-                sites += stencil.reach() * if end.beyond.is_some() { 3 } else { 1 };
+                sites += own;
                 self.check_history(&path, sites, count as f64, resources)?;
             }
-            let make = || {
-                let cache = resources.cache;
-                end.plan.history(&stencil, step, count, cache)
-            };
-            let (history, report) = make().map_err(refuse)?;
+            let make = |plan: EndPlan| plan.history(&stencil, step, count, resources.cache);
+            let mut made = make(end.plan);
+            if let Err(AbsorbingError::Fit {
+                tolerance,
+                residual,
+                ..
+            }) = made
+            {
+                if end.plan.forgets() {
+                    sites += own;
+                    self.check_history(&path, sites, count as f64, resources)?;
+                }
+                let caution = Caution::ExactHistory {
+                    tolerance,
+                    residual,
+                };
+                warnings.push(self.finding(&path.key("history"), caution));
+                end.plan.form = Some(HistoryForm::Blocked);
+                made = make(end.plan);
+            }
+            let (history, report) = made.map_err(refuse)?;
             if let Some(growth) = report.growth {
                 warnings
                     .push(self.finding(&path.key("method"), Caution::HistoricalKernels { growth }));
@@ -163,8 +216,9 @@ impl Deck {
             }
             let mut made = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
             if let Some([u, v]) = &end.beyond {
-                let histories = [make().map_err(refuse)?.0, make().map_err(refuse)?.0];
-                let wave = FreeWave::new(&stencil, steps.dt, [u, v], histories);
+                let another = || make(end.plan).map(|(history, _)| history).map_err(refuse);
+                let histories = [another()?, another()?];
+                let wave = FreeWave::new(&stencil, steps.dt, [u, v], largest, histories);
                 let refuse = |error| {
                     self.at_path(
                         &path.key("exterior_data"),

@@ -1,16 +1,17 @@
-//! Initial state, loads, prescribed motions and probes of a model.
+//! Initial state, prescribed motions and probes of a model.
+
+use std::path::Path as FilePath;
 
 use pericles::System;
-use pericles::boundary::{Load as BodyLoad, PrescribedMotion};
+use pericles::boundary::PrescribedMotion;
 use pericles::noise::uniform_in_ball;
 use pericles::observe::Probe as PointProbe;
 use pericles::space::{Point, PointCloud};
 use pericles::time::State;
 
-use super::{Sets, area};
+use super::{Resources, Sets};
 use crate::caution::Caution;
-use crate::component::VectorField;
-use crate::conditions::{LoadAmplitude, ProbePlace, RandomVelocity};
+use crate::conditions::{ProbePlace, RandomVelocity};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -23,12 +24,25 @@ impl Deck {
         &self,
         cloud: &PointCloud,
         sets: &Sets,
+        resources: &Resources<'_>,
     ) -> Result<State, DeckError> {
         let n = cloud.len();
         let mut state = State::at_rest(cloud.dimension() * n);
         for (k, initial) in self.initial.iter().enumerate() {
             let path = Path::from("initial").index(k);
             let points = self.members(sets, &initial.set, &path)?;
+            if let Some(file) = &initial.file {
+                let rows = self.initial_rows(&path, file, cloud, resources)?;
+                let columns = 2 * cloud.dimension();
+                for &i in points {
+                    let row = cloud.user_number(i as usize) * columns;
+                    for c in 0..cloud.dimension() {
+                        let at = c * n + i as usize;
+                        state.u[at] = rows[row + c];
+                        state.v[at] = rows[row + cloud.dimension() + c];
+                    }
+                }
+            }
             let fields = [
                 (&initial.displacement, &mut state.u),
                 (&initial.velocity, &mut state.v),
@@ -46,7 +60,7 @@ impl Deck {
                 }
             }
             if let Some(random) = initial.random_velocity {
-                if initial.velocity.is_none() {
+                if initial.velocity.is_none() && initial.file.is_none() {
                     for c in 0..cloud.dimension() {
                         for &i in points {
                             state.v[c * n + i as usize] = 0.0;
@@ -57,6 +71,25 @@ impl Deck {
             }
         }
         Ok(state)
+    }
+
+    /// The rows of a file with the initial state: for each point, in the user's order, its displacement, m, and velocity, m/s.
+    fn initial_rows(
+        &self,
+        path: &Path,
+        file: &FilePath,
+        cloud: &PointCloud,
+        resources: &Resources<'_>,
+    ) -> Result<Vec<f64>, DeckError> {
+        const COLUMNS: [[&str; 3]; 2] = [["u_x", "u_y", "u_z"], ["v_x", "v_y", "v_z"]];
+        let columns = COLUMNS.map(|names| names[..cloud.dimension()].to_vec());
+        let (file, points) = (self.beside(file), cloud.len());
+        (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
+            |error| {
+                let fault = error.fault(|reason| Fault::BadInitialFile { reason, points });
+                self.at_path(&path.key("file"), fault)
+            },
+        )
     }
 
     /// The whole body is drawn, in the user's order, whatever the set: a point's velocity depends on seed and number only.
@@ -74,61 +107,6 @@ impl Deck {
                 velocity[c * n + i as usize] += vector[c];
             }
         }
-    }
-
-    pub(super) fn add_loads(
-        &self,
-        system: &mut System,
-        cloud: &PointCloud,
-        sets: &Sets,
-    ) -> Result<(), DeckError> {
-        for (k, load) in self.loads.iter().enumerate() {
-            let path = Path::from("load").index(k);
-            let points = self.members(sets, &load.set, &path)?.clone();
-            let (field, factor) = match &load.amplitude {
-                LoadAmplitude::BodyForce(density) => (density, 1.0),
-                // On a surface a traction is the force per area itself.
-                LoadAmplitude::Traction { traction, .. } if self.surface.is_some() => {
-                    (traction, 1.0)
-                }
-                LoadAmplitude::Traction { traction, area } => {
-                    let area = match area {
-                        Some(area) => *area,
-                        None => self
-                            .loaded_area(cloud, &load.set, &points, traction)
-                            .map_err(|reason| {
-                                self.at_path(&path.key("traction"), Fault::UnknownArea { reason })
-                            })?,
-                    };
-                    let volume = |i: &u32| cloud.volumes()[*i as usize];
-                    (traction, area / points.iter().map(volume).sum::<f64>())
-                }
-            };
-            let density = self.load_density(&path, field, factor, cloud, &points)?;
-            system.add_load(BodyLoad {
-                points,
-                density,
-                function: load.function.clone(),
-                window: load.window,
-            });
-        }
-        Ok(())
-    }
-
-    fn loaded_area(
-        &self,
-        cloud: &PointCloud,
-        set: &str,
-        points: &[u32],
-        traction: &VectorField,
-    ) -> Result<f64, &'static str> {
-        if self.body.listed.is_some() && cloud.dimension() > 1 {
-            return Err("listed points have no faces");
-        }
-        let named = self.sets.iter().find(|named| named.name == set);
-        let acts = std::array::from_fn(|c| traction[c].number() != Some(0.0));
-        let axis = area::normal_axis(named.and_then(|named| named.members.region()), &acts)?;
-        Ok(area::seen_along(cloud, points, axis))
     }
 
     pub(super) fn add_motions(

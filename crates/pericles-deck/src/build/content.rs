@@ -1,29 +1,85 @@
-//! What the grid does to the waves that loads, motions and initial values send out.
+//! Plane waves in a deck's body: what the kernel and the grid do to them, and which loads, motions and initial values send out waves that the grid distorts.
 
-use pericles::analysis::{BondLattice, Carried, space_content, time_content};
+use pericles::analysis::{
+    BondLattice, KernelWaves, PhaseErrors, Resolved, space_content, stability, time_content,
+};
 use pericles::boundary::{MotionKind, TimeFunction};
+use pericles::kernel::{Influence, InfluenceFunction};
+use pericles::material::{BondConstants, BondMaterial};
 
 use super::Model;
 use crate::caution::Caution;
 use crate::component::Component;
 use crate::conditions::LoadAmplitude;
 use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
 use crate::finding::Warning;
 use crate::reader::Path;
+use crate::scheme::Scheme;
 
-/// Deviation of the phase velocity from which waves count as distorted.
+/// Deviation of the phase speed from which waves count as distorted.
 const TOLERANCE: f64 = 0.05;
 
 /// Share of the energy from which a warning is due.
 const SHARE: f64 = 0.05;
 
+/// What a deck's body does to plane waves of any direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneWaves {
+    /// The shortest wave (m) whose phase speed in the nonlocal continuum is within [`Resolved::tolerance`] of `grid` of that of long waves; none for coefficients per class of bonds, which
+    /// have no continuum.
+    pub model: Option<f64>,
+    /// The shortest waves whose phase speed on the grid is within the tolerance of that in the nonlocal continuum, or of that of long waves where there is no continuum.
+    pub grid: Resolved,
+    /// For tuned coefficients: how they do and how a constant influence function would do.
+    pub tuning: Option<[KernelQuality; 2]>,
+}
+
+/// How well a kernel carries waves on its grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KernelQuality {
+    /// Spacings per wavelength from which on the phase speed is within 1 % of that of long waves.
+    pub spacings: f64,
+    /// The largest relative error of the phase speed down to [`KernelQuality::SHORTEST`] spacings per wavelength.
+    pub worst: f64,
+}
+
+impl KernelQuality {
+    /// Spacings per wavelength down to which kernels are compared.
+    pub const SHORTEST: f64 = 4.0;
+
+    fn of(lattice: &BondLattice) -> Self {
+        let errors = PhaseErrors::new(lattice);
+        // The zone ends at two spacings per wavelength.
+        let end = errors.end();
+        Self {
+            spacings: 2.0 * end / errors.resolved(0.01).wavenumber,
+            worst: errors.largest(2.0 * end / Self::SHORTEST),
+        }
+    }
+}
+
 impl Deck {
-    /// The bonds of a point inside the body: what plane waves know of it.
+    /// The bonds of a point inside the body: what plane waves know of it. Of several materials the first one is taken.
     ///
     /// # Errors
     /// A body whose points lie on no regular grid.
-    pub fn bond_lattice(&self, model: &Model) -> pericles::Result<BondLattice> {
-        let (material, constants) = (&self.material.bonds, &model.constants);
+    pub fn bond_lattice(&self, model: &Model) -> Result<BondLattice, DeckError> {
+        let material = &self.material.bonds;
+        self.lattice_of(model, material, &model.constants)
+            .map_err(|error| match error {
+                pericles::PericlesError::NoLattice => self.at("body", error),
+                other => self.at(self.horizon_key(), other),
+            })
+    }
+
+    fn lattice_of(
+        &self,
+        model: &Model,
+        material: &BondMaterial,
+        constants: &BondConstants,
+    ) -> pericles::Result<BondLattice> {
         match &self.body.rectangular {
             Some(spacing) => {
                 BondLattice::of_material(spacing, self.body.grid.section, material, constants)
@@ -32,22 +88,70 @@ impl Deck {
         }
     }
 
-    /// Warns of loads, motions and initial values whose waves the grid distorts. Bodies that lie on no grid, or are of several materials, are not judged.
-    pub fn judge_waves(&self, model: &Model) -> Vec<Warning> {
-        if !self.material.parts.is_empty() {
-            return Vec::new();
+    /// Refuses tuned coefficients with which waves grow, unless `time.allow_unstable` accepts them.
+    pub(crate) fn refuse_unstable_table(&self) -> Result<(), DeckError> {
+        match &self.material.tuned {
+            Some(table) if !table.assessment.stability.is_stable() && !self.time.allow_unstable => {
+                let smallest = table.assessment.stability.smallest;
+                let fault = Fault::UnstableTable { smallest };
+                Err(self.at_path(&"material.influence".into(), fault))
+            }
+            _ => Ok(()),
         }
-        let Ok(lattice) = self.bond_lattice(model) else {
+    }
+
+    /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
+    pub fn plane_waves(&self, model: &Model) -> Option<PlaneWaves> {
+        if !self.material.parts.is_empty() || self.surface.is_some() {
+            return None;
+        }
+        let material = &self.material.bonds;
+        let lattice = self.lattice_of(model, material, &model.constants).ok()?;
+        let (horizon, end) = (material.horizon, PhaseErrors::new(&lattice).end());
+        let kernel = KernelWaves::new(lattice.dimension(), &material.influence, horizon, end);
+        let (model_length, grid) = match &kernel {
+            Some(kernel) => (
+                Some(std::f64::consts::TAU / kernel.resolved(TOLERANCE, end)),
+                PhaseErrors::of_grid(&lattice, kernel).resolved(TOLERANCE),
+            ),
+            None => (None, PhaseErrors::new(&lattice).resolved(TOLERANCE)),
+        };
+        let tuning = self.material.tuned.as_ref().and_then(|_| {
+            let constant = BondMaterial {
+                influence: Influence {
+                    function: InfluenceFunction::Constant,
+                    ..material.influence.clone()
+                },
+                ..material.clone()
+            };
+            let constant = self.lattice_of(model, &constant, &model.constants).ok()?;
+            Some([KernelQuality::of(&lattice), KernelQuality::of(&constant)])
+        });
+        Some(PlaneWaves {
+            model: model_length,
+            grid,
+            tuning,
+        })
+    }
+
+    /// Warns of kernels that do not keep what they are made for, and of loads, motions and initial values whose waves the grid distorts. What the nonlocal model itself does to short waves
+    /// is no matter of the grid and not warned of. Bodies that lie on no grid, or are of several materials, are not judged.
+    pub fn judge_waves(&self, model: &Model) -> Vec<Warning> {
+        let Some(waves) = self.plane_waves(model) else {
             return Vec::new();
         };
-        let carried = Carried::of(&lattice, TOLERANCE);
-        let mut warnings = Vec::new();
+        let mut warnings = self.judge_kernel(model, &waves);
+        if matches!(self.time.scheme, Scheme::Relaxation(_)) {
+            return warnings;
+        }
+        let carried = waves.grid;
         let mut judge = |path: &Path, what: &'static str, share: f64| {
             if share > SHARE {
                 let caution = Caution::ShortWaves {
                     what,
                     share,
                     tolerance: TOLERANCE,
+                    nonlocal: waves.model.is_some(),
                     period: std::f64::consts::TAU / carried.frequency,
                     length: std::f64::consts::TAU / carried.wavenumber,
                 };
@@ -81,7 +185,9 @@ impl Deck {
         }
         for (k, motion) in self.prescribe.iter().enumerate() {
             // A motion sends out its velocity.
-            if !motion.moves() {
+            let moved = model.system.motions().get(k).map_or(0, |m| m.points.len());
+            // What moves all points at once sends out nothing.
+            if !motion.moves() || moved == model.cloud.len() {
                 continue;
             }
             let mut amplitudes = motion.amplitude.iter().flatten();
@@ -111,6 +217,32 @@ impl Deck {
             );
         }
         warnings
+    }
+
+    /// Warns of waves that grow, and of tuned coefficients that do worse than a constant influence function.
+    fn judge_kernel(&self, model: &Model, waves: &PlaneWaves) -> Vec<Warning> {
+        let mut cautions = Vec::new();
+        let material = &self.material.bonds;
+        if material.influence.is_signed(material.horizon) {
+            let lattice = self.lattice_of(model, material, &model.constants).ok();
+            let smallest = lattice.map_or(0.0, |lattice| stability(&lattice).smallest);
+            if smallest < 0.0 {
+                cautions.push(Caution::GrowingWaves { smallest });
+            }
+        }
+        if let Some([tuned, constant]) = waves.tuning
+            && (tuned.spacings > constant.spacings || tuned.worst > constant.worst)
+        {
+            cautions.push(Caution::PoorTuning {
+                spacings: [tuned.spacings, constant.spacings],
+                worst: [tuned.worst, constant.worst],
+                shortest: KernelQuality::SHORTEST,
+            });
+        }
+        let located = cautions.into_iter();
+        located
+            .map(|caution| self.finding(&"material.influence".into(), caution))
+            .collect()
     }
 }
 

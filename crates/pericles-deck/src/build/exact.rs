@@ -7,7 +7,9 @@ use pericles::space::{PointCloud, PointSet};
 
 use crate::caution::Caution;
 use crate::deck::Deck;
+use crate::error::DeckError;
 use crate::exact::{KnownSolution, Pulse};
+use crate::fault::Fault;
 use crate::finding::Warning;
 
 /// What a run is compared with.
@@ -24,8 +26,10 @@ impl Deck {
         cloud: &PointCloud,
         young: f64,
         warnings: &mut Vec<Warning>,
-    ) -> Option<ExactReference> {
-        let exact = self.exact?;
+    ) -> Result<Option<ExactReference>, DeckError> {
+        let Some(exact) = self.exact else {
+            return Ok(None);
+        };
         let density = self.material.bonds.density;
         let speed = (young / density).sqrt();
         let (solution, centre): (Box<dyn ExactSolution>, f64) = match exact.solution {
@@ -46,6 +50,7 @@ impl Deck {
                     amplitude,
                     centre,
                 };
+                self.check_terms(&line, cloud)?;
                 self.judge_period(&line, cloud, exact.window, warnings);
                 (Box::new(line), centre)
             }
@@ -85,10 +90,34 @@ impl Deck {
                 .is_none_or(|window| (x - centre).abs() <= window * (1.0 + 1e-12))
         };
         let x = cloud.axis(0);
-        let points = (0..x.len() as u32)
+        let points: PointSet = (0..x.len() as u32)
             .filter(|&i| counts(x[i as usize]))
             .collect();
-        Some(ExactReference { solution, points })
+        if let (Some(window), true) = (exact.window, points.is_empty()) {
+            let distances = x.iter().map(|x| (x - centre).abs());
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            let fault = Fault::EmptyWindow {
+                window,
+                centre,
+                nearest,
+            };
+            return Err(self.at_path(&"exact.window".into(), fault));
+        }
+        Ok(Some(ExactReference { solution, points }))
+    }
+
+    /// Refuses a pulse so far from the points, or so narrow for the run, that its sum would take hours or all memory.
+    fn check_terms(&self, line: &LineSolution, cloud: &PointCloud) -> Result<(), DeckError> {
+        /// Terms for one point.
+        const MOST: f64 = 1e5;
+        let distances = cloud.axis(0).iter().map(|x| (x - line.centre).abs());
+        let reach = distances.fold(0.0, f64::max);
+        let terms = line.terms(self.time.end, reach);
+        if terms <= MOST {
+            return Ok(());
+        }
+        let fault = Fault::LongSum { terms, most: MOST };
+        Err(self.at_path(&"exact.solution".into(), fault))
     }
 
     /// Warns of a period so short that the waves of the next one arrive within the run.

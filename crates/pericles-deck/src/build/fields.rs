@@ -129,13 +129,7 @@ impl Deck {
         if course.has_rates() {
             return Ok(Motion { course, ahead });
         }
-        let fault = Fault::BadExpression {
-            text: expression.text().into(),
-            reason: "it has no derivative in time, which a prescribed motion needs; allowed here: + - * / ^, exp, ln, log10, sqrt, and circular and hyperbolic functions \
-                     of t"
-                .into(),
-        };
-        Err(self.at_path(path, fault))
+        Err(self.at_path(path, course.rough()))
     }
 
     /// An expression without a finite value at a point.

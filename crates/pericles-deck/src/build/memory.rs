@@ -8,6 +8,7 @@
 //! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
 //! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
+//! | a site beyond an absorbing end | [`EXTERIOR`] numbers where initial fields continue there |
 //! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer; three times as many with fields beyond it |
 //!
 //! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
@@ -32,6 +33,8 @@ const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
 const LAG: f64 = 24.0;
+/// Numbers for a site of the exterior: its initial fields, and the state and work arrays of their motion.
+const EXTERIOR: f64 = 8.0;
 
 impl Deck {
     /// Refuses a body on a grid that does not fit, from the number of its cells.
@@ -118,14 +121,14 @@ impl Deck {
         Err(self.at_path(path, fault))
     }
 
-    /// Refuses a piece of the exterior whose initial fields do not fit.
+    /// Refuses `sites` of the exterior, at all ends together, whose fields do not fit.
     pub(super) fn check_exterior(
         &self,
         path: &Path,
         sites: f64,
         resources: &Resources<'_>,
     ) -> Result<(), DeckError> {
-        self.refuse_if_more(path, sites, 2.0 * NUMBER * sites, resources)
+        self.refuse_if_more(path, sites, EXTERIOR * NUMBER * sites, resources)
     }
 
     fn refuse_if_more(

@@ -3,12 +3,14 @@
 mod area;
 mod assemble;
 mod boundary;
+mod breaking;
 mod conditions;
 mod content;
 mod damping;
 mod exact;
 mod fields;
 mod graded;
+mod loads;
 mod memory;
 mod parts;
 mod points;
@@ -16,12 +18,16 @@ mod resources;
 mod scheme;
 mod sense;
 mod step;
+mod stop;
 mod surface;
 
+pub use area::AreaDoubt;
+pub use content::{KernelQuality, PlaneWaves};
 pub use exact::ExactReference;
+pub use loads::LoadReport;
 
 pub(crate) use memory::bytes;
-pub use resources::{PointsReader, Resources, SurfaceReader};
+pub use resources::{FileError, PointsReader, Resources, SurfaceReader, TableReader};
 
 use std::sync::Arc;
 
@@ -32,7 +38,7 @@ use pericles::operator::BondForm;
 use pericles::space::surface::Surface;
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
-use pericles::{PericlesError, Simulation, System};
+use pericles::{PericlesError, Simulation, StopWhen, System};
 
 use self::assemble::Assembled;
 use crate::deck::Deck;
@@ -80,6 +86,10 @@ pub struct Model {
     pub ends: Vec<(Side, EndReport)>,
     /// A known solution to compare with.
     pub exact: Option<ExactReference>,
+    /// What the loads come to, in the order of the deck.
+    pub loads: Vec<LoadReport>,
+    /// Conditions that end the run before its last step.
+    pub stops: Vec<StopWhen>,
     /// What is odd.
     pub warnings: Vec<Warning>,
     /// The strongest damping of layers, 1/s.
@@ -96,21 +106,25 @@ impl Model {
 
     /// The run; observers are still to be added.
     pub fn simulation(self) -> Simulation {
-        Simulation::new(
+        let mut simulation = Simulation::new(
             self.system,
             self.integrator,
             self.state,
             self.dt,
             self.steps,
-        )
+        );
+        for stop in self.stops {
+            simulation.stop_when(stop);
+        }
+        simulation
     }
 }
 
 impl Deck {
     /// Makes points, bonds, operator and conditions, and finds the time step.
     ///
-    /// With dt = "auto" the run ends at `time.end` exactly, in the fewest steps that are stable; with a given step it ends at the first step at or
-    /// after it.
+    /// The run ends at `time.end` exactly: with dt = "auto" in the fewest steps that are stable; a given step that does not divide it is shortened to the next one that
+    /// does, with a warning.
     ///
     /// # Errors
     /// What the library refuses, at the entry of the deck that caused it; sets without points; a step that is not stable.
@@ -139,14 +153,14 @@ impl Deck {
         };
         let mut system = System::new(Arc::clone(&cloud), bonds.operator, density)
             .map_err(|error| self.at("material.density", error))?;
-        let mut state = self.initial_state(&cloud, &sets)?;
-        let exact = self.exact_reference(&cloud, constants.young, &mut warnings);
+        let mut state = self.initial_state(&cloud, &sets, &resources)?;
+        let exact = self.exact_reference(&cloud, constants.young, &mut warnings)?;
         if let (Some(exact), Some(true)) = (&exact, self.exact.map(|exact| exact.start)) {
             exact
                 .solution
                 .displacement_into(0.0, cloud.axis(0), &mut state.u);
         }
-        self.add_loads(&mut system, &cloud, &sets)?;
+        let areas = self.add_loads(&mut system, &cloud, &sets, &mut warnings)?;
         self.add_motions(&mut system, &state, &sets)?;
         self.judge_conditions(&system, &mut warnings);
         let probes = self.point_probes(&cloud, &sets, &mut warnings)?;
@@ -165,8 +179,12 @@ impl Deck {
             &mut warnings,
         )?;
         self.judge_two_steps(&*integrator, &steps, &mut warnings);
-        let ends = self.add_ends(&mut system, ends, &steps, &resources, &mut warnings)?;
+        self.judge_breaking(&system, &state, &constants, &steps, &mut warnings);
+        let ends = self.add_ends(&mut system, ends, &state, &steps, &resources, &mut warnings)?;
         self.add_damping_layers(&mut system, layers, &steps)?;
+        self.refuse_lost_values(&system, &steps)?;
+        let stops = self.stops(&system, &sets)?;
+        let loads = self.load_reports(&system, areas, steps.count as f64 * steps.dt);
         Ok(Model {
             cloud,
             surface,
@@ -185,6 +203,8 @@ impl Deck {
             probes,
             ends,
             exact,
+            stops,
+            loads,
             warnings,
             damping,
         })

@@ -1,7 +1,5 @@
 //! The points of a body: those of its grid, or those listed in a file.
 
-use std::path::{Path as FilePath, PathBuf};
-
 use pericles::PericlesError;
 use pericles::space::{GradedCloud, GradedGrid, PointCloud, Shape, gauss_bar, rectangular_cells};
 
@@ -23,12 +21,6 @@ impl Deck {
         }
     }
 
-    /// A file named by the deck: a relative path starts at the deck's folder.
-    pub(super) fn beside(&self, path: &FilePath) -> PathBuf {
-        let folder = FilePath::new(self.record.sources.name()).parent();
-        folder.unwrap_or(FilePath::new("")).join(path)
-    }
-
     fn listed_points(
         &self,
         file: &PointsFile,
@@ -37,8 +29,11 @@ impl Deck {
         /// Volumes and spacing disagree by this factor only if one of them has another unit.
         const OFF: f64 = 2.0;
         let path = self.beside(&file.path);
-        let listed = (resources.read_points)(&path, file.dimension)
-            .map_err(|reason| self.at_path(&"body.file".into(), Fault::BadPoints { reason }))?;
+        let listed = (resources.read_points)(&path, file.dimension, resources.memory);
+        let listed = listed.map_err(|error| {
+            let fault = error.fault(|reason| Fault::BadPoints { reason });
+            self.at_path(&"body.file".into(), fault)
+        })?;
         let cloud = listed
             .cloud(file.dimension, self.body.grid.section)
             .map_err(|error| self.at("body.file", error))?;

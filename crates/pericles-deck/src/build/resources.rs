@@ -6,11 +6,43 @@ use pericles::cache::{Cache, NoCache};
 use pericles::space::ListedPoints;
 use pericles::space::surface::Surface;
 
-/// Reads a surface from a file; the error says in words what is wrong, with the file and the place in it.
-pub type SurfaceReader<'a> = dyn Fn(&Path) -> Result<Surface, String> + Sync + 'a;
+use crate::fault::Fault;
 
-/// Reads the points of a body of a dimension from a file; the error says in words what is wrong, with the file and the place in it.
-pub type PointsReader<'a> = dyn Fn(&Path, usize) -> Result<ListedPoints, String> + Sync + 'a;
+/// Why a file beside a deck gives nothing, in words, with the file and the place in it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FileError {
+    /// It cannot be read, or its content is wrong.
+    Wrong(String),
+    /// Its content takes more memory than it may.
+    TooLarge(String),
+}
+
+impl From<String> for FileError {
+    fn from(reason: String) -> Self {
+        Self::Wrong(reason)
+    }
+}
+
+impl FileError {
+    /// The fault of the entry that names the file; `wrong` makes that of a wrong file.
+    pub(super) fn fault(self, wrong: impl FnOnce(String) -> Fault) -> Fault {
+        match self {
+            Self::Wrong(reason) => wrong(reason),
+            Self::TooLarge(reason) => Fault::LargeFile { reason },
+        }
+    }
+}
+
+/// Reads a surface from a file; its content may take so many bytes of memory.
+pub type SurfaceReader<'a> = dyn Fn(&Path, u64) -> Result<Surface, FileError> + Sync + 'a;
+
+/// Reads the points of a body of a dimension from a file; its content may take so many bytes of memory.
+pub type PointsReader<'a> =
+    dyn Fn(&Path, usize, u64) -> Result<ListedPoints, FileError> + Sync + 'a;
+
+/// Reads a table of numbers from a file: so many rows of columns with these names, row by row; its content may take so many bytes of memory.
+pub type TableReader<'a> =
+    dyn Fn(&Path, usize, &[&str], u64) -> Result<Vec<f64>, FileError> + Sync + 'a;
 
 /// What a model is built with besides its deck. Decks know no files but themselves: who builds a model hands in what reads others.
 #[derive(Clone, Copy)]
@@ -21,6 +53,8 @@ pub struct Resources<'a> {
     pub read_surface: &'a SurfaceReader<'a>,
     /// The reader of bodies with `shape = "points"`.
     pub read_points: &'a PointsReader<'a>,
+    /// The reader of files of `[[initial]]`.
+    pub read_table: &'a TableReader<'a>,
     /// Bytes that the model may take: one that is estimated to need more is refused before anything of its size is allocated.
     pub memory: u64,
 }
@@ -30,9 +64,14 @@ impl Default for Resources<'_> {
     fn default() -> Self {
         Self {
             cache: &NoCache,
-            read_surface: &|_| Err("nothing that reads surfaces was handed in".into()),
-            read_points: &|_, _| Err("nothing that reads points was handed in".into()),
+            read_surface: &|_, _| Err(no_reader("surfaces")),
+            read_points: &|_, _, _| Err(no_reader("points")),
+            read_table: &|_, _, _, _| Err(no_reader("tables")),
             memory: u64::MAX,
         }
     }
+}
+
+fn no_reader(what: &str) -> FileError {
+    FileError::Wrong(format!("nothing that reads {what} was handed in"))
 }

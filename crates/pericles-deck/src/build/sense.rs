@@ -2,6 +2,7 @@
 
 use pericles::System;
 use pericles::family::{BondList, Crack};
+use pericles::kernel::InfluenceFunction;
 use pericles::material::BondConstants;
 use pericles::space::{Point, PointCloud};
 
@@ -65,6 +66,22 @@ impl Deck {
         }
     }
 
+    /// Warns of classes of bonds that carry nothing where bonds can break: they count as damage without ever having resisted.
+    pub(super) fn judge_classes(&self, constants: &BondConstants) -> Option<Warning> {
+        /// Of the largest coefficient; the bound of tuned coefficients is met to round-off.
+        const NOTHING: f64 = 1e-9;
+        let InfluenceFunction::Classes(table) = &self.material.bonds.influence.function else {
+            return None;
+        };
+        let values = table.entries().iter().map(|(_, value)| value.abs());
+        let largest = values.clone().fold(0.0, f64::max);
+        let empty = values.filter(|value| *value <= NOTHING * largest).count();
+        let of = table.entries().len();
+        let caution = Caution::EmptyClasses { empty, of };
+        (empty > 0 && constants.critical_stretch.is_finite())
+            .then(|| self.finding(&"material.influence".into(), caution))
+    }
+
     /// What is odd about a pre-crack that cuts no bond.
     pub(super) fn useless_crack(crack: &Crack, cloud: &PointCloud) -> Caution {
         let dimension = cloud.dimension();
@@ -91,6 +108,9 @@ impl Deck {
                 traction: field, ..
             }) = &given.amplitude;
             let acts = |c: usize| c < system.dimension() && field[c].number() != Some(0.0);
+            if !(0..3).any(acts) {
+                continue;
+            }
             // The axes along which each point is held, one bit each.
             let mut held = vec![0u8; system.points()];
             for motion in system.motions() {

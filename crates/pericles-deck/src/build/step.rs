@@ -13,6 +13,9 @@ use crate::finding::Warning;
 use crate::scheme::Scheme;
 use crate::time::TimeStep;
 
+/// A number of steps that differs from a whole one by so small a part is that number.
+const WHOLE: f64 = 1e-9;
+
 /// The steps of a run.
 pub(super) struct Steps {
     pub(super) dt: f64,
@@ -67,21 +70,38 @@ impl Deck {
                     frequency: Some(frequency),
                 })
             }
-            TimeStep::Fixed(dt) => {
+            TimeStep::Fixed(given) => {
+                let count = self.count(end, given)?;
+                let dt = self.dividing(given, end, count, warnings);
                 if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
-                    self.judge(dt, limit, frequency, integrator.name(), warnings)?;
-                    self.check_damped(dt, frequency.stable_step(limit, 1.0), damped)?;
+                    let stable = frequency.stable_step(limit, 1.0);
+                    // What is refused is what the deck says.
+                    let judged = if dt <= stable { dt } else { given };
+                    self.judge(judged, limit, frequency, integrator.name(), warnings)?;
+                    self.check_damped(dt, stable, damped)?;
                 }
                 if let (Scheme::Trigonometric(_), Ok(frequency)) = (&self.time.scheme, &frequency) {
                     self.check_angle(dt, frequency)?;
                 }
                 Ok(Steps {
                     dt,
-                    count: self.count(end, dt)?,
+                    count,
                     frequency: frequency.ok(),
                 })
             }
         }
+    }
+
+    /// The given step if a whole number of them ends at `end`, else the next shorter one of which a whole number does.
+    fn dividing(&self, given: f64, end: f64, count: u64, warnings: &mut Vec<Warning>) -> f64 {
+        let ratio = end / given;
+        if (ratio - count as f64).abs() <= WHOLE * ratio {
+            return given;
+        }
+        let used = end / count as f64;
+        let caution = Caution::ShortenedStep { given, used, count };
+        warnings.push(self.finding(&"time.dt".into(), caution));
+        used
     }
 
     /// Refuses a step that turns the fastest wave so often that its angle keeps few digits; a series would have as many terms.
@@ -143,6 +163,6 @@ impl Deck {
             return Err(self.at_path(&"time.dt".into(), fault));
         }
         // A whole number up to round-off is that number.
-        Ok((ratio * (1.0 - 1e-9)).ceil().max(1.0) as u64)
+        Ok((ratio * (1.0 - WHOLE)).ceil().max(1.0) as u64)
     }
 }

@@ -10,7 +10,7 @@ use pericles::operator::surface::SurfaceBody;
 use pericles::space::PointCloud;
 use pericles::space::surface::{Surface, SurfaceChecks};
 
-use super::{Resources, Sets};
+use super::{FileError, Resources, Sets};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
@@ -51,12 +51,13 @@ impl Deck {
         resources: &Resources<'_>,
     ) -> Result<Surface, DeckError> {
         let file = self.beside(path);
-        let refused = |reason: String| {
+        let refused = |error: FileError| {
             let file = file.display().to_string();
-            self.at_path(&"body.file".into(), Fault::BadSurfaceFile { file, reason })
+            let fault = error.fault(|reason| Fault::BadSurfaceFile { file, reason });
+            self.at_path(&"body.file".into(), fault)
         };
-        let (surface, _) = (resources.read_surface)(&file)
-            .and_then(|surface| surface.checked(checks).map_err(|error| error.to_string()))
+        let (surface, _) = (resources.read_surface)(&file, resources.memory)
+            .and_then(|surface| Ok(surface.checked(checks).map_err(|error| error.to_string())?))
             .map_err(refused)?;
         Ok(surface.renumbered())
     }

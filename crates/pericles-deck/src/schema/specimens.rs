@@ -86,6 +86,8 @@ velocity = [0, { expression = "x" }]
 random_velocity = { generator = "splitmix64", radius = 1, seed = 1 }
 [[initial]]
 random_velocity = { radius = 1 }
+[[initial]]
+file = "state.txt"
 [[prescribe]]
 set = "top"
 velocity = [0, "free"]
@@ -125,7 +127,7 @@ scheme = "velocity-verlet"
 allow_unstable = true
 [output]
 fields = { interval = 1, names = ["Damage"] }
-history = { every = 1 }
+history = { every = 1, extremes = ["Damage"] }
 cracks = { count = 1, threshold = 0.5 }
 fragments = { count = 1, smallest = 0.5 }
 precision = "single"
@@ -276,8 +278,10 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["material.influence={ function = 'classes', table = [[[1], 1], [[2], 1], [[3], 1]] }"]),
     specimen(PLATE, &["material.horizon_ratio=1", "material.influence={ function = 'classes', table = [[[1, 0], 1]] }"]),
     specimen(BAR, &["material.influence={ function = 'tuned' }"]),
+    specimen(BAR, &["material.influence={ function = 'tuned', decay = 'none', lower_bound = 'none' }"]),
+    specimen(BAR, &["material.influence={ function = 'tuned', lower_bound = 'auto' }"]),
     specimen(
-        BAR,
+        PLATE,
         &["material.influence={ function = 'tuned', method = 'least-squares', combination = 'separated', pressure_weight = 1, shear_weight = 1, decay = 1, lower_bound = 0.001 }"],
     ),
     // Other laws.
@@ -318,6 +322,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["time={ scheme = 'relaxation' }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 'adaptive', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 0.1 }"]),
+    specimen(BAR, &["prescribe=[{ set = 'left', velocity = 0 }]", "time.stop_when=[{ set = 'left', reaction_below = 0.02 }, { set = 'left', damage_above = 0.9 }]"]),
     // Output.
     specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, fragments = { every = 1 }, energy_bound = 1 }"]),
     specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 }, fragments = { interval = 1 } }"]),

@@ -41,7 +41,7 @@ fn conditions() {
     for i in 0..n {
         let left = model.cloud.point(i)[0] < 2e-3;
         let expected = if left {
-            (0.0, 2.0, 1e-6)
+            (0.0, 2.0, 1e-7)
         } else {
             (1.0, 0.0, 0.0)
         };
@@ -141,4 +141,124 @@ fn expressions_that_cannot_move_a_body_are_refused() {
             .to_string()
             .contains("takes no function of time")
     );
+}
+
+/// A plate whose right face is 40 mm × 2 mm.
+const FACES: &str = r#"
+[body]
+shape = "plate"
+size = ["80 mm", "40 mm"]
+spacing = "1 mm"
+plane = "stress"
+thickness = "2 mm"
+[material]
+density = 2440
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+[sets]
+face = { layer = { side = "+x", cells = 3 } }
+box = { box = { min = ["77 mm", 0] } }
+both = { where = "x < 0.003 || x > 0.077" }
+[[load]]
+set = "face"
+traction = [0, "1 MPa"]
+function = { kind = "ramp", duration = "2 us" }
+[time]
+end = "4 us"
+dt = "0.1 us"
+"#;
+
+#[test]
+fn the_area_and_the_force_of_loads_are_known_and_doubtful_ones_are_said() {
+    let loaded = |set: &str, traction: &str| {
+        let text = FACES
+            .replace("set = \"face\"", &format!("set = \"{set}\""))
+            .replace("[0, \"1 MPa\"]", traction);
+        let model = build(&text);
+        let warnings: Vec<String> = model.warnings.iter().map(|w| w.line()).collect();
+        (model.loads[0].clone(), warnings)
+    };
+    let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    let (face, warnings) = loaded("face", "[0, \"1 MPa\"]");
+    close(face.area.unwrap(), 80e-6);
+    close(face.force[1], 80.0);
+    assert_eq!((face.force[0], face.points), (0.0, 120));
+    close(face.at, 2e-6);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    // The same cells as a box: its shear acts on the side that the load's own axis sees.
+    let (side, warnings) = loaded("box", "[0, \"1 MPa\"]");
+    close(side.force[1], 6.0);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    for part in [
+        "deck.toml:18:",
+        "6 mm²",
+        "80 mm²",
+        "normal to x",
+        "give `area`",
+    ] {
+        assert!(warnings[0].contains(part), "{warnings:?}");
+    }
+    // Tension of the box is right.
+    let (_, warnings) = loaded("box", "[\"1 MPa\", 0]");
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let (union, warnings) = loaded("both", "[\"1 MPa\", 0]");
+    close(union.force[0], 80.0);
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("not one layer on one face"),
+        "{warnings:?}"
+    );
+    // Who gives the area knows it.
+    let text = FACES.replace("set = \"face\"", "set = \"both\"\narea = \"160 mm2\"");
+    let model = build(&text);
+    close(model.loads[0].force[1], 160.0);
+    assert!(model.warnings.is_empty());
+}
+
+#[test]
+fn a_load_that_ceases_to_have_a_value_is_named() {
+    for (replace, by, what) in [
+        (
+            "kind = \"ramp\", duration = \"2 us\"",
+            "kind = \"expression\", expression = \"sqrt(2e-6-t)\"",
+            "the load on `face`",
+        ),
+        (
+            "[0, \"1 MPa\"]\nfunction = { kind = \"ramp\", duration = \"2 us\" }",
+            "[0, { expression = \"1e6*sqrt(2e-6-t)\" }]",
+            "the load on `face`",
+        ),
+        (
+            "[time]",
+            "[[prescribe]]\nset = \"both\"\nvelocity = [{ expression = \"ln(2e-6-t)\" }, \"free\"]\n[time]",
+            "the prescribed motion on `both`",
+        ),
+    ] {
+        let message = refusal(&FACES.replace(replace, by)).to_string();
+        assert!(message.contains(what), "{message}");
+        assert!(
+            message.contains("no finite value at t = 2.0000e-6 s"),
+            "{message}"
+        );
+    }
+    // Not where it does not act any more.
+    let over = FACES.replace(
+        "kind = \"ramp\", duration = \"2 us\" }",
+        "kind = \"expression\", expression = \"sqrt(2e-6-t)\" }\nuntil = \"2 us\"",
+    );
+    build(&over);
+}
+
+#[test]
+fn a_load_of_zero_is_not_said_to_be_held() {
+    let text = FACES.replace(
+        "[time]",
+        "[[prescribe]]\nset = \"face\"\ndisplacement = [0, 0]\n[time]",
+    );
+    let held = |traction: &str| {
+        build(&text.replace("[0, \"1 MPa\"]", traction))
+            .warnings
+            .len()
+    };
+    assert_eq!(held("[0, \"1 MPa\"]"), 1);
+    assert_eq!(held("[0, 0]"), 0);
 }

@@ -1,5 +1,7 @@
 //! Boundaries through which waves leave.
 
+use pericles_deck::Deck;
+
 use super::{build, refusal};
 
 /// A bar that goes on for ever at both ends.
@@ -75,6 +77,21 @@ fn histories_by_exponentials_keep_their_tolerance() {
     let pairs = exact.iter().zip(&fitted);
     let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs())) / largest;
     assert!(error < 1e-5 && error > 0.0, "{error:e}");
+}
+
+#[test]
+fn a_comparison_of_exponentials_needs_exponentials() {
+    let verified = |more: &str| {
+        let side = format!("side = \"+x\"\nverify = true{more}");
+        Deck::parse(&BAR.replace("side = \"+x\"", &side), "bar.toml", &[])
+    };
+    let message = verified("").unwrap_err().to_string();
+    assert!(
+        message.contains("without one the history is exact"),
+        "{message}"
+    );
+    assert!(verified("\ntolerance = 1e-6").is_ok());
+    assert!(verified("\nhistory = \"exponentials\"").is_ok());
 }
 
 #[test]
@@ -166,6 +183,65 @@ fn fields_go_on_beyond_an_end() {
     assert!(message.contains("exterior_data"), "{message}");
     let message = refusal(&bell.replace("side = \"+x\"", &data.replace("70", "20"))).to_string();
     assert!(message.contains("does not die away"), "{message}");
+}
+
+#[test]
+fn a_small_field_at_an_end_is_a_warning_with_its_size() {
+    // exp(−(x − 0.05)²/w²) at the outer layer, x = 97.5 mm: 1.6e-10 for w = 10 mm, 4.8e-6 for w = 13.6 mm.
+    let with_width = |width: &str| {
+        let field = format!("displacement = {{ expression = \"exp(-((x-0.05)/{width})^2)\" }}");
+        let all = BAR.replace("set = \"middle\"\nvelocity = \"1 m/s\"", &field);
+        assert_ne!(all, BAR);
+        all
+    };
+    let says = |text: &str| -> String {
+        let model = build(text);
+        model.warnings.iter().map(|w| w.line()).collect()
+    };
+    assert!(!says(&with_width("0.009")).contains("absorbing end"));
+    let warned = says(&with_width("0.0105"));
+    assert!(
+        warned.contains("the initial field at the absorbing end -x is"),
+        "{warned}"
+    );
+    assert!(
+        warned.contains("of its largest value; it counts as zero beyond"),
+        "{warned}"
+    );
+    let refused = refusal(&with_width("0.0136")).to_string();
+    assert!(refused.contains("allowed: 1e-6 of it"), "{refused}");
+}
+
+#[test]
+fn a_field_beyond_the_end_is_judged_beside_that_of_the_body() {
+    // 1e-20 of the body's field everywhere in the exterior is negligible, though it does not decay.
+    let text = BAR.replace(
+        "set = \"middle\"\nvelocity = \"1 m/s\"",
+        "displacement = { expression = \"exp(-((x-0.05)/0.008)^2) + 8e-21\" }",
+    );
+    let text = text.replace("side = \"+x\"", "side = \"+x\"\nexterior_data = \"20 mm\"");
+    build(&text);
+}
+
+#[test]
+fn too_much_exterior_is_refused_before_it_is_allocated() {
+    let text = BAR.replace("side = \"+x\"", "side = \"+x\"\nexterior_data = 1e15");
+    let message = refusal(&text).to_string();
+    assert!(message.contains("of memory"), "{message}");
+}
+
+#[test]
+fn a_tolerance_that_no_fit_meets_takes_the_exact_history() {
+    let keys = "side = \"+x\"\nhistory = \"exponentials\"\ntolerance = 2e-14\nverify = true";
+    let model = build(&BAR.replace("side = \"+x\"", keys));
+    let (_, report) = model.ends[1];
+    assert_eq!(report.history, "blocked");
+    let says: String = model.warnings.iter().map(|w| w.line()).collect();
+    assert!(
+        says.contains("no sum of exponentials meets the tolerance 2e-14"),
+        "{says}"
+    );
+    assert!(says.contains("the exact blocked history is used"), "{says}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod common;
 
 mod conditions;
 mod ends;
+mod initial;
 mod plate;
 mod points;
 mod schemes;
@@ -56,7 +57,7 @@ segment = [[0, "4 mm"], ["10 mm", "4 mm"]]
 velocity = ["1 m/s", 0]
 [[initial]]
 set = "left"
-displacement = [0, "1 um"]
+displacement = [0, "0.1 um"]
 velocity = [0, "2 m/s"]
 [[prescribe]]
 set = "left"

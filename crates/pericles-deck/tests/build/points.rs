@@ -116,7 +116,7 @@ fn forms_of_linear_bodies() {
 #[test]
 fn surfaces_come_from_files_handed_in() {
     use pericles::space::surface::Surface;
-    use pericles_deck::Resources;
+    use pericles_deck::{FileError, Resources};
     let text = r#"
 [body]
 shape = "surface"
@@ -131,9 +131,9 @@ end = "1 ms"
 "#;
     let deck = Deck::parse(text, "decks/ball.toml", &[]).unwrap();
     let asked = std::sync::Mutex::new(Vec::new());
-    let built = |surface: fn() -> Result<Surface, String>| {
+    let built = |surface: fn() -> Result<Surface, FileError>| {
         deck.build_with(Resources {
-            read_surface: &|path| {
+            read_surface: &|path, _| {
                 asked.lock().unwrap().push(path.to_owned());
                 surface()
             },
@@ -156,7 +156,7 @@ end = "1 ms"
             sphere.positions().to_vec(),
             sphere.triangles()[1..].to_vec(),
         )
-        .map_err(|error| error.to_string())
+        .map_err(|error| FileError::Wrong(error.to_string()))
     };
     let message = |result: Result<Model, DeckError>| match result {
         Ok(_) => panic!("refused"),
@@ -167,7 +167,7 @@ end = "1 ms"
         error.starts_with("decks/ball.toml:4:8:") && error.contains("ball.stl gives no surface"),
         "{error}"
     );
-    let error = message(built(|| Err("line 3: no number".into())));
+    let error = message(built(|| Err(FileError::Wrong("line 3: no number".into()))));
     assert!(error.contains("line 3: no number"), "{error}");
     // Nobody hands in a reader.
     assert!(message(deck.build()).contains("handed in"));
@@ -278,7 +278,7 @@ fn listed_points_are_the_body_of_the_grid() {
     let built = |text: &str, volume: f64| {
         let deck = Deck::parse(text, "decks/plate.toml", &[]).unwrap();
         deck.build_with(Resources {
-            read_points: &|path, dimension| {
+            read_points: &|path, dimension, _| {
                 assert_eq!(path, std::path::Path::new("decks/plate.txt"));
                 assert_eq!(dimension, 2);
                 Ok(listed_plate(volume))

@@ -11,7 +11,8 @@ fn automatic_steps_are_stable_and_end_on_time() {
     // One step fewer would not do.
     assert!(2e-6 / (model.steps - 1) as f64 > 0.95 * stable);
     let fixed = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"30 ns\""));
-    assert_eq!((fixed.dt, fixed.steps), (30e-9, 67));
+    // 67 steps of 30 ns would end at 2.01 µs.
+    assert_eq!((fixed.dt, fixed.steps), (2e-6 / 67.0, 67));
     let whole = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"40 ns\""));
     assert_eq!(whole.steps, 50);
 }
@@ -122,4 +123,39 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
         "{stiff} {plain}"
     );
     assert!(two > 0.98 * plain, "{two} {plain}");
+}
+
+#[test]
+fn a_given_step_ends_on_time() {
+    // 20 steps of 0.1 s but for rounding, and a bit more than two of 0.9 s.
+    let with = |end: &str, dt: &str| {
+        build(&format!(
+            r#"
+body = {{ shape = "bar", length = 40, spacing = 1 }}
+material = {{ model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }}
+time = {{ end = {end}, dt = {dt} }}
+"#
+        ))
+    };
+    for (end, dt, steps) in [
+        ("2", 0.1_f64, 20),
+        ("0.3", 0.1, 3),
+        ("2.0000000001", 0.1, 20),
+    ] {
+        let whole = with(end, &dt.to_string());
+        assert_eq!((whole.dt.to_bits(), whole.steps), (dt.to_bits(), steps));
+        assert!(whole.warnings.is_empty(), "{end}");
+    }
+    for (end, dt, steps) in [("2.4", "0.9", 3), ("0.5", "0.7", 1), ("2.001", "0.1", 21)] {
+        let model = with(end, dt);
+        let end: f64 = end.parse().unwrap();
+        assert_eq!(model.steps, steps);
+        assert_eq!(model.dt, end / steps as f64);
+        let [warning] = &model.warnings[..] else {
+            panic!("one warning for dt = {dt}")
+        };
+        let line = warning.line();
+        assert!(line.contains("all steps are shortened to"), "{line}");
+        assert!(line.contains(&format!("{steps} of which end")), "{line}");
+    }
 }

@@ -20,7 +20,7 @@ fn what_is_odd_is_warned_of() {
     assert!(text.contains("`middle`"), "{text}");
     let (line, text) = cautions(
         "end = \"2 us\"",
-        "end = \"2 us\"\ndt = \"1 us\"\nallow_unstable = true",
+        "end = \"2 us\"\ndt = \"0.35 us\"\nallow_unstable = true",
     );
     assert_eq!(line, 55);
     assert!(text.contains("allow_unstable"), "{text}");
@@ -69,49 +69,57 @@ fn a_short_period_is_warned_of() {
     assert_eq!(reference.points.len(), 60);
 }
 
-#[test]
-fn waves_that_the_grid_distorts_are_warned_of() {
-    let bar = |rest: &str| {
-        let text = format!(
-            r#"
+/// A bar of length 10 with wave speed 1 and a horizon of three spacings.
+fn bar(spacing: f64, horizon: f64, rest: &str) -> Vec<String> {
+    let text = format!(
+        r#"
 [body]
 shape = "bar"
 length = 10.0
-spacing = 0.02
+spacing = {spacing}
 [material]
 density = 1
 youngs_modulus = 1
-horizon_ratio = 3
+horizon = {horizon}
 [sets]
-right = {{ layer = {{ side = "+x", cells = 3 }} }}
+right = {{ layer = {{ side = "+x", depth = 0.06 }} }}
 [time]
 end = 5.0
 {rest}"#
+    );
+    let deck = parse(&text);
+    let model = deck.build().unwrap();
+    let warnings = deck.judge_waves(&model);
+    warnings.iter().map(|w| w.line()).collect::<Vec<_>>()
+}
+
+#[test]
+fn waves_that_the_grid_distorts_are_warned_of() {
+    let initial = |field: &str, wave: f64| {
+        let hump = format!(
+            "[[initial]]\n{field} = {{ expression = \"exp(-((x-5)/0.5)^2)*cos({wave}*x)\" }}"
         );
-        let deck = parse(&text);
-        let model = deck.build().unwrap();
-        let warnings = deck.judge_waves(&model);
-        warnings.iter().map(|w| w.line()).collect::<Vec<_>>()
+        bar(0.02, 0.06, &hump)
     };
-    let initial = |field: &str, width: f64| {
-        bar(&format!(
-            "[[initial]]\n{field} = {{ expression = \"exp(-((x-5)/{width})^2)\" }}"
-        ))
-    };
-    // wide and narrow humps
+    // Wavelengths of a hundred spacings and of two.
     for field in ["displacement", "velocity"] {
-        assert!(initial(field, 0.5).is_empty());
-        let narrow = initial(field, 0.03);
+        assert!(initial(field, 3.0).is_empty());
+        let narrow = initial(field, 154.0);
         assert_eq!(narrow.len(), 1, "{narrow:?}");
         assert!(
             narrow[0].contains("% of the energy of this initial"),
             "{narrow:?}"
         );
+        assert!(
+            narrow[0].contains("from that in the nonlocal continuum"),
+            "{narrow:?}"
+        );
     }
     let pulse = |what: &str, duration: f64| {
-        bar(&format!(
+        let rest = format!(
             "{what}\nset = \"right\"\nfunction = {{ kind = \"pulse\", duration = {duration} }}"
-        ))
+        );
+        bar(0.02, 0.06, &rest)
     };
     for what in [
         "[[load]]\nbody_force = 1",
@@ -119,8 +127,133 @@ end = 5.0
         "[[prescribe]]\ndisplacement = 1",
     ] {
         assert!(pulse(what, 2.0).is_empty(), "{what}");
-        assert_eq!(pulse(what, 0.05).len(), 1, "{what}");
+        assert_eq!(pulse(what, 0.02).len(), 1, "{what}");
     }
+}
+
+/// The same hump in the same nonlocal model: too short for three spacings per horizon, but not for twelve.
+#[test]
+fn the_wave_warning_goes_away_on_a_finer_grid() {
+    let hump = |spacing: f64| {
+        let middle = 5.0 + 0.5 * spacing;
+        let hump = format!(
+            "[[initial]]\ndisplacement = {{ expression = \"exp(-((x-{middle})/0.008)^2)\" }}"
+        );
+        bar(spacing, 0.06, &hump)
+    };
+    assert_eq!(hump(0.02).len(), 1);
+    assert!(hump(0.005).is_empty());
+}
+
+#[test]
+fn rigid_motions_and_static_states_send_out_no_waves() {
+    let plate = |time: &str, rest: &str| {
+        let text = format!(
+            r#"
+[body]
+shape = "plate"
+size = [40, 6]
+spacing = 1
+plane = "stress"
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+[time]
+{time}
+{rest}"#
+        );
+        let deck = parse(&text);
+        let warnings = deck.judge_waves(&deck.build().unwrap());
+        warnings.iter().map(|w| w.line()).collect::<Vec<_>>()
+    };
+    // Turned by 0.3 rad, stress-free.
+    let turned = "[[initial]]\ndisplacement = [{ expression = \"cos(0.3)*x-sin(0.3)*y-x\" }, { expression = \"sin(0.3)*x+cos(0.3)*y-y\" }]";
+    assert!(plate("end = 10\ndt = 0.1", turned).is_empty());
+    let spinning =
+        "[[initial]]\nvelocity = [{ expression = \"-0.01*y\" }, { expression = \"0.01*x\" }]";
+    assert!(plate("end = 10\ndt = 0.1", spinning).is_empty());
+    let carried = "[[prescribe]]\nset = \"all\"\nvelocity = [1e-3, 0]";
+    assert!(plate("end = 10\ndt = 0.1", carried).is_empty());
+    // A sudden load has short waves, but not where it is taken to rest.
+    let sudden = "[sets]\nright = { layer = { side = \"+x\", cells = 1 } }\nleft = { layer = { side = \"-x\", cells = 3 } }\n[[load]]\nset = \"right\"\nbody_force = [1e-6, 0]\nfunction = { kind = \"pulse\", duration = 0.1 }\n[[prescribe]]\nset = \"left\"\ndisplacement = [0, 0]";
+    assert_eq!(plate("end = 10\ndt = 0.1", sudden).len(), 1);
+    let quiet = sudden.replace("function = { kind = \"pulse\", duration = 0.1 }\n", "");
+    assert!(plate("scheme = \"relaxation\"", &quiet).is_empty());
+}
+
+/// A plate of glass whose sides are pulled apart.
+fn pulled(conditions: &str) -> Vec<String> {
+    let text = format!(
+        r#"
+[body]
+shape = "plate"
+size = ["40 mm", "20 mm"]
+spacing = "1 mm"
+plane = "strain"
+[material]
+density = 2440
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+fracture_energy = "135 J/m2"
+[sets]
+top = {{ layer = {{ side = "+y", cells = 1 }} }}
+[time]
+end = "10 us"
+{conditions}"#
+    );
+    let model = build(&text);
+    model.warnings.iter().map(|w| w.line()).collect()
+}
+
+#[test]
+fn speeds_that_break_bonds_in_masses_are_warned_of() {
+    // 4 km/s is above the Rayleigh speed, 3159 m/s; a ramp starts at rest.
+    let ramp = "function = { kind = \"ramp\", duration = \"10 us\" }";
+    let fast = pulled(&format!(
+        "[[prescribe]]\nset = \"top\"\nvelocity = [0, \"4 km/s\"]\n{ramp}"
+    ));
+    // Even so the first step is too long.
+    assert_eq!(fast.len(), 2, "{fast:?}");
+    assert!(
+        fast[0].contains("reaches 3980 m/s, above the Rayleigh speed of 3159 m/s"),
+        "{fast:?}"
+    );
+    assert!(fast[0].starts_with("deck.toml:16:1"), "{fast:?}");
+    let sudden = |speed: &str| {
+        pulled(&format!(
+            "[[prescribe]]\nset = \"top\"\nvelocity = [0, \"{speed}\"]"
+        ))
+    };
+    let torn = sudden("100 m/s");
+    assert_eq!(torn.len(), 1, "{torn:?}");
+    assert!(torn[0].contains("stretches bonds of"), "{torn:?}");
+    assert!(
+        torn[0].contains("of 800 points beyond the critical stretch"),
+        "{torn:?}"
+    );
+    assert!(sudden("0.5 m/s").is_empty());
+    let initial = |x: &str| {
+        pulled(&format!(
+            "[[initial]]\nvelocity = [{{ expression = \"{x}\" }}, 0]"
+        ))
+    };
+    // A spread of 50 m/s over 40 mm tears nothing in one step; a jump in the middle does.
+    assert!(initial("50*x/0.04").is_empty());
+    let halves = initial("100*step(x-0.02)");
+    assert!(
+        halves
+            .iter()
+            .any(|line| line.contains("stretches bonds of")),
+        "{halves:?}"
+    );
+    assert!(
+        initial("10000*x/0.04")
+            .iter()
+            .any(|line| line.contains("initial velocity reaches"))
+    );
+    // The whole plate thrown fast: at rest for who moves with it.
+    assert!(initial("5000").is_empty());
 }
 
 #[test]

@@ -17,6 +17,8 @@ const MAGIC: &[u8; 8] = b"PERICLES";
 const VERSION: u32 = 1;
 /// Magic, version, length and CRC-32 of the header.
 const PREFIX: u64 = 24;
+/// A number of a JSON list takes 32 bytes of memory and at least two characters.
+const PER_CHARACTER: u64 = 16;
 
 /// A JSON value and named arrays.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -114,25 +116,38 @@ impl Container {
         out.write_all(&json)
     }
 
-    /// Reads a container. A file that is not exactly what was written is refused with the reason.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, IoError> {
+    /// Reads a container whose content may take so many bytes of memory.
+    ///
+    /// # Errors
+    /// A file that is not exactly what was written, with the reason; one whose content needs more memory.
+    pub fn read(path: impl AsRef<Path>, memory: u64) -> Result<Self, IoError> {
         let path = path.as_ref();
         let reading = |source| IoError::reading(path, source);
         let file = File::open(path).map_err(reading)?;
         let length = file.metadata().map_err(reading)?.len();
-        Self::read_from(path, BufReader::with_capacity(1 << 16, file), length)
+        Self::read_from(
+            path,
+            BufReader::with_capacity(1 << 16, file),
+            length,
+            memory,
+        )
     }
 
     /// The container in the content of a file, which messages call by this name.
     ///
     /// # Errors
-    /// Content that is not exactly what was written.
-    pub fn parse(name: impl AsRef<Path>, content: &[u8]) -> Result<Self, IoError> {
+    /// As [`Container::read`], but for a file that cannot be read.
+    pub fn parse(name: impl AsRef<Path>, content: &[u8], memory: u64) -> Result<Self, IoError> {
         let length = content.len() as u64;
-        Self::read_from(name.as_ref(), Cursor::new(content), length)
+        Self::read_from(name.as_ref(), Cursor::new(content), length, memory)
     }
 
-    fn read_from(path: &Path, mut file: impl Read + Seek, length: u64) -> Result<Self, IoError> {
+    fn read_from(
+        path: &Path,
+        mut file: impl Read + Seek,
+        length: u64,
+        memory: u64,
+    ) -> Result<Self, IoError> {
         let reading = |source| IoError::reading(path, source);
         let damaged = |reason: String| IoError::damaged(path, reason);
         let mut prefix = [0; PREFIX as usize];
@@ -159,6 +174,15 @@ impl Container {
                 "a header of {room} bytes does not fit into a file of {length}"
             )));
         }
+        let fits = |needed: u64| match needed {
+            needed if needed <= memory => Ok(()),
+            needed => Err(IoError::TooLarge {
+                path: path.to_path_buf(),
+                needed,
+                memory,
+            }),
+        };
+        fits(room.saturating_mul(PER_CHARACTER))?;
         let mut json = Vec::new();
         (&mut file)
             .take(room)
@@ -180,6 +204,9 @@ impl Container {
                 "its sections do not fill the {found} bytes after the header"
             )));
         }
+        let bytes = |entry: &Entry| entry.len.saturating_mul(entry.kind.bytes());
+        let needed = header.sections.iter().map(bytes);
+        fits(needed.fold(0, u64::saturating_add))?;
         let mut sections = BTreeMap::new();
         for entry in header.sections {
             let start = file.stream_position().map_err(reading)?;
@@ -284,7 +311,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.chk");
             container.write(&path).unwrap();
-            let back = Container::read(&path).unwrap();
+            let back = Container::read(&path, u64::MAX).unwrap();
             prop_assert_eq!(&back.metadata, &container.metadata);
             prop_assert!(back.sections == container.sections);
         }
@@ -296,7 +323,7 @@ mod tests {
             let mut file = if marked { b"PERICLES\x01\0\0\0".to_vec() } else { Vec::new() };
             file.extend(bytes);
             fs::write(&path, file).unwrap();
-            prop_assert!(Container::read(&path).is_err());
+            prop_assert!(Container::read(&path, u64::MAX).is_err());
         }
     }
 
@@ -312,6 +339,24 @@ mod tests {
     }
 
     #[test]
+    fn content_beyond_the_memory_is_refused_before_it_is_unpacked() {
+        const NUMBERS: usize = 1_000_000;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.chk");
+        let mut container = Container::default();
+        let zeros = Section::F64(vec![0.0; NUMBERS]);
+        container.sections.insert("u".into(), zeros);
+        container.write(&path).unwrap();
+        let size = fs::metadata(&path).unwrap().len();
+        let needed = 8 * NUMBERS as u64;
+        assert!(100 * size < needed, "{size}");
+        assert!(Container::read(&path, needed).is_ok());
+        let error = Container::read(&path, needed - 1).unwrap_err();
+        let told = matches!(error, IoError::TooLarge { needed: n, .. } if n == needed);
+        assert!(told, "{error}");
+    }
+
+    #[test]
     fn every_flipped_bit_and_every_truncation_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.chk");
@@ -319,7 +364,7 @@ mod tests {
         let good = fs::read(&path).unwrap();
         let refused = |bytes: &[u8], what: String| {
             fs::write(&path, bytes).unwrap();
-            let error = Container::read(&path).expect_err(&what);
+            let error = Container::read(&path, u64::MAX).expect_err(&what);
             let told = matches!(
                 error,
                 IoError::Damaged { .. } | IoError::UnsupportedVersion { .. }
@@ -357,7 +402,7 @@ mod tests {
             bytes.extend(text.as_bytes());
             bytes.extend(body);
             fs::write(&path, bytes).unwrap();
-            let error = Container::read(&path).unwrap_err();
+            let error = Container::read(&path, u64::MAX).unwrap_err();
             assert!(matches!(error, IoError::Damaged { .. }), "{text}: {error}");
         }
         let mut bytes = MAGIC.to_vec();
@@ -365,7 +410,7 @@ mod tests {
         bytes.extend(huge.to_le_bytes());
         bytes.extend([0; 4]);
         fs::write(&path, bytes).unwrap();
-        assert!(Container::read(&path).is_err());
+        assert!(Container::read(&path, u64::MAX).is_err());
     }
 
     #[test]
@@ -403,7 +448,7 @@ mod tests {
         let mut bytes = fs::read(&path).unwrap();
         bytes[8] = 9;
         fs::write(&path, bytes).unwrap();
-        let error = Container::read(&path).unwrap_err();
+        let error = Container::read(&path, u64::MAX).unwrap_err();
         assert!(matches!(
             error,
             IoError::UnsupportedVersion {
@@ -412,7 +457,7 @@ mod tests {
                 ..
             }
         ));
-        let gone = Container::read(folder.path().join("gone.chk"));
+        let gone = Container::read(folder.path().join("gone.chk"), u64::MAX);
         assert!(matches!(gone, Err(IoError::NotFound { .. })));
     }
 }

@@ -86,12 +86,12 @@ impl CheckpointFolder {
         Ok(steps)
     }
 
-    /// Reads the newest checkpoint that is whole, and tells which newer ones were refused and why.
-    pub fn latest_valid(&self) -> Result<LatestCheckpoint, IoError> {
+    /// Reads the newest checkpoint that is whole, and tells which newer ones were refused and why. Its content may take so many bytes of memory.
+    pub fn latest_valid(&self, memory: u64) -> Result<LatestCheckpoint, IoError> {
         let mut refused = Vec::new();
         for step in self.steps()?.into_iter().rev() {
             let path = self.file(step);
-            match Container::read(&path) {
+            match Container::read(&path, memory) {
                 Ok(container) => {
                     return Ok(LatestCheckpoint {
                         step,
@@ -100,6 +100,8 @@ impl CheckpointFolder {
                         refused,
                     });
                 }
+                // The one before it needs as much.
+                Err(error @ IoError::TooLarge { .. }) => return Err(error),
                 Err(error) => refused.push(error),
             }
         }
@@ -149,9 +151,9 @@ mod tests {
         for step in [100, 200] {
             folder.write(step, &state(step)).unwrap();
         }
-        assert_eq!(folder.latest_valid().unwrap().step, 200);
+        assert_eq!(folder.latest_valid(u64::MAX).unwrap().step, 200);
         damage(&folder.file(200));
-        let latest = folder.latest_valid().unwrap();
+        let latest = folder.latest_valid(u64::MAX).unwrap();
         assert_eq!((latest.step, latest.container), (100, state(100)));
         assert_eq!(latest.refused.len(), 1);
         assert_eq!(latest.refused[0].path(), folder.file(200));
@@ -162,7 +164,7 @@ mod tests {
 
         damage(&folder.file(100));
         damage(&folder.file(150));
-        let none = folder.latest_valid().unwrap_err();
+        let none = folder.latest_valid(u64::MAX).unwrap_err();
         assert!(matches!(&none, IoError::NoValidCheckpoint { refused, .. } if refused.len() == 2));
         assert!(none.to_string().contains("CRC-32"), "{none}");
     }
@@ -170,9 +172,9 @@ mod tests {
     #[test]
     fn a_folder_without_checkpoints_is_told_from_no_folder() {
         let place = tempfile::tempdir().unwrap();
-        let empty = CheckpointFolder::new(place.path()).latest_valid();
+        let empty = CheckpointFolder::new(place.path()).latest_valid(u64::MAX);
         assert!(matches!(empty, Err(IoError::NoValidCheckpoint { .. })));
-        let gone = CheckpointFolder::new(place.path().join("gone")).latest_valid();
+        let gone = CheckpointFolder::new(place.path().join("gone")).latest_valid(u64::MAX);
         assert!(matches!(gone, Err(IoError::NotFound { .. })));
     }
 }

@@ -25,7 +25,7 @@
 //! state.metadata = serde_json::json!({ "step": 1840 });
 //! state.sections.insert("velocity".into(), Section::F64(vec![0.1, -0.2]));
 //! checkpoints.write(1840, &state).unwrap();
-//! let latest = checkpoints.latest_valid().unwrap();
+//! let latest = checkpoints.latest_valid(u64::MAX).unwrap();
 //! assert_eq!((latest.step, latest.container), (1840, state));
 //! ```
 

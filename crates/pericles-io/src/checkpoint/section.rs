@@ -73,6 +73,17 @@ pub(super) enum Kind {
     U8,
 }
 
+impl Kind {
+    /// Bytes of one element.
+    pub(super) fn bytes(self) -> u64 {
+        match self {
+            Self::F64 | Self::U64 => 8,
+            Self::U32 => 4,
+            Self::U8 => 1,
+        }
+    }
+}
+
 /// How the bytes are stored, as the header names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Codec {

@@ -50,6 +50,10 @@ impl Column {
     }
 
     pub(super) fn from_header(cell: &str) -> Self {
+        let cell = match cell.strip_prefix('\'') {
+            Some(name) if is_formula(name) => name,
+            _ => cell,
+        };
         match cell
             .strip_suffix(']')
             .and_then(|rest| rest.rsplit_once(" ["))
@@ -93,14 +97,55 @@ pub(super) fn header_row(path: &Path, columns: &[Column]) -> Result<String, IoEr
     Ok(csv_row(&cells))
 }
 
-/// A row of texts with its line end, those with commas, quotes or line ends quoted as in RFC 4180.
+/// What a spreadsheet would compute: text that begins like a formula and is no number, alone or with a unit.
+fn is_formula(cell: &str) -> bool {
+    let number = || {
+        let first = cell.split_whitespace().next().unwrap_or_default();
+        first.parse::<f64>().is_ok()
+    };
+    cell.starts_with(['=', '@', '+', '-']) && !number()
+}
+
+/// A row of texts with its line end, those with commas, quotes or line ends quoted as in RFC 4180. Text that a spreadsheet would take for a formula gets an
+/// apostrophe in front, which spreadsheets read as "this is text".
 pub fn csv_row(cells: &[String]) -> String {
     let quoted = cells.iter().map(|cell| {
+        let cell = match is_formula(cell) {
+            true => format!("'{cell}"),
+            false => cell.clone(),
+        };
         if cell.contains(['"', ',', '\n', '\r']) {
             format!("\"{}\"", cell.replace('"', "\"\""))
         } else {
-            cell.clone()
+            cell
         }
     });
     quoted.collect::<Vec<_>>().join(",") + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_cell_is_a_formula_of_a_spreadsheet() {
+        let names = [
+            "=HYPERLINK(1)",
+            "@SUM(1)",
+            "+top",
+            "-2+3|cmd",
+            "top",
+            "'quoted",
+        ];
+        let row = csv_row(&names.map(String::from));
+        assert_eq!(row, "'=HYPERLINK(1),'@SUM(1),'+top,'-2+3|cmd,top,'quoted\n");
+        for (cell, name) in row.trim_end().split(',').zip(names) {
+            assert_eq!(Column::from_header(cell).name(), name);
+        }
+        let numbers = ["-1 mm", "+2.5", "-3e-4", "-inf"];
+        assert_eq!(
+            csv_row(&numbers.map(String::from)),
+            "-1 mm,+2.5,-3e-4,-inf\n"
+        );
+    }
 }

@@ -1,7 +1,7 @@
 //! What can be wrong with a file of a surface.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pericles::space::surface::SurfaceError;
 
@@ -67,6 +67,8 @@ impl fmt::Display for Place {
 pub(super) struct Fault {
     pub(super) place: Place,
     pub(super) reason: String,
+    /// Bytes that the content would take, where these are too many.
+    pub(super) needed: Option<u64>,
 }
 
 impl Fault {
@@ -74,6 +76,7 @@ impl Fault {
         Self {
             place: Place::Line(line),
             reason: reason.into(),
+            needed: None,
         }
     }
 
@@ -81,6 +84,7 @@ impl Fault {
         Self {
             place: Place::Byte(byte),
             reason: reason.into(),
+            needed: None,
         }
     }
 
@@ -88,6 +92,32 @@ impl Fault {
         Self {
             place: Place::File,
             reason: reason.into(),
+            needed: None,
+        }
+    }
+
+    /// Content that would take so many bytes, more than there may be.
+    pub(super) fn too_large(needed: u64) -> Self {
+        Self {
+            needed: Some(needed),
+            ..Self::of_file("too large")
+        }
+    }
+
+    /// The error of this file, read with so many bytes of memory.
+    pub(super) fn of(self, path: &Path, memory: u64) -> MeshError {
+        let path = path.to_path_buf();
+        match self.needed {
+            Some(needed) => MeshError::Io(IoError::TooLarge {
+                path,
+                needed,
+                memory,
+            }),
+            None => MeshError::Content {
+                path,
+                place: self.place,
+                reason: self.reason,
+            },
         }
     }
 }

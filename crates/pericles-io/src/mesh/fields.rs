@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::{Fault, MeshError};
 use super::vtk::File;
-use crate::IoError;
+use crate::whole::read_whole;
 
 /// The points of a file with their fields.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,27 +38,27 @@ impl FieldData {
 /// Reads the points and point data of a `.vtu` or `.vtp` file.
 ///
 /// # Errors
-/// A file that cannot be read; content that is not VTK XML, arrays that are damaged or not as long as the points are many.
-pub fn read_fields(path: impl AsRef<Path>) -> Result<FieldData, MeshError> {
+/// A file that cannot be read or needs more than `memory` bytes; content that is not VTK XML, arrays that are damaged or not as long as the points are
+/// many.
+pub fn read_fields(path: impl AsRef<Path>, memory: u64) -> Result<FieldData, MeshError> {
     let path = path.as_ref();
-    let content = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
-    parse_fields(path, &content)
+    parse_fields(path, &read_whole(path, 1, memory)?, memory)
 }
 
 /// The same of the content of a file, which messages call by this name.
 ///
 /// # Errors
 /// As [`read_fields`], but for a file that cannot be read.
-pub fn parse_fields(name: impl AsRef<Path>, content: &[u8]) -> Result<FieldData, MeshError> {
-    parse(content).map_err(|Fault { place, reason }| MeshError::Content {
-        path: name.as_ref().into(),
-        place,
-        reason,
-    })
+pub fn parse_fields(
+    name: impl AsRef<Path>,
+    content: &[u8],
+    memory: u64,
+) -> Result<FieldData, MeshError> {
+    parse(content, memory).map_err(|fault| fault.of(name.as_ref(), memory))
 }
 
-fn parse(content: &[u8]) -> Result<FieldData, Fault> {
-    let file = File::new(content)?;
+fn parse(content: &[u8], memory: u64) -> Result<FieldData, Fault> {
+    let file = File::new(content, memory)?;
     let points = file.array("Points", None)?.real();
     let count = points.len() / 3;
     let mut fields = Vec::new();
@@ -88,7 +88,7 @@ fn parse(content: &[u8]) -> Result<FieldData, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{VtkField, VtuFile};
+    use crate::{IoError, VtkField, VtuFile};
 
     #[test]
     fn what_was_written_comes_back() {
@@ -106,7 +106,7 @@ mod tests {
             .field(VtkField::vector("Displacement", &u))
             .write(&path)
             .unwrap();
-        let data = read_fields(&path).unwrap();
+        let data = read_fields(&path, u64::MAX).unwrap();
         assert_eq!(data.time, Some(1.5e-6));
         assert_eq!(
             data.points,
@@ -123,6 +123,29 @@ mod tests {
     }
 
     #[test]
+    fn compressed_arrays_beyond_the_memory_are_refused_before_they_are_unpacked() {
+        const POINTS: usize = 200_000;
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("zeros.vtu");
+        VtuFile::new(1, &vec![0.0; POINTS]).write(&path).unwrap();
+        let size = std::fs::metadata(&path).unwrap().len();
+        // Places of three numbers: the bytes, and the numbers made of them.
+        let needed = 2 * 24 * POINTS as u64;
+        assert!(10 * size < needed, "{size}");
+        assert!(read_fields(&path, needed + size).is_ok());
+        for memory in [size, needed - 1] {
+            let error = read_fields(&path, memory).unwrap_err();
+            let found = matches!(error, MeshError::Io(IoError::TooLarge { needed: n, .. }) if n == needed + size);
+            assert!(found, "{error}");
+        }
+        let error = read_fields(&path, size - 1).unwrap_err();
+        assert!(
+            matches!(error, MeshError::Io(IoError::TooLarge { .. })),
+            "{error}"
+        );
+    }
+
+    #[test]
     fn a_file_cut_short_is_refused_at_every_length() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("a.vtu");
@@ -132,11 +155,11 @@ mod tests {
         let whole = std::fs::read(&path).unwrap();
         for length in 0..whole.len() - 1 {
             assert!(
-                parse(&whole[..length]).is_err(),
+                parse(&whole[..length], u64::MAX).is_err(),
                 "{length} of {}",
                 whole.len()
             );
         }
-        assert!(parse(&whole).is_ok());
+        assert!(parse(&whole, u64::MAX).is_ok());
     }
 }

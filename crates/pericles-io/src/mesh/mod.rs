@@ -33,11 +33,14 @@ use std::path::Path;
 
 use pericles::space::surface::{Surface, SurfaceError};
 
-use crate::IoError;
+use crate::whole::read_whole;
 use error::Fault;
 
 /// Corners of an STL file nearer than this part of the surface's largest side are one vertex.
 const WELD: f64 = 1e-9;
+
+/// Memory that a file takes over its size: its content, the numbers in it, and the surface made of them.
+const EXPANSION: u64 = 8;
 
 /// The endings of files that are read.
 pub const SURFACE_ENDINGS: [&str; 7] = ["obj", "ply", "stl", "off", "msh", "vtu", "vtp"];
@@ -45,26 +48,31 @@ pub const SURFACE_ENDINGS: [&str; 7] = ["obj", "ply", "stl", "off", "msh", "vtu"
 /// Reads a surface; the ending of the file's name tells the format.
 ///
 /// # Errors
-/// A file that cannot be read, an unknown ending, content that is not what the format says, with its place, and what [`Surface::new`] refuses.
-pub fn read_surface(path: impl AsRef<Path>) -> Result<Surface, MeshError> {
+/// A file that cannot be read or needs more than `memory` bytes, an unknown ending, content that is not what the format says, with its place, and what
+/// [`Surface::new`] refuses.
+pub fn read_surface(path: impl AsRef<Path>, memory: u64) -> Result<Surface, MeshError> {
     let path = path.as_ref();
     let format = Format::of(path)?;
-    let content = std::fs::read(path).map_err(|source| IoError::reading(path, source))?;
-    format.surface(path, &content)
+    let content = read_whole(path, EXPANSION, memory)?;
+    format.surface(path, &content, memory)
 }
 
 /// The surface in the content of a file; its name tells the format, and is what messages call it.
 ///
 /// # Errors
 /// As [`read_surface`], but for a file that cannot be read.
-pub fn parse_surface(name: impl AsRef<Path>, content: &[u8]) -> Result<Surface, MeshError> {
+pub fn parse_surface(
+    name: impl AsRef<Path>,
+    content: &[u8],
+    memory: u64,
+) -> Result<Surface, MeshError> {
     let name = name.as_ref();
-    Format::of(name)?.surface(name, content)
+    Format::of(name)?.surface(name, content, memory)
 }
 
 /// A format by its ending.
 struct Format {
-    parse: fn(&[u8]) -> Result<Mesh, Fault>,
+    parse: fn(&[u8], u64) -> Result<Mesh, Fault>,
     /// Corners are given again for every triangle.
     unwelded: bool,
     /// Vertices may belong to other things than surfaces.
@@ -78,12 +86,13 @@ impl Format {
             .unwrap_or_default()
             .to_string_lossy()
             .to_lowercase();
-        let parse = match ending.as_str() {
-            "obj" => obj::parse,
-            "ply" => ply::parse,
-            "stl" => stl::parse,
-            "off" => off::parse,
-            "msh" => gmsh::parse,
+        let parse: fn(&[u8], u64) -> Result<Mesh, Fault> = match ending.as_str() {
+            // Only VTK's arrays are compressed: the others take little more than the content.
+            "obj" => |content, _| obj::parse(content),
+            "ply" => |content, _| ply::parse(content),
+            "stl" => |content, _| stl::parse(content),
+            "off" => |content, _| off::parse(content),
+            "msh" => |content, _| gmsh::parse(content),
             "vtu" | "vtp" => vtk::parse,
             _ => return Err(MeshError::UnknownFormat { path: path.into() }),
         };
@@ -94,12 +103,8 @@ impl Format {
         })
     }
 
-    fn surface(&self, path: &Path, content: &[u8]) -> Result<Surface, MeshError> {
-        let mesh = (self.parse)(content).map_err(|Fault { place, reason }| MeshError::Content {
-            path: path.into(),
-            place,
-            reason,
-        })?;
+    fn surface(&self, path: &Path, content: &[u8], memory: u64) -> Result<Surface, MeshError> {
+        let mesh = (self.parse)(content, memory).map_err(|fault| fault.of(path, memory))?;
         self.made(mesh).map_err(|source| MeshError::Surface {
             path: path.into(),
             source,

@@ -338,7 +338,7 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
 
 fn read(ending: &str, content: &[u8]) -> Result<Surface, MeshError> {
     let path = Path::new("surface").with_extension(ending);
-    Format::of(&path)?.surface(&path, content)
+    Format::of(&path)?.surface(&path, content, u64::MAX)
 }
 
 #[test]
@@ -496,8 +496,8 @@ fn huge_counts_and_wrong_words_are_refused_with_their_place() {
         "{message}"
     );
     assert!(matches!(
-        read_surface("no/such/file.obj"),
-        Err(MeshError::Io(IoError::NotFound { .. }))
+        read_surface("no/such/file.obj", u64::MAX),
+        Err(MeshError::Io(crate::IoError::NotFound { .. }))
     ));
 }
 
@@ -513,7 +513,7 @@ fn points_written_by_our_own_writer_are_read_back() {
         .field(VtkField::scalar("Points", &field))
         .write(&path)
         .unwrap();
-    let mesh = vtk::parse(&std::fs::read(path).unwrap()).unwrap();
+    let mesh = vtk::parse(&std::fs::read(path).unwrap(), u64::MAX).unwrap();
     assert!(mesh.triangles.is_empty());
     let expected: Vec<[f64; 3]> = (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
     assert_eq!(mesh.positions, expected);
@@ -531,7 +531,7 @@ fn a_surface_written_by_our_own_writer_is_read_back() {
         .field(VtkField::scalar("Height", &positions[2 * x.len()..]))
         .write(&path)
         .unwrap();
-    let read = read_surface(&path).unwrap();
+    let read = read_surface(&path, u64::MAX).unwrap();
     assert_eq!(read.positions(), x);
     assert_eq!(read.triangles(), sphere.triangles());
 }

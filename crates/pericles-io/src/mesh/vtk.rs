@@ -1,5 +1,7 @@
 //! VTK XML files: `UnstructuredGrid` with its cells, `PolyData` with its polygons.
 
+use std::cell::Cell;
+
 use super::Mesh;
 use super::bytes::{Scalar, no_vertex, vertex_number};
 use super::error::Fault;
@@ -8,8 +10,8 @@ use super::vtk_array::{Encoding, Source, read};
 /// Cell types of VTK: triangle, polygon, quadrilateral.
 const FACES: [i64; 3] = [5, 7, 9];
 
-pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
-    let file = File::new(content)?;
+pub(super) fn parse(content: &[u8], memory: u64) -> Result<Mesh, Fault> {
+    let file = File::new(content, memory)?;
     let points = file.array("Points", None)?.real();
     if points.len() % 3 != 0 {
         return Err(Fault::of_file(format!(
@@ -82,6 +84,9 @@ pub(super) struct File<'a> {
     elements: Vec<Element<'a>>,
     encoding: Encoding,
     appended: Option<(Appended, &'a [u8])>,
+    /// Bytes that arrays may still take.
+    room: Cell<u64>,
+    memory: u64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,7 +133,8 @@ impl<'a> Element<'a> {
 }
 
 impl<'a> File<'a> {
-    pub(super) fn new(content: &'a [u8]) -> Result<Self, Fault> {
+    /// A file whose content and arrays may take `memory` bytes together.
+    pub(super) fn new(content: &'a [u8], memory: u64) -> Result<Self, Fault> {
         let last = b"</VTKFile>";
         if !content
             .windows(last.len())
@@ -191,6 +197,8 @@ impl<'a> File<'a> {
             elements,
             encoding,
             appended,
+            room: Cell::new(memory.saturating_sub(content.len() as u64)),
+            memory,
         })
     }
 
@@ -289,7 +297,16 @@ impl<'a> File<'a> {
                 )));
             }
         };
-        read(source, scalar, self.encoding, what)
+        let (numbers, taken) =
+            read(source, scalar, self.encoding, what, self.room.get()).map_err(|fault| Fault {
+                // Of the file as a whole: what arrays before have taken is needed as well.
+                needed: fault
+                    .needed
+                    .map(|needed| needed + (self.memory - self.room.get())),
+                ..fault
+            })?;
+        self.room.set(self.room.get() - taken);
+        Ok(numbers)
     }
 }
 

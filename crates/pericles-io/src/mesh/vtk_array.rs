@@ -54,41 +54,59 @@ impl Numbers {
     }
 }
 
-/// Reads an array.
+/// Reads an array that may take `room` bytes; tells how many its numbers take.
 pub(super) fn read(
     source: Source<'_>,
     scalar: Scalar,
     encoding: Encoding,
     what: &str,
-) -> Result<Numbers, Fault> {
+    room: u64,
+) -> Result<(Numbers, u64), Fault> {
     let real = matches!(scalar, Scalar::F32 | Scalar::F64);
     if let Source::Text(text) = source {
-        return Ok(if real {
+        // A number has a character and a blank at least, and takes eight bytes; a list that grows has room for twice its length.
+        let taken = 8 * text.len() as u64;
+        if taken > room {
+            return Err(Fault::too_large(taken));
+        }
+        let numbers = if real {
             Numbers::Real(words(text, what)?)
         } else {
             Numbers::Whole(words(text, what)?)
-        });
+        };
+        return Ok((numbers, taken));
     }
-    let data = match encoding.packed {
-        true => unpacked(source, encoding),
-        false => plain(source, encoding),
+    // The bytes, and the numbers of eight bytes made of them.
+    let taken_of =
+        |bytes: u64| bytes.saturating_add((bytes / scalar.bytes() as u64).saturating_mul(8));
+    let fits = |bytes: u64| match taken_of(bytes) {
+        taken if taken <= room => Ok(()),
+        taken => Err(Fault::too_large(taken)),
     };
-    let data = data.map_err(|fault| Fault::of_file(format!("{what}: {}", fault.reason)))?;
+    let data = match encoding.packed {
+        true => unpacked(source, encoding, fits),
+        false => plain(source, encoding, fits),
+    };
+    let data = data.map_err(|fault| Fault {
+        needed: fault.needed,
+        ..Fault::of_file(format!("{what}: {}", fault.reason))
+    })?;
     let count = data.len() / scalar.bytes();
     let mut bytes = Bytes::new(&data, 0, encoding.little);
-    if real {
-        Ok(Numbers::Real(
+    let numbers = if real {
+        Numbers::Real(
             (0..count)
                 .map(|_| bytes.real(scalar))
                 .collect::<Result<_, _>>()?,
-        ))
+        )
     } else {
-        Ok(Numbers::Whole(
+        Numbers::Whole(
             (0..count)
                 .map(|_| bytes.integer(scalar))
                 .collect::<Result<_, _>>()?,
-        ))
-    }
+        )
+    };
+    Ok((numbers, taken_of(data.len() as u64)))
 }
 
 /// All words of a text as numbers.
@@ -114,17 +132,27 @@ fn begun(source: Source<'_>, characters: usize) -> Result<Cow<'_, [u8]>, Fault> 
     }
 }
 
-/// The number of bytes, then the bytes.
-fn plain(source: Source<'_>, encoding: Encoding) -> Result<Vec<u8>, Fault> {
+/// The number of bytes, then the bytes; `fits` refuses too many.
+fn plain(
+    source: Source<'_>,
+    encoding: Encoding,
+    fits: impl Fn(u64) -> Result<(), Fault>,
+) -> Result<Vec<u8>, Fault> {
     let data = begun(source, usize::MAX)?;
     let mut bytes = Bytes::new(&data, 0, encoding.little);
     let length = bytes.integer(encoding.header)? as u64;
     let length = bytes.room(length, 1, "bytes")?;
+    fits(length as u64)?;
     Ok(bytes.take(length)?.to_vec())
 }
 
 /// The number of blocks, the bytes in a block, those in the last one if it is not full, the packed bytes of every block; then the blocks.
-fn unpacked(source: Source<'_>, encoding: Encoding) -> Result<Vec<u8>, Fault> {
+/// `fits` refuses too many bytes.
+fn unpacked(
+    source: Source<'_>,
+    encoding: Encoding,
+    fits: impl Fn(u64) -> Result<(), Fault>,
+) -> Result<Vec<u8>, Fault> {
     let size = encoding.header.bytes();
     // In base64 the table is a group of its own: its length must be known before the rest can be decoded.
     let head = begun(source, group(size))?;
@@ -154,6 +182,8 @@ fn unpacked(source: Source<'_>, encoding: Encoding) -> Result<Vec<u8>, Fault> {
     let mut table = Bytes::new(&table, size, encoding.little);
     let full = table.integer(encoding.header)? as u64;
     let last = table.integer(encoding.header)? as u64;
+    let before_last = full.saturating_mul(blocks.saturating_sub(1) as u64);
+    fits(before_last.saturating_add(if last > 0 { last } else { full }))?;
     let mut packed = Bytes::new(&data, 0, encoding.little);
     let mut all = Vec::new();
     for block in 0..blocks {

@@ -1,10 +1,11 @@
 //! Columns that only some histories have.
 
 use pericles::analysis::exact::{ExactSolution, Miss};
-use pericles::observe::{EnergyInequality, Snapshot};
+use pericles::observe::{EnergyInequality, Field, Snapshot};
 use pericles::space::PointSet;
 use pericles::{Archive, Result, Saved, Values};
 
+use super::pictures::{name_of, scalar_of};
 use super::table::whole;
 use crate::csv::{Cell, Column};
 
@@ -104,6 +105,53 @@ impl Saved for ErrorColumns {
         )
     }
 }
+
+/// The least and the greatest value over the points of fields, or of components of them; of a vector or tensor without a component those of its norm.
+pub struct ExtremeColumns {
+    fields: Vec<(Field, Option<usize>)>,
+    dimension: usize,
+}
+
+impl ExtremeColumns {
+    /// Extremes of these fields of a body of this dimension.
+    pub fn new(fields: Vec<(Field, Option<usize>)>, dimension: usize) -> Self {
+        Self { fields, dimension }
+    }
+}
+
+impl HistoryColumns for ExtremeColumns {
+    fn columns(&self) -> Vec<Column> {
+        let named = self.fields.iter().flat_map(|&(field, component)| {
+            let name = name_of(field, component, self.dimension);
+            ["min", "max"].map(|what| Column::real(format!("{what}_{name}"), field.unit()))
+        });
+        named.collect()
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+        let points = snapshot.system().points();
+        let extremes = self.fields.iter().flat_map(|&(field, component)| {
+            let values = scalar_of(snapshot.field(field), points, component);
+            let fold = |start: f64, pick: fn(f64, f64) -> f64| {
+                // A value that is no number must show: it is neither least nor greatest.
+                values
+                    .iter()
+                    .fold(start, |found, &value| match value.is_nan() {
+                        true => f64::NAN,
+                        false if found.is_nan() => found,
+                        false => pick(found, value),
+                    })
+            };
+            [
+                fold(f64::INFINITY, f64::min),
+                fold(f64::NEG_INFINITY, f64::max),
+            ]
+        });
+        extremes.map(Cell::from).collect()
+    }
+}
+
+impl Saved for ExtremeColumns {}
 
 /// What kinetic plus elastic energy cannot exceed, and by how much they stay below it, J.
 pub struct EnergyBoundColumns(pub EnergyInequality);

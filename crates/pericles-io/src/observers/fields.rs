@@ -181,6 +181,9 @@ impl Output {
 
 impl Observer for FieldSeries {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        for field in &self.wanted {
+            snapshot.check(*field)?;
+        }
         Ok(self.write(snapshot)?)
     }
 

@@ -61,7 +61,7 @@ mod reactions;
 mod surface;
 mod table;
 
-pub use columns::{EnergyBoundColumns, ErrorColumns, HistoryColumns, InnerColumns};
+pub use columns::{EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
 pub use fields::FieldSeries;
 pub use fragments::FragmentCourse;

@@ -50,6 +50,35 @@ pub struct DrawnState<'a> {
     pub values: &'a [f64],
 }
 
+/// The name of a field or of a component of it, in a body of a dimension: `Damage`, `Velocity_x`.
+pub(super) fn name_of(field: Field, component: Option<usize>, dimension: usize) -> String {
+    match component {
+        Some(component) => {
+            format!(
+                "{}_{}",
+                field.name(),
+                field.components(dimension)[component]
+            )
+        }
+        None => field.name().to_owned(),
+    }
+}
+
+/// One number for each point of a field, component after component: a component, the field itself if it has only one, or the norm of all.
+pub(super) fn scalar_of(field: &[f64], points: usize, component: Option<usize>) -> Cow<'_, [f64]> {
+    if let Some(component) = component {
+        return Cow::Borrowed(&field[component * points..(component + 1) * points]);
+    }
+    if field.len() == points {
+        return Cow::Borrowed(field);
+    }
+    let norm = |i: usize| {
+        let squares = field.chunks(points).map(|component| component[i].powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    Cow::Owned((0..points).map(norm).collect())
+}
+
 impl PictureOf {
     /// A field, vectors by magnitude, on the points as they are displaced.
     pub fn new(field: Field) -> Self {
@@ -68,28 +97,12 @@ impl PictureOf {
 
     /// `Damage`, `Velocity`, `Velocity_x`, `Stress_yy` … in a body of a dimension.
     pub fn name(&self, dimension: usize) -> String {
-        match self.component {
-            Some(component) => {
-                let names = self.field.components(dimension);
-                format!("{}_{}", self.field.name(), names[component])
-            }
-            None => self.field.name().to_owned(),
-        }
+        name_of(self.field, self.component, dimension)
     }
 
     /// What is drawn of a field, component after component: one number per point, the field itself, a component, or the norm of all.
     pub fn numbers<'a>(&self, field: &'a [f64], points: usize) -> Cow<'a, [f64]> {
-        if let Some(component) = self.component {
-            return Cow::Borrowed(&field[component * points..(component + 1) * points]);
-        }
-        if field.len() == points {
-            return Cow::Borrowed(field);
-        }
-        let norm = |i: usize| {
-            let squares = field.chunks(points).map(|component| component[i].powi(2));
-            squares.sum::<f64>().sqrt()
-        };
-        Cow::Owned((0..points).map(norm).collect())
+        scalar_of(field, points, self.component)
     }
 
     /// Draws the picture of a state into a file.
@@ -218,6 +231,7 @@ impl Pictures {
 
 impl Observer for Pictures {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        snapshot.check(self.what.field)?;
         self.what.draw(snapshot, self.still(self.drawn))?;
         self.drawn += 1;
         Ok(())

@@ -150,7 +150,8 @@ impl<'a> FieldPicture<'a> {
         self
     }
 
-    /// Draws the points at their displaced places, the displacement (x of all points, then y …) enlarged by `scale`.
+    /// Draws the points at their displaced places, the displacement (x of all points, then y …) enlarged by `scale`. The field of a bar is a curve over the reference coordinate, displaced or
+    /// not.
     pub fn displacement(mut self, displacement: &'a [f64], scale: f64) -> Self {
         self.displacement = Some((displacement, scale));
         self
@@ -406,13 +407,6 @@ impl<'a> FieldPicture<'a> {
             .unwrap_or_default()
     }
 
-    /// Charts have no second line.
-    fn stamp_of_bar(&self) -> String {
-        let mut said = vec![self.stamp(), self.note()];
-        said.retain(|words| !words.is_empty());
-        said.join(", ")
-    }
-
     /// What is said of displacements that are drawn larger than they are: places along the axes would else be read as those of the body.
     fn note(&self) -> String {
         let enlarged = self.displacement.filter(|(_, scale)| *scale != 1.0);
@@ -421,11 +415,12 @@ impl<'a> FieldPicture<'a> {
             .unwrap_or_default()
     }
 
-    /// The field of a bar as a curve.
+    /// The field of a bar as a curve over the reference coordinate. Over displaced places a displacement as large as the bar's features would shear the curve, and a symmetric field would
+    /// not look symmetric.
     fn along_the_bar(&self) -> LineChart {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
         order.sort_by(|&a, &b| self.positions[a].total_cmp(&self.positions[b]));
-        let x: Vec<f64> = order.iter().map(|&point| self.place(point)[0]).collect();
+        let x: Vec<f64> = order.iter().map(|&point| self.positions[point]).collect();
         let y: Vec<f64> = order.iter().map(|&point| self.values[point]).collect();
         let mut along = Axis::new("x", self.length_unit);
         if let Some((low, high)) = self.window {
@@ -437,7 +432,7 @@ impl<'a> FieldPicture<'a> {
         }
         LineChart::new(along, across)
             .title(&self.title)
-            .stamp(self.stamp_of_bar())
+            .stamp(self.stamp())
             .width(self.width)
             .curve(Curve::line("", &x, &y))
     }

@@ -1,5 +1,10 @@
 //! Filled cells: at every pixel the cell with the smallest key wins, the distance from its middle in the plane and the depth in
 //! space, so that neighbours share a clean border and the order of the points does not matter where their keys differ.
+//!
+//! Of faces of equal depth the one of the smaller number wins, so that the order in which they are drawn does not matter at all. Large faces that lie behind
+//! all that is drawn in their place are found by the largest key of every tile of pixels: a rod seen end on has as many layers as cells along it.
+
+use std::ops::Range;
 
 use super::bitmap::{Bitmap, Rgb, WHITE};
 
@@ -11,8 +16,18 @@ pub(super) struct Raster {
     /// Fine pixels per pixel and direction; their mean smooths the edges.
     fine: usize,
     key: Vec<f32>,
+    /// The number of the face that has the key.
+    owner: Vec<u32>,
     colour: Vec<Rgb>,
+    /// The largest key of each tile; none where pixels have changed since it was found.
+    tiles: Vec<Option<f32>>,
+    /// Pixels that were looked at.
+    #[cfg(test)]
+    visited: usize,
 }
+
+/// Fine pixels across a tile.
+const TILE: usize = 16;
 
 /// A parallelogram in space: its middle and the two half edges; (x, y) in pixels, then the distance from the viewer.
 #[derive(Debug, Clone, Copy)]
@@ -32,12 +47,16 @@ impl Raster {
             height,
             fine,
             key: vec![f32::INFINITY; width * height],
+            owner: vec![u32::MAX; width * height],
+            tiles: vec![None; width.div_ceil(TILE) * height.div_ceil(TILE)],
+            #[cfg(test)]
+            visited: 0,
             colour: vec![WHITE; width * height],
         }
     }
 
     /// The fine pixels from `low` to `high`, as far as they lie inside `size`.
-    fn range(low: f64, high: f64, size: usize) -> std::ops::Range<usize> {
+    fn range(low: f64, high: f64, size: usize) -> Range<usize> {
         // from the first to the last pixel whose middle is inside; a cast of a negative number gives zero
         let first = (low - 0.5).ceil().max(0.0) as usize;
         let end = ((high - 0.5).floor() + 1.0).max(0.0) as usize;
@@ -45,11 +64,46 @@ impl Raster {
     }
 
     fn put(&mut self, i: usize, j: usize, key: f32, colour: Rgb) {
+        self.put_of(i, j, key, u32::MAX, colour);
+    }
+
+    fn put_of(&mut self, i: usize, j: usize, key: f32, number: u32, colour: Rgb) {
         let at = j * self.width + i;
-        if key < self.key[at] {
+        if key < self.key[at] || key == self.key[at] && number < self.owner[at] {
             self.key[at] = key;
+            self.owner[at] = number;
             self.colour[at] = colour;
+            self.tiles[j / TILE * self.width.div_ceil(TILE) + i / TILE] = None;
         }
+    }
+
+    /// Whether all of a rectangle of pixels is covered by what is nearer than this key. Small ones are not looked at: drawing them costs no more.
+    fn hides(&mut self, columns: &Range<usize>, rows: &Range<usize>, key: f32) -> bool {
+        if columns.len() * rows.len() < TILE * TILE {
+            return false;
+        }
+        let across = self.width.div_ceil(TILE);
+        for row in rows.start / TILE..rows.end.div_ceil(TILE) {
+            for column in columns.start / TILE..columns.end.div_ceil(TILE) {
+                let tile = row * across + column;
+                let largest = match self.tiles[tile] {
+                    Some(largest) => largest,
+                    None => self.largest_key(column, row),
+                };
+                self.tiles[tile] = Some(largest);
+                if largest >= key {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    fn largest_key(&self, column: usize, row: usize) -> f32 {
+        let columns = column * TILE..((column + 1) * TILE).min(self.width);
+        let rows = row * TILE..((row + 1) * TILE).min(self.height);
+        rows.flat_map(|j| &self.key[j * self.width + columns.start..j * self.width + columns.end])
+            .fold(f32::NEG_INFINITY, |most, &key| most.max(key))
     }
 
     /// A cell seen flat: middle and half edges in pixels. It reaches a tenth further than it is large, and half a pixel at least, so
@@ -70,7 +124,7 @@ impl Raster {
     }
 
     /// A face seen from any side, with a seam of half a pixel around it so that no light shines between neighbours.
-    pub(super) fn face(&mut self, face: &Face, colour: Rgb) {
+    pub(super) fn face(&mut self, face: &Face, number: u32, colour: Rgb) {
         let fine = self.fine as f64;
         let [x, y, depth] = [face.middle[0] * fine, face.middle[1] * fine, face.middle[2]];
         let [ax, ay] = [face.a[0] * fine, face.a[1] * fine];
@@ -86,7 +140,16 @@ impl Raster {
         let (most_s, most_t) = (slack(length_b), slack(length_a));
         let reach = |a: f64, b: f64| most_s * a.abs() + most_t * b.abs();
         let columns = Self::range(x - reach(ax, bx), x + reach(ax, bx), self.width);
-        for j in Self::range(y - reach(ay, by), y + reach(ay, by), self.height) {
+        let rows = Self::range(y - reach(ay, by), y + reach(ay, by), self.height);
+        let nearest = depth - most_s * face.a[2].abs() - most_t * face.b[2].abs();
+        if self.hides(&columns, &rows, nearest as f32) {
+            return;
+        }
+        #[cfg(test)]
+        {
+            self.visited += columns.len() * rows.len();
+        }
+        for j in rows {
             let v = j as f64 + 0.5 - y;
             for i in columns.clone() {
                 let u = i as f64 + 0.5 - x;
@@ -99,7 +162,7 @@ impl Raster {
                         0.0
                     };
                     let key = depth + s * face.a[2] + t * face.b[2] + seam;
-                    self.put(i, j, key as f32, colour);
+                    self.put_of(i, j, key as f32, number, colour);
                 }
             }
         }
@@ -230,12 +293,46 @@ mod tests {
                 order.reverse();
             }
             for (depth, colour) in order {
-                raster.face(&face(depth), colour);
+                raster.face(&face(depth), 0, colour);
             }
             let bitmap = bitmap_of(&raster);
             assert_eq!(bitmap.pixel(20, 20), RED);
             assert_eq!(bitmap.pixel(2, 2), [255; 3]);
         }
+    }
+
+    /// Layers of 10 × 10 square cells one behind the other, by their distance from the viewer; each layer a little askew.
+    fn layers(order: impl Iterator<Item = u32>) -> Raster {
+        let mut raster = Raster::new(400, 400, 2);
+        for layer in order {
+            let depth = f64::from(layer);
+            for cell in 0..100_u32 {
+                let face = Face {
+                    middle: [
+                        40.0 * f64::from(cell % 10) + 20.0,
+                        40.0 * f64::from(cell / 10) + 20.0,
+                        depth,
+                    ],
+                    a: [20.0, 0.5, 0.1],
+                    b: [-0.5, 20.0, -0.2],
+                    seam: 0.3,
+                };
+                raster.face(&face, 100 * layer + cell, [cell as u8, layer as u8, 0]);
+            }
+        }
+        raster
+    }
+
+    #[test]
+    fn hidden_layers_are_not_visited_and_pictures_do_not_depend_on_the_order() {
+        let one = layers(0..1).visited;
+        let many = layers(0..50);
+        // Seams between the cells of the first layer let the second one through.
+        assert!(many.visited < 4 * one, "{} {one}", many.visited);
+        let reversed = layers((0..50).rev());
+        assert!(reversed.visited > 40 * one);
+        assert_eq!(many.colour, reversed.colour);
+        assert_eq!(many.key, reversed.key);
     }
 
     #[test]
@@ -251,8 +348,8 @@ mod tests {
             a: [10.0, 0.0, 1.0],
             ..flat
         };
-        raster.face(&flat, RED);
-        raster.face(&tilted, BLUE);
+        raster.face(&flat, 0, RED);
+        raster.face(&tilted, 1, BLUE);
         let bitmap = bitmap_of(&raster);
         assert_eq!(bitmap.pixel(12, 20), BLUE);
         assert_eq!(bitmap.pixel(28, 20), RED);

@@ -149,7 +149,14 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let fine = if scene.cells.len() > MANY { 1 } else { 2 };
     let mut raster = Raster::new(area.width() as usize, height as usize, fine);
     let light = view.light();
-    for cell in &scene.cells {
+    // Nearer ones first, so that what they hide can be left out.
+    let mut order: Vec<(usize, f64)> = (scene.cells.iter())
+        .map(|cell| -dot(cell.middle, view.eye))
+        .enumerate()
+        .collect();
+    order.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    for (k, _) in order {
+        let cell = &scene.cells[k];
         let place = |p: [f64; 3], of: [f64; 2]| -> [f64; 3] {
             let [x, y, near] = view.project(p);
             [(x - of[0]) * per_metre, (of[1] - y) * per_metre, -near]
@@ -170,7 +177,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
             };
             face.middle[0] += 0.5 * area.width();
             face.middle[1] += 0.5 * height;
-            raster.face(&face, shaded(cell.colour, light));
+            raster.face(&face, (3 * k + c) as u32, shaded(cell.colour, light));
         }
     }
 
@@ -270,6 +277,9 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 fn normalised(v: [f64; 3]) -> [f64; 3] {
+    // Squares of the largest and smallest numbers are infinite and zero.
+    let largest = v.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let v = v.map(|c| c / largest);
     let length = dot(v, v).sqrt();
     v.map(|c| c / length)
 }
@@ -285,6 +295,8 @@ mod tests {
             [0.0, 0.0, 3.0],
             [0.0, 0.0, -1.0],
             [-2.0, 0.1, 0.0],
+            [1e300, -1e300, 1e300],
+            [0.0, 1e-300, 0.0],
         ] {
             let view = View::new(direction);
             let axes = [view.right, view.up, view.eye];

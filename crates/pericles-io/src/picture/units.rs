@@ -1,7 +1,7 @@
 //! Sizes a reader can grasp: SI prefixes, or a power of ten where a prefix would be wrong.
 
 /// Symbols that take a prefix, alone or as the first of a product or quotient.
-const PREFIXED: [&str; 9] = ["m", "s", "N", "J", "Pa", "W", "Hz", "g", "K"];
+const PREFIXED: [&str; 10] = ["m", "s", "N", "J", "Pa", "W", "Hz", "g", "K", "B"];
 
 /// Prefixes from 10⁻¹² to 10¹².
 const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];

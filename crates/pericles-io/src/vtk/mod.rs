@@ -33,7 +33,7 @@ mod vtu;
 pub use pvd::PvdSeries;
 pub use vtu::{VtkField, VtuFile};
 
-/// Text as it stands in an attribute or between the tags of XML and HTML.
+/// Text as it stands in an attribute or between the tags of XML and HTML. Control characters, which XML cannot hold, are replaced.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
@@ -42,6 +42,8 @@ pub fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
+            '\n' | '\t' => out.push(character),
+            _ if character.is_control() => out.push(char::REPLACEMENT_CHARACTER),
             _ => out.push(character),
         }
     }

@@ -1,6 +1,6 @@
 //! The `.vtu` file of one output.
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::blocks::write_array;
@@ -151,6 +151,23 @@ pub struct VtuFile<'a> {
     triangles: &'a [[u32; 3]],
 }
 
+/// The end of every file.
+const END: &[u8] = b"</AppendedData>\n</VTKFile>\n";
+
+impl VtuFile<'_> {
+    /// Whether a file is there and has its end. Files are written whole or not at all: one without it was cut afterwards.
+    pub fn is_whole(path: impl AsRef<Path>) -> bool {
+        let end = || -> std::io::Result<bool> {
+            let mut file = std::fs::File::open(path)?;
+            file.seek(SeekFrom::End(-(END.len() as i64)))?;
+            let mut found = Vec::new();
+            file.read_to_end(&mut found)?;
+            Ok(found == END)
+        };
+        end().unwrap_or(false)
+    }
+}
+
 impl<'a> VtuFile<'a> {
     /// Points at `positions`: x of all points, then y in two and z in three dimensions.
     pub fn new(dimension: usize, positions: &'a [f64]) -> Self {
@@ -298,7 +315,8 @@ impl<'a> VtuFile<'a> {
         write_array(out, cells, |i| ((corners * (i + 1)) as i64).to_le_bytes())?;
         offsets.push(out.stream_position()? - start);
         write_array(out, cells, |_| [kind])?;
-        write!(out, "\n</AppendedData>\n</VTKFile>\n")?;
+        writeln!(out)?;
+        out.write_all(END)?;
 
         for (place, offset) in places.into_iter().zip(offsets) {
             out.seek(SeekFrom::Start(place))?;

@@ -1,47 +1,12 @@
-//! What of a disturbance a lattice carries without distorting it.
+//! How much of a disturbance lies in short waves.
 //!
-//! Waves of a lattice travel at the speed of long waves only if they are long. [`Carried`] is where the phase velocity first leaves a band around that speed; [`time_content`] and [`space_content`] tell which
-//! share of the energy that a load or an initial field sends out lies beyond it.
+//! [`PhaseErrors`](super::PhaseErrors) gives the shortest waves that a lattice carries within a tolerance; [`time_content`] and [`space_content`] give the share of the energy of a load
+//! or an initial field that lies beyond them.
 
+use nalgebra::DMatrix;
 use realfft::RealFftPlanner;
 
-use super::{BondLattice, Contour, ContourPoint, trace};
 use crate::space::PointCloud;
-
-/// The shortest waves that a lattice carries within a tolerance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Carried {
-    /// Largest deviation of the phase velocity from that of long waves, relative.
-    pub tolerance: f64,
-    /// Largest wavenumber, rad/m.
-    pub wavenumber: f64,
-    /// Highest angular frequency, 1/s.
-    pub frequency: f64,
-}
-
-/// Steps along a ray to the border of the zone.
-const STEPS: usize = 400;
-
-impl Carried {
-    /// The waves along the x axis, of the branch that leaves the band first.
-    pub fn of(lattice: &BondLattice, tolerance: f64) -> Self {
-        let ray = trace(lattice, &Contour::ray(lattice, [1.0, 0.0, 0.0]), STEPS);
-        let deviates = |point: &ContourPoint| {
-            let branches = point.branches.iter().zip(&ray[0].branches);
-            branches
-                .map(|(branch, long)| branch.phase_velocity / long.phase_velocity - 1.0)
-                .any(|deviation| deviation.abs() > tolerance)
-        };
-        // Without any deviation the border of the zone.
-        let last = ray.iter().position(deviates).unwrap_or(ray.len() - 1);
-        let omegas = ray[last].branches.iter().map(|branch| branch.omega());
-        Self {
-            tolerance,
-            wavenumber: ray[last].k[0],
-            frequency: omegas.fold(f64::INFINITY, f64::min),
-        }
-    }
-}
 
 /// The share of the energy of a signal g(t), 0 ≤ t ≤ `end`, zero before, that lies above an angular frequency: Σ|ĝ|² above it over Σ|ĝ|² of all but the mean.
 ///
@@ -66,9 +31,10 @@ pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
 }
 
 /// The share of the energy of a field on a body's lattice that lies beyond a wavenumber (rad/m), along the worst of the axes: of the strain Σ k²|û|² if
-/// `strain`, else of Σ|v̂|²; none for a body without a lattice or a field that is the same everywhere.
+/// `strain`, else of Σ|v̂|²; none for a body without a lattice or a field without energy, such as a rigid motion.
 ///
-/// `field` is component-major. Lines of points along an axis are continued as if mirrored at their ends.
+/// `field` is component-major. The affine part of a displacement is a uniform strain and a rotation: the first counts as a long wave, the second has no energy. Lines of points along an
+/// axis are continued as if mirrored at their ends, or periodically where the body is periodic.
 pub fn space_content(
     cloud: &PointCloud,
     field: &[f64],
@@ -85,6 +51,12 @@ pub fn space_content(
         .iter()
         .map(|&node| lattice.coordinates(node))
         .collect();
+    // A periodic field has no affine part, and without its mean slope it would jump at the faces.
+    let affine = (!cloud.is_periodic()).then(|| Affine::of(cloud, field));
+    let rest = affine
+        .as_ref()
+        .map_or_else(|| field.to_vec(), |affine| affine.without(cloud, field));
+    let dx = cloud.spacing();
     let mut worst: Option<f64> = None;
     // Lines of one length share a plan.
     let mut planner = RealFftPlanner::new();
@@ -98,27 +70,104 @@ pub fn space_content(
         order.sort_unstable_by_key(|&i| line(i));
         let mut energies = [0.0; 2];
         for c in 0..dimension {
-            let component = &field[c * n..(c + 1) * n];
+            let component = &rest[c * n..(c + 1) * n];
             for run in order
                 .chunk_by(|&i, &j| line(i)[..2] == line(j)[..2] && line(j)[2] == line(i)[2] + 1)
             {
                 let values: Vec<f64> = run.iter().map(|&i| component[i]).collect();
-                let [beyond, all] = energies_of(
-                    &mut planner,
-                    &mirrored(&values),
-                    wavenumber * cloud.spacing(),
-                    strain,
-                );
-                energies[0] += beyond;
-                energies[1] += all;
+                let (signal, copies) = if cloud.is_periodic() {
+                    (values, 1.0)
+                } else {
+                    (mirrored(&values), 2.0)
+                };
+                let found = energies_of(&mut planner, &signal, wavenumber * dx, strain);
+                // By Parseval's theorem the sum over the points of the line.
+                let share = 2.0 / (signal.len() as f64 * copies);
+                energies[0] += share * found[0];
+                energies[1] += share * found[1];
             }
         }
-        if energies[1] > 0.0 {
+        let mut noise = 0.0;
+        if let Some(affine) = &affine {
+            let square = if strain { dx * dx * n as f64 } else { 0.0 };
+            energies[1] += square * affine.strain_energy(axis);
+            energies[1] += if strain { 0.0 } else { affine.kinetic };
+            noise = ROUND_OFF * square * affine.gradient.norm_squared();
+        }
+        if energies[1] > noise {
             let share = energies[0] / energies[1];
             worst = Some(worst.map_or(share, |worst| worst.max(share)));
         }
     }
     worst
+}
+
+/// Share of the energy of a rotation that its round-off may have.
+const ROUND_OFF: f64 = 1e-20;
+
+/// The affine field nearest to a field in the mean square.
+struct Affine {
+    /// The middle of the points, m, and the mean of the field.
+    middle: Vec<f64>,
+    mean: Vec<f64>,
+    /// A of A (x − middle) + mean, row by component.
+    gradient: DMatrix<f64>,
+    /// Σ|A (x − middle)|² over all points.
+    kinetic: f64,
+}
+
+impl Affine {
+    fn of(cloud: &PointCloud, field: &[f64]) -> Self {
+        let (n, dimension) = (cloud.len(), cloud.dimension());
+        let mean_of = |values: &[f64]| values.iter().sum::<f64>() / n as f64;
+        let middle: Vec<f64> = (0..dimension).map(|c| mean_of(cloud.axis(c))).collect();
+        let mean: Vec<f64> = field.chunks(n).map(mean_of).collect();
+        let product = |a: &[f64], a0: f64, b: usize| -> f64 {
+            let pairs = a.iter().zip(cloud.axis(b));
+            pairs.map(|(a, x)| (a - a0) * (x - middle[b])).sum()
+        };
+        let spread = DMatrix::from_fn(dimension, dimension, |a, b| {
+            product(cloud.axis(a), middle[a], b)
+        });
+        let moved = DMatrix::from_fn(dimension, dimension, |c, b| {
+            product(&field[c * n..(c + 1) * n], mean[c], b)
+        });
+        let largest = spread.amax();
+        // A body one point thick says nothing about slopes across it.
+        let inverse = spread.clone().pseudo_inverse(1e-12 * largest);
+        let gradient = inverse.map_or_else(
+            |_| DMatrix::zeros(dimension, dimension),
+            |inverse| moved * inverse,
+        );
+        let kinetic = (&gradient * spread * gradient.transpose()).trace();
+        Self {
+            middle,
+            mean,
+            gradient,
+            kinetic,
+        }
+    }
+
+    /// The field without it.
+    fn without(&self, cloud: &PointCloud, field: &[f64]) -> Vec<f64> {
+        let (n, dimension) = (cloud.len(), cloud.dimension());
+        let value = |c: usize, i: usize| -> f64 {
+            let slopes =
+                (0..dimension).map(|b| self.gradient[(c, b)] * (cloud.axis(b)[i] - self.middle[b]));
+            self.mean[c] + slopes.sum::<f64>()
+        };
+        (0..dimension)
+            .flat_map(|c| (0..n).map(move |i| (c, i)))
+            .map(|(c, i)| field[c * n + i] - value(c, i))
+            .collect()
+    }
+
+    /// Σ_c E_ca² of Green's strain E = ½ (A + Aᵀ + AᵀA), which a rotation does not have.
+    fn strain_energy(&self, axis: usize) -> f64 {
+        let a = &self.gradient;
+        let strain = 0.5 * (a + a.transpose() + a.transpose() * a);
+        strain.column(axis).norm_squared()
+    }
 }
 
 fn mirrored(values: &[f64]) -> Vec<f64> {
@@ -158,18 +207,6 @@ mod tests {
     use crate::space::{Grid, Shape};
 
     #[test]
-    fn a_chain_carries_what_its_dispersion_says() {
-        // ω/k = sin(k/2)/(k/2) falls by 1 % at k = 0.4906
-        let chain = BondLattice::new(&[1.0], 1.0, |_, _, _| 1.0).unwrap();
-        let carried = Carried::of(&chain, 0.01);
-        assert!((carried.wavenumber - 0.4906).abs() < 0.01, "{carried:?}");
-        assert!((carried.frequency - 2.0 * (0.5 * carried.wavenumber).sin()).abs() < 1e-12);
-        // with no limit the whole zone
-        let all = Carried::of(&chain, 1.0);
-        assert!((all.wavenumber - std::f64::consts::PI).abs() < 1e-9);
-    }
-
-    #[test]
     fn a_sine_is_on_one_side_and_a_jump_on_both() {
         let share = |omega: f64| {
             time_content(
@@ -188,16 +225,7 @@ mod tests {
 
     #[test]
     fn fields_are_judged_along_every_axis() {
-        let plate = Grid {
-            shape: Shape::Box {
-                origin: [0.0; 3],
-                size: vec![64.0, 32.0],
-            },
-            spacing: 1.0,
-            section: 1.0,
-            holes: vec![],
-        };
-        let cloud = plate.points().unwrap();
+        let cloud = grid([64.0, 32.0]);
         let n = cloud.len();
         let wave = |k: f64, axis: usize| -> Vec<f64> {
             let mut field: Vec<f64> = (0..n).map(|i| (k * cloud.point(i)[axis]).cos()).collect();
@@ -216,5 +244,52 @@ mod tests {
             }
         }
         assert_eq!(space_content(&cloud, &vec![2.0; 2 * n], k, false), None);
+    }
+
+    fn grid(size: [f64; 2]) -> PointCloud {
+        let grid = Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: size.to_vec(),
+            },
+            spacing: 1.0,
+            section: 1.0,
+            holes: vec![],
+        };
+        grid.points().unwrap()
+    }
+
+    #[test]
+    fn rigid_motions_have_no_short_waves() {
+        // Few cells across, so that every line along y is shorter than the waves in question.
+        let cloud = grid([40.0, 6.0]);
+        let n = cloud.len();
+        let field = |u: &dyn Fn(f64, f64) -> [f64; 2]| -> Vec<f64> {
+            let at = |i: usize| u(cloud.axis(0)[i], cloud.axis(1)[i]);
+            (0..2).flat_map(|c| (0..n).map(move |i| at(i)[c])).collect()
+        };
+        let (s, c) = 0.3f64.sin_cos();
+        let rotated = field(&|x, y| [c * x - s * y - x + 2.0, s * x + c * y - y]);
+        assert_eq!(space_content(&cloud, &rotated, 0.1, true), None);
+        let strained = field(&|x, y| [1e-3 * x, 2e-4 * y]);
+        assert!(space_content(&cloud, &strained, 0.1, true).unwrap() < 1e-20);
+        let spinning = field(&|x, y| [-30.0 * y, 30.0 * x]);
+        assert!(space_content(&cloud, &spinning, 0.1, false).unwrap() < 1e-20);
+    }
+
+    #[test]
+    fn a_periodic_wave_does_not_depend_on_the_cells_across() {
+        for across in [4.0, 5.0, 24.0] {
+            let cloud = grid([48.0, across]).with_periodic_faces().unwrap();
+            let n = cloud.len();
+            let k = std::f64::consts::TAU / 24.0;
+            let mut wave: Vec<f64> = cloud.axis(0).iter().map(|x| (k * x).sin()).collect();
+            wave.resize(2 * n, 0.0);
+            for strain in [false, true] {
+                let share = |limit: f64| space_content(&cloud, &wave, limit, strain).unwrap();
+                assert!(share(1.1 * k) < 1e-20, "{across}");
+                assert!((share(0.9 * k) - 1.0).abs() < 1e-12, "{across}");
+            }
+        }
     }
 }

@@ -12,7 +12,9 @@
 //!   velocities; [`verlet_frequency`] for the time-discrete curve.
 //! * [`stability`] – smallest ω²/|k|² and highest frequency over the whole zone, hence the stable step.
 //! * [`long_wave_speeds`], [`polar_speeds`] – anisotropy.
-//! * [`Carried`], [`time_content`], [`space_content`] – what of a load or an initial field a lattice carries undistorted.
+//! * [`KernelWaves`] – dispersion of an influence function in the continuum, without a grid.
+//! * [`PhaseErrors`] – the shortest waves that keep the speed of long ones within a tolerance, or that of the continuum; what the kernel does and what the grid adds to it.
+//! * [`time_content`], [`space_content`] – the share of a load or an initial field in waves shorter than that.
 //! * [`tuning`] – coefficients per class of bonds that reduce dispersion.
 //! * [`spectrum`] – frequencies measured in a time-domain run.
 //! * [`exact`] – solutions in one dimension, to measure errors against.
@@ -33,17 +35,21 @@
 
 mod branches;
 mod content;
+mod continuum;
 mod contour;
 pub mod exact;
 mod lattice;
 mod modes;
+mod phase;
 pub mod spectrum;
 pub mod tuning;
 mod zone;
 
 pub use branches::{BranchPoint, ContourPoint, PolarSpeeds, long_wave_speeds, polar_speeds, trace};
-pub use content::{Carried, space_content, time_content};
+pub use content::{space_content, time_content};
+pub use continuum::KernelWaves;
 pub use contour::{Contour, Segment};
 pub use lattice::{BondLattice, LatticeBond, Vector};
 pub use modes::{Mode, SquareMatrix, verlet_frequency};
+pub use phase::{PhaseErrors, Resolved};
 pub use zone::{Stability, stability};

@@ -24,6 +24,7 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::family::LANES;
+use crate::interrupt::Interrupt;
 use crate::operator::{BondForm, InstructionSet};
 use crate::time::{Integrator, VelocityVerlet};
 
@@ -127,7 +128,7 @@ impl Prepared {
             bytes: operator.bytes(),
             step: Box::new(move || {
                 let next = state.t + DT;
-                verlet.step(&mut system, &mut state, next)
+                verlet.step(&mut system, &mut state, next, Interrupt::never())
             }),
         })
     }

@@ -103,6 +103,24 @@ impl Load {
         }
     }
 
+    /// Whether the force at time t is finite: on all points where the amplitude is constant, at the first, the middle and the last point of a field that changes with time.
+    pub fn is_finite_at(&self, t: f64, dimension: usize) -> bool {
+        let factor = self.factor(t);
+        if factor == 0.0 || self.points.is_empty() {
+            return true;
+        }
+        let last = self.points.len() - 1;
+        let amplitudes = |k: usize| (0..dimension).map(move |c| self.amplitude(c, k, t));
+        factor.is_finite()
+            && match self.density {
+                LoadDensity::Field { .. } => [0, last / 2, last]
+                    .into_iter()
+                    .flat_map(amplitudes)
+                    .all(f64::is_finite),
+                _ => true,
+            }
+    }
+
     /// Adds the force density at time t for the points named by `on`.
     pub(crate) fn add_force(
         &self,

@@ -124,6 +124,25 @@ impl PrescribedMotion {
             .is_none_or(|until| t <= until * (1.0 + 1e-12) + f64::MIN_POSITIVE)
     }
 
+    /// Whether displacement, velocity and acceleration at time t are finite: of fields at the first, the middle and the last point.
+    pub fn is_finite_at(&self, t: f64) -> bool {
+        if !self.holds(t) || self.points.is_empty() {
+            return true;
+        }
+        let last = self.points.len() - 1;
+        let is_finite = |order: usize| {
+            self.along.iter().flatten().all(|along| match along {
+                AxisMotion::Trajectory { trajectory, places } => [0, last / 2, last]
+                    .into_iter()
+                    .all(|k| trajectory.derivative(order, places[k], t).is_finite()),
+                _ => self.unit(order, t).is_finite(),
+            })
+        };
+        // A displacement that is an integral of its velocity is finite where that is.
+        let first = usize::from(self.kind == MotionKind::Velocity);
+        (first..=2).all(is_finite)
+    }
+
     /// Displacement beyond the start (order 0), velocity (1) or acceleration (2) at time t for unit amplitude.
     fn unit(&self, order: usize, t: f64) -> f64 {
         let g = &self.function;
@@ -231,13 +250,14 @@ impl PrescribedMotion {
     }
 
     /// Notes the reaction ρ a − f at an accepted state, from the accelerations f/ρ before they are replaced, and returns the work (J)
-    /// and impulse (N s) of the support since the last accepted state.
+    /// and impulse (N s) of the support since the last accepted state. Its points have moved as prescribed, or along the `chord` between two static states.
     pub(crate) fn account(
         &mut self,
         t: f64,
         dt: f64,
         cloud_len: usize,
         acceleration: &[f64],
+        chord: Option<[&[f64]; 2]>,
         density: &dyn Fn(usize) -> f64,
         volumes: &[f64],
     ) -> (f64, [f64; 3]) {
@@ -248,7 +268,11 @@ impl PrescribedMotion {
         }
         // Of the step after the release the support has pushed the first half; its points then move on with about the last velocity.
         let mut advance = vec![0.0; self.reaction.len()];
-        if held {
+        if let Some([before, after]) = chord {
+            self.for_each(0, t, &On::All, cloud_len, |entry, slot, _| {
+                advance[slot] = after[entry] - before[entry];
+            });
+        } else if held {
             self.for_each(0, t, &On::All, cloud_len, |_, slot, after| {
                 advance[slot] = after
             });

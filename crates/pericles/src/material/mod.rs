@@ -25,6 +25,7 @@ mod polynomial;
 mod power;
 mod surface_correction;
 mod treatment;
+mod waves;
 
 pub use composite::{InterfaceRule, PairClasses};
 pub use constants::{BondConstants, BondMaterial, Calibration, Fracture, Modulus};
@@ -35,3 +36,4 @@ pub use polynomial::{GreenBond, LiteralBond};
 pub use power::{PowerMaterial, SurfaceBond};
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};
+pub use waves::{ElasticWaves, TransverseWaves};

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use super::tensors::{fitted_strain, places, virial_stress};
+use crate::error::{PericlesError, Result};
 use crate::operator::BondView;
 use crate::space::PointCloud;
 use crate::system::System;
@@ -29,6 +30,8 @@ pub enum Field {
     Stress,
     /// Strain of the displacement gradient that fits a point's bonds best. As stress.
     Strain,
+    /// Volume of the point, m³; its area on a surface, m². The same at all times.
+    Volume,
 }
 
 impl Field {
@@ -42,7 +45,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -52,6 +55,7 @@ impl Field {
         Self::Reaction,
         Self::Stress,
         Self::Strain,
+        Self::Volume,
     ];
 
     /// Name in files.
@@ -66,6 +70,7 @@ impl Field {
             Self::Reaction => "Reaction_Density",
             Self::Stress => "Stress",
             Self::Strain => "Strain",
+            Self::Volume => "Volume",
         }
     }
 
@@ -78,6 +83,7 @@ impl Field {
             Self::Stress => "Pa",
             Self::Damage | Self::Strain => "",
             Self::StrainEnergyDensity => "J/m³",
+            Self::Volume => "m³",
         }
     }
 
@@ -204,7 +210,20 @@ impl<'a> Snapshot<'a> {
         self.state
     }
 
-    /// A field; vectors component-major.
+    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have.
+    ///
+    /// # Errors
+    /// A field that cannot.
+    pub fn check(&self, field: Field) -> Result<()> {
+        if field.is_tensor() && self.system.operator().as_bonds().is_none() {
+            return Err(PericlesError::NoSuchField {
+                field: field.name(),
+            });
+        }
+        Ok(())
+    }
+
+    /// A field; vectors component-major. Not numbers where [`Snapshot::check`] refuses it.
     pub fn field(&self, field: Field) -> &[f64] {
         let (t, u) = (self.state.t, &self.state.u);
         match field {
@@ -241,6 +260,7 @@ impl<'a> Snapshot<'a> {
             }),
             Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
             Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
+            Field::Volume => self.system.cloud().volumes(),
         }
     }
 

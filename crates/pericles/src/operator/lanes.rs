@@ -8,6 +8,7 @@
 //! doubles ([`Lanes`]) or sixteen floats. Only [`Vector::mul_add`] may round differently from set to set.
 
 use std::ops::{Add, Div, Index, IndexMut, Mul, Neg, Sub};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::family::LANES;
 
@@ -257,8 +258,8 @@ pub fn dot<T: Real, const D: usize>(a: [T; D], b: [T; D]) -> T {
     sum
 }
 
-/// The instruction set the hot loops run with, chosen once at start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The instruction set of the vector loops, in ascending order of what it holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
     /// What every machine of the architecture has.
     Baseline,
@@ -268,9 +269,32 @@ pub enum InstructionSet {
     Avx512,
 }
 
+/// The largest set that operators of this process choose by themselves.
+static MOST: AtomicU8 = AtomicU8::new(InstructionSet::Avx512 as u8);
+
 impl InstructionSet {
-    /// The best set of this machine.
+    const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
+
+    /// The set that new operators use: the best one of this machine, or less after [`Self::limit_process`].
     pub fn detect() -> Self {
+        let allowed = Self::ALL[usize::from(MOST.load(Ordering::Relaxed))];
+        Self::of_machine().min(allowed)
+    }
+
+    /// Limits the operators that this process makes from now on to a set, for tests and comparisons. Returns whether the machine has the set; nothing
+    /// changes if it does not.
+    ///
+    /// Libraries for dense matrices and Fourier transforms choose their instructions themselves.
+    #[must_use]
+    pub fn limit_process(self) -> bool {
+        let runs = self <= Self::of_machine();
+        if runs {
+            MOST.store(self as u8, Ordering::Relaxed);
+        }
+        runs
+    }
+
+    fn of_machine() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512f")
@@ -287,17 +311,15 @@ impl InstructionSet {
         Self::Baseline
     }
 
-    /// All sets this machine can run.
+    /// All sets that operators of this process may use, the best one last.
     pub fn available() -> Vec<Self> {
         let best = Self::detect();
-        let mut sets = vec![Self::Baseline];
-        if best != Self::Baseline {
-            sets.push(Self::Avx2);
-        }
-        if best == Self::Avx512 {
-            sets.push(Self::Avx512);
-        }
-        sets
+        Self::ALL.into_iter().filter(|set| *set <= best).collect()
+    }
+
+    /// The set of a name as [`Self::name`] writes it.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|set| set.name() == name)
     }
 
     /// As written in run.json.

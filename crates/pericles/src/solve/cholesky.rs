@@ -140,7 +140,7 @@ impl BandedCholesky {
         apply: &mut dyn FnMut(&[f64], &mut [f64]),
         right: &[f64],
         x: &mut [f64],
-        limits: &SolveLimits,
+        limits: &SolveLimits<'_>,
         work: &mut Work,
     ) -> Result<Solved> {
         let tolerance = limits.tolerance(norm(right));
@@ -151,6 +151,7 @@ impl BandedCholesky {
         };
         trial.copy_from_slice(x);
         loop {
+            limits.interrupt.poll()?;
             apply(trial, product);
             solved.products += 1;
             for ((r, b), p) in residual.iter_mut().zip(right).zip(&*product) {

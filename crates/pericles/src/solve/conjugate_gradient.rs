@@ -9,12 +9,13 @@ use crate::error::{PericlesError, Result};
 /// it says.
 ///
 /// # Errors
-/// [`PericlesError::NotConverged`] after too many iterations, or when a direction of negative curvature shows that A is not positive definite.
+/// [`PericlesError::NotConverged`] after too many iterations, or when a direction of negative curvature shows that A is not positive definite;
+/// [`PericlesError::Interrupted`] if asked to stop.
 pub fn conjugate_gradient(
     apply: &mut dyn FnMut(&[f64], &mut [f64]),
     right: &[f64],
     x: &mut [f64],
-    limits: &SolveLimits,
+    limits: &SolveLimits<'_>,
     work: &mut Work,
 ) -> Result<Solved> {
     let tolerance = limits.tolerance(norm(right));
@@ -30,7 +31,7 @@ pub fn conjugate_gradient(
             limits,
             &mut work.krylov,
             &mut solved,
-        );
+        )?;
         let stuck = solved.iterations >= limits.iterations
             || before > 0.0 && solved.residual > 0.5 * before;
         match end {
@@ -75,23 +76,24 @@ pub(super) fn sweep(
     right: &[f64],
     x: &mut [f64],
     tolerance: f64,
-    limits: &SolveLimits,
+    limits: &SolveLimits<'_>,
     [residual, direction, product]: &mut [Vec<f64>; 3],
     solved: &mut Solved,
-) -> End {
+) -> Result<End> {
     true_residual(apply, right, x, residual, product, solved);
     if solved.residual <= tolerance {
-        return End::Reached;
+        return Ok(End::Reached);
     }
     direction.copy_from_slice(residual);
     let mut squared = solved.residual * solved.residual;
     while solved.iterations < limits.iterations {
+        limits.interrupt.poll()?;
         apply(direction, product);
         solved.products += 1;
         solved.iterations += 1;
         let curvature = dot(direction, product);
         if curvature.is_nan() || curvature <= 0.0 {
-            return End::Indefinite;
+            return Ok(End::Indefinite);
         }
         let length = squared / curvature;
         add_scaled(x, length, direction);
@@ -99,11 +101,11 @@ pub(super) fn sweep(
         let next = dot(residual, residual);
         if next.sqrt() <= tolerance {
             true_residual(apply, right, x, residual, product, solved);
-            return if solved.residual <= tolerance {
+            return Ok(if solved.residual <= tolerance {
                 End::Reached
             } else {
                 End::Drifted
-            };
+            });
         }
         let ratio = next / squared;
         squared = next;
@@ -112,7 +114,7 @@ pub(super) fn sweep(
         }
     }
     solved.residual = squared.sqrt();
-    End::Exhausted
+    Ok(End::Exhausted)
 }
 
 fn true_residual(

@@ -31,31 +31,35 @@ pub use cholesky::BandedCholesky;
 pub use conjugate_gradient::conjugate_gradient;
 pub use newton::{Nonlinear, newton_krylov};
 
+use crate::interrupt::Interrupt;
 use crate::parallel::ordered_sum;
 
 /// When an iteration ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SolveLimits {
+#[derive(Debug, Clone, Copy)]
+pub struct SolveLimits<'a> {
     /// Largest norm of the residual, over that of the right-hand side (conjugate gradients) or of the scale given (Newton).
     pub relative: f64,
     /// Largest norm of the residual whatever the right-hand side is.
     pub absolute: f64,
     /// Iterations after which the solver gives up.
     pub iterations: usize,
+    /// Polled in every iteration: the solver fails with [`PericlesError::Interrupted`](crate::PericlesError::Interrupted) once it asks to stop.
+    pub interrupt: Interrupt<'a>,
 }
 
-impl Default for SolveLimits {
+impl Default for SolveLimits<'_> {
     /// A residual of 1e-12 in at most 1000 iterations.
     fn default() -> Self {
         Self {
             relative: 1e-12,
             absolute: 0.0,
             iterations: 1000,
+            interrupt: Interrupt::never(),
         }
     }
 }
 
-impl SolveLimits {
+impl SolveLimits<'_> {
     fn tolerance(&self, scale: f64) -> f64 {
         self.absolute.max(self.relative * scale)
     }

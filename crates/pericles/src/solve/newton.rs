@@ -23,12 +23,13 @@ const HALVINGS: usize = 12;
 /// The norm that is compared is ‖F(x)‖₂ with `scale`, the size of the terms F is the difference of.
 ///
 /// # Errors
-/// [`PericlesError::NotConverged`] if the residual does not fall any more or after too many iterations. `x` is then the best found.
+/// [`PericlesError::NotConverged`] if the residual does not fall any more or after too many iterations; `x` is then the best found.
+/// [`PericlesError::Interrupted`] if asked to stop.
 pub fn newton_krylov(
     problem: &mut dyn Nonlinear,
     x: &mut [f64],
     scale: f64,
-    limits: &SolveLimits,
+    limits: &SolveLimits<'_>,
     work: &mut Work,
 ) -> Result<Solved> {
     let Work { krylov, newton } = work;
@@ -49,6 +50,7 @@ pub fn newton_krylov(
         if solved.iterations == limits.iterations {
             return Err(failed(solved, "too few iterations"));
         }
+        limits.interrupt.poll()?;
         solved.iterations += 1;
         for (b, r) in right.iter_mut().zip(&*residual) {
             *b = -r;
@@ -70,7 +72,7 @@ pub fn newton_krylov(
             &inner,
             krylov,
             &mut counted,
-        );
+        )?;
         solved.products += counted.products;
         if matches!(end, End::Indefinite) && counted.iterations == 1 {
             return Err(failed(solved, "the derivative is not positive definite"));
@@ -81,6 +83,7 @@ pub fn newton_krylov(
         loop {
             trial.copy_from_slice(x);
             add_scaled(trial, length, correction);
+            limits.interrupt.poll()?;
             problem.residual_into(trial, residual);
             solved.residual = norm(residual);
             if solved.residual < before * (1.0 - 1e-4 * length) {

@@ -7,6 +7,7 @@ use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
 use crate::archive::{Archive, Counter, Saved, Values};
 use crate::error::{PericlesError, Result, positive};
+use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::parallel::BLOCK;
 use crate::system::System;
@@ -162,15 +163,27 @@ impl Integrator for AdaptiveRungeKutta {
         None
     }
 
+    /// Its own sub-steps are accepted one by one.
+    fn changes_within_step(&self) -> bool {
+        true
+    }
+
     fn start(&mut self, system: &mut System, state: &mut State) {
         start(system, state);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let whole = t_next - state.t;
         // The first guess is small, and the controller finds its step within a few.
         let mut h = self.proposed.unwrap_or(1e-3 * whole);
         loop {
+            interrupt.poll()?;
             let left = t_next - state.t;
             // What would leave less than a hundredth of a step is stretched to the end.
             let last = h >= 0.99 * left;

@@ -40,6 +40,7 @@ pub use verlet::VelocityVerlet;
 use crate::accounts::Completed;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::system::System;
 
 /// The state of a body: structure of arrays, component-major.
@@ -147,14 +148,33 @@ pub trait Integrator: Saved + Send {
         0.0
     }
 
+    /// Whether its states are static: velocities, momentum and true time play no part.
+    fn is_static(&self) -> bool {
+        false
+    }
+
+    /// Whether a step changes state or system before it is complete, so that one that is interrupted has to be undone from a copy made before it.
+    fn changes_within_step(&self) -> bool {
+        false
+    }
+
     /// Prepares the state at t = 0: prescribed values and initial acceleration.
     fn start(&mut self, system: &mut System, state: &mut State);
 
     /// Steps from `state.t` to `t_next`.
     ///
+    /// Schemes that iterate poll `interrupt` in every inner iteration. A step that is interrupted leaves state and system as they were before it, except for
+    /// work arrays, unless [`changes_within_step`](Integrator::changes_within_step) says that the caller must restore them.
+    ///
     /// # Errors
-    /// Schemes that iterate report when they do not converge.
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()>;
+    /// Schemes that iterate report when they do not converge; [`PericlesError::Interrupted`] if asked to stop.
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()>;
 }
 
 /// Refuses what a scheme cannot follow whose step is solved for, or reaches far, with the supports of its start: boundaries with a memory, for the reason given, and points

@@ -11,6 +11,7 @@ use super::{HighestFrequency, Integrator, State, Tableau};
 use crate::accounts::Completed;
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::operator::Accepted;
 use crate::system::System;
 
@@ -136,7 +137,13 @@ impl Integrator for MultiTimeStep {
         self.refinement.start(system);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        _interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         self.refinement.update(system, state);
         // The predictor's earlier levels come from steps that are fine everywhere.
         let starting = !self.history.is_complete() && !self.refinement.zones.fine.is_empty();

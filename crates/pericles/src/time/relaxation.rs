@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 
 use super::{InnerIterations, Integrator, State};
+use crate::accounts::LoadStep;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::operator::{Accepted, On};
 use crate::parallel::{BLOCK, ordered_sum};
 use crate::system::System;
@@ -52,9 +54,11 @@ impl Default for RelaxationOptions {
 /// Then bonds that are over-stretched break, all at once, and the body relaxes again at the same loads, until none does. Real masses play no part, and time only
 /// enters through what loads and supports do.
 ///
-/// The energy account: between two static states loads and supports do the work of their mean forces, exact for linear forces. A bond that breaks dissipates its energy
-/// at the static state before. What the body then gives up on its way to the next equilibrium goes into the damping, as it would go into waves;
-/// it is measured as the loss of elastic energy less the work of the constant loads, and reported as the scheme's correction.
+/// The energy balance: loads and supports change slowly within a load step, from their values at the last static state to those at the next. They do the work of their mean forces, which is
+/// exact for linear forces and of second order in the length of load steps otherwise. The run starts from the unloaded body: in the first load step all loads and prescribed
+/// displacements grow from zero, constant ones too, so that a dead load F does the work ½ F u that the body stores. A bond that breaks dissipates its energy
+/// at the static state before. What the body then gives up on its way to the next equilibrium, or on the way from an initial displacement that is not in equilibrium, goes into the
+/// damping, as it would go into waves; it is measured as the loss of elastic energy plus the work of loads and supports, and reported as the scheme's correction.
 #[derive(Debug, Clone)]
 pub struct Relaxation {
     options: RelaxationOptions,
@@ -131,7 +135,13 @@ impl Relaxation {
     }
 
     /// Moves `u` to the equilibrium at time t with the bonds as they are; what is out of balance there, over what acts.
-    fn relax(&mut self, system: &System, t: f64, u: &mut [f64]) -> Result<f64> {
+    fn relax(
+        &mut self,
+        system: &System,
+        t: f64,
+        u: &mut [f64],
+        interrupt: Interrupt<'_>,
+    ) -> Result<f64> {
         let RelaxationOptions {
             damping,
             tolerance,
@@ -145,8 +155,10 @@ impl Relaxation {
         system.load_density_into(t, &mut self.force);
         let load = self.norm(system, &self.force, |free| free);
         let mut first = f64::NAN;
-        let mut ratio = f64::NAN;
+        let (mut ratio, mut done) = (f64::NAN, 0);
         for iteration in 0..=iterations {
+            interrupt.poll()?;
+            done = iteration;
             system.force_density_into(t, u, &mut self.force);
             let residual = self.norm(system, &self.force, |free| free);
             if iteration == 0 {
@@ -181,7 +193,7 @@ impl Relaxation {
         }
         Err(PericlesError::NoEquilibrium {
             t,
-            iterations,
+            iterations: done,
             residual: ratio,
             tolerance,
         })
@@ -244,6 +256,7 @@ impl Relaxation {
         state: &mut State,
         t: f64,
         mut residual: f64,
+        interrupt: Interrupt<'_>,
     ) -> Result<f64> {
         self.velocity.fill(0.0);
         loop {
@@ -260,8 +273,12 @@ impl Relaxation {
             }
             self.before.copy_from_slice(&state.u);
             let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
-            residual = self.relax(system, t, &mut state.u)?;
-            system.book_equilibrium(t, 0.0, [&self.before, &state.u], &mut state.a);
+            residual = self.relax(system, t, &mut state.u, interrupt)?;
+            let after_breaking = LoadStep {
+                u: [&self.before, &state.u],
+                first: false,
+            };
+            system.book_equilibrium(t, 0.0, after_breaking, &mut state.a);
             self.damped +=
                 elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
             self.velocity.fill(0.0);
@@ -293,22 +310,51 @@ impl Integrator for Relaxation {
         Some(self.inner)
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
+    /// Displacements are iterated in place, and bonds break between equilibria.
+    fn changes_within_step(&self) -> bool {
+        true
+    }
+
     fn start(&mut self, system: &mut System, state: &mut State) {
-        system.place_on(state.t, &On::All, &mut state.u);
         state.v.fill(0.0);
-        let u = state.u.clone();
-        system.book_equilibrium(state.t, 0.0, [&u, &state.u], &mut state.a);
+        system.note_unloaded(state.t, &state.u, &mut state.a);
         state.a.fill(0.0);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let dt = t_next - state.t;
         let before = state.u.clone();
+        let first = state.step == 0;
+        let displaced = first && before.iter().any(|u| *u != 0.0);
+        let elastic = if displaced {
+            system.operator().energy(state.t, &before)
+        } else {
+            0.0
+        };
         self.iterations = 0;
-        let mut residual = self.relax(system, t_next, &mut state.u)?;
-        system.book_equilibrium(t_next, dt, [&before, &state.u], &mut state.a);
+        let mut residual = self.relax(system, t_next, &mut state.u, interrupt)?;
+        let load_step = LoadStep {
+            u: [&before, &state.u],
+            first,
+        };
+        let work = system.ledger().work;
+        system.book_equilibrium(t_next, dt, load_step, &mut state.a);
+        if displaced {
+            self.damped +=
+                elastic - system.operator().energy(t_next, &state.u) + system.ledger().work - work;
+        }
         if system.operator().can_break() {
-            residual = self.settle(system, state, t_next, residual)?;
+            residual = self.settle(system, state, t_next, residual, interrupt)?;
         }
         self.inner.count(self.iterations, residual);
         state.v.fill(0.0);

@@ -9,6 +9,7 @@ use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 use crate::operator::{Accepted, On};
 use crate::system::System;
 
@@ -133,7 +134,13 @@ impl Integrator for Respa {
         self.evaluate(system, state.t, &state.u);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        _interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         if self.refinement.update(system, state) {
             self.evaluate(system, state.t, &state.u);
         }

@@ -4,6 +4,7 @@ use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
 use crate::archive::Saved;
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::system::System;
 
@@ -131,7 +132,13 @@ impl Integrator for RungeKutta {
         start(system, state);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        _interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
         let (dt, n) = (t_next - *t, system.points());
         for i in 1..self.form.len() {

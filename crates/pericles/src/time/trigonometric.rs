@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::{Integrator, State, refuse_changes_of_support};
 use crate::archive::Saved;
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::operator::function::{
     Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction,
@@ -179,7 +180,7 @@ impl Trigonometric {
         change.iter().any(|x| *x != 0.0)
     }
 
-    fn flow(&mut self, system: &System, tau: f64) -> Result<()> {
+    fn flow(&mut self, system: &System, tau: f64, interrupt: Interrupt<'_>) -> Result<()> {
         let [u, v] = &mut self.next;
         let by_velocity = [
             Term::new(WaveFunction::Sine, tau, u),
@@ -190,8 +191,8 @@ impl Trigonometric {
             self.options,
             system,
             &self.reference,
-            &self.push,
-            by_velocity,
+            (&self.push, by_velocity),
+            interrupt,
         )?;
         let by_force = [
             Term::new(WaveFunction::Versine, tau, u),
@@ -202,12 +203,18 @@ impl Trigonometric {
             self.options,
             system,
             &self.reference,
-            &self.pull,
-            by_force,
+            (&self.pull, by_force),
+            interrupt,
         )
     }
 
-    fn loads(&mut self, system: &System, t: f64, tau: f64, u: &[f64]) -> Result<()> {
+    fn loads(
+        &mut self,
+        system: &System,
+        [t, tau]: [f64; 2],
+        u: &[f64],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         if system.loads().is_empty() && system.motions().is_empty() {
             return Ok(());
         }
@@ -229,8 +236,8 @@ impl Trigonometric {
                     self.options,
                     system,
                     &self.reference,
-                    &self.change,
-                    terms,
+                    (&self.change, terms),
+                    interrupt,
                 )?;
             }
         }
@@ -287,8 +294,8 @@ fn apply(
     options: TrigonometricOptions,
     system: &System,
     reference: &[f64],
-    x: &[f64],
-    mut terms: [Term<'_>; 2],
+    (x, mut terms): (&[f64], [Term<'_>; 2]),
+    interrupt: Interrupt<'_>,
 ) -> Result<()> {
     match engine {
         Engine::Fourier(density) => {
@@ -305,7 +312,7 @@ fn apply(
                     add(out, options.regularisation, x);
                 }
             };
-            engine.add(&mut product, x, &mut terms)
+            engine.add(&mut product, x, &mut terms, interrupt)
         }
     }
 }
@@ -341,7 +348,13 @@ impl Integrator for Trigonometric {
         super::runge_kutta::start(system, state);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
         let dt = t_next - *t;
         self.push.copy_from_slice(v);
@@ -358,8 +371,8 @@ impl Integrator for Trigonometric {
         }
         self.next[0].copy_from_slice(u);
         self.next[1].fill(0.0);
-        self.flow(system, dt)?;
-        self.loads(system, *t, dt, u)?;
+        self.flow(system, dt, interrupt)?;
+        self.loads(system, [*t, dt], u, interrupt)?;
         let [u_next, v_next] = &mut self.next;
         system.constrain(t_next, u_next, v_next);
         system.constrain_velocity(t_next, v_next);

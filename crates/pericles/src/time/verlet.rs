@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::{Integrator, State};
 use crate::archive::Saved;
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 use crate::operator::Accepted;
 use crate::parallel::BLOCK;
 use crate::system::System;
@@ -41,7 +42,13 @@ impl Integrator for VelocityVerlet {
         system.start(state.t, &state.u, &state.v, &mut state.a);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        _interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let State { t, step, u, v, a } = state;
         let dt = t_next - *t;
         kick(v, a, 0.5 * dt);

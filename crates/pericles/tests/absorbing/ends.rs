@@ -243,7 +243,7 @@ fn what_cannot_be_continued_is_refused() {
     let near = pulse(&plain, 2.0);
     assert!(matches!(
         layer(&plain, &near),
-        Err(E::NotAtRest { point: 120, .. })
+        Err(E::NotAtRest { point: 114, .. })
     ));
     let mut loaded = bar(60, 1.0);
     loaded.add_load(Load::new(

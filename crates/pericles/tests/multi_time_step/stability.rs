@@ -1,8 +1,8 @@
 //! Limits of the coarse step.
 
-use pericles::System;
 use pericles::space::PointSet;
 use pericles::time::{Interpolant, MultiTimeStepOptions, Predictor, highest_frequency_on};
+use pericles::{Interrupt, System};
 
 use crate::bodies::{Problem, small_plate};
 use crate::schemes::{Scheme, options, respa, two_steps};
@@ -25,7 +25,12 @@ fn growth(problem: Problem, omega_dt: f64, steps: [u64; 2], scheme: &Scheme<'_>)
     let mut sizes = [0.0; 2];
     for step in 1..=steps[1] {
         scheme
-            .step(&mut system, &mut state, step as f64 * dt)
+            .step(
+                &mut system,
+                &mut state,
+                step as f64 * dt,
+                Interrupt::never(),
+            )
             .unwrap();
         for k in 0..2 {
             // The largest of a few steps, so that the phase does not matter.

@@ -67,14 +67,28 @@ fn rounding(row: &[&str], column: usize) -> f64 {
     0.6 * 10f64.powi(-(places as i32))
 }
 
-fn method(name: &str) -> Method {
-    let found = Method::ALL.iter().find(|method| method.name() == name);
-    found.copied().unwrap_or_default()
+fn method(name: &str) -> Result<Method, CliError> {
+    let named = Method::ALL.map(|method| (method.name(), method));
+    known("method of tuning", name, &named)
 }
 
-fn combination(name: &str) -> Combination {
-    let found = Combination::ALL.iter().find(|c| c.name() == name);
-    found.copied().unwrap_or_default()
+fn combination(name: &str) -> Result<Combination, CliError> {
+    let named = Combination::ALL.map(|combination| (combination.name(), combination));
+    known("combination of branches", name, &named)
+}
+
+/// The value that a word of a study's data names.
+fn known<T: Copy>(kind: &'static str, name: &str, all: &[(&str, T)]) -> Result<T, CliError> {
+    let found = all.iter().find(|(word, _)| *word == name);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
+        CliError::unknown(
+            kind,
+            name,
+            &words,
+            &format!("allowed: {}", words.join(", ")),
+        )
+    })
 }
 
 fn model(state: StressState, n: f64) -> Result<ScalingModel, CliError> {
@@ -196,6 +210,15 @@ fn write_tables(
 mod tests {
     use super::*;
     use crate::reproduce::{Study, row::Row};
+
+    #[test]
+    fn misspelt_words_of_the_data_are_refused() {
+        assert_eq!(method("galerkin").unwrap(), Method::Galerkin);
+        let refused = method("galerkyn").unwrap_err().to_string();
+        assert_eq!(refused, "there is no method of tuning \"galerkyn\"");
+        assert!(combination("seperated").is_err());
+        assert!(combination("").is_err());
+    }
 
     /// Every study but the slow ones: all judged rows hold, and there are some.
     #[test]

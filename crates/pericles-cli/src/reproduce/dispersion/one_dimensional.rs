@@ -30,7 +30,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             continue;
         };
         let model = model(StressState::Uniaxial, n)?;
-        let table = tuned(&model, method(name), None)?;
+        let table = tuned(&model, method(name)?, None)?;
         let what = |quantity: String| format!("N = {n}, {name}: {quantity}");
         for (i, expected) in numbers(&cells, 4).into_iter().enumerate() {
             let case = what(format!("α{}", i + 1));

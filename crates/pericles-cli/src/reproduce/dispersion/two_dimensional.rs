@@ -34,8 +34,8 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
         let model = model(StressState::PlaneStrain, n)?;
         let lower_bound = number(&cells, 3);
         let tuning = Tuning {
-            method: method(cells[1]),
-            combination: combination(cells[2]),
+            method: method(cells[1])?,
+            combination: combination(cells[2])?,
             lower_bound,
             ..Default::default()
         };

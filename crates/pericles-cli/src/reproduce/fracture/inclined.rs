@@ -42,7 +42,7 @@ struct Variant {
 const VARIANTS: [Variant; 2] = [
     Variant {
         name: "positive table tuned against dispersion",
-        overrides: &["material.influence={function=\"tuned\",lower_bound=0.5}"],
+        overrides: &["material.influence={function=\"tuned\",decay=\"none\",lower_bound=0.5}"],
         critical_stretch: 2.621e-3,
         angles: [18.0, 72.0],
         peak_speed: 1892.0,

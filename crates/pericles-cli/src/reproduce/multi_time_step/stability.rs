@@ -2,6 +2,7 @@
 //!
 //! A small clamped plate is shaken in all its modes and stepped on; growth is that of the square root of its energy per coarse step. The rates depend on the plate and on where it is fine.
 
+use pericles::Interrupt;
 use pericles_deck::Model;
 
 use super::super::row::Row;
@@ -48,7 +49,12 @@ fn growth(
     integrator.start(&mut system, &mut state);
     let mut energies = [0.0; 2];
     for step in 1..=to {
-        integrator.step(&mut system, &mut state, step as f64 * dt)?;
+        integrator.step(
+            &mut system,
+            &mut state,
+            step as f64 * dt,
+            Interrupt::never(),
+        )?;
         for (energy, at) in energies.iter_mut().zip([from, to]) {
             if step == at {
                 *energy =

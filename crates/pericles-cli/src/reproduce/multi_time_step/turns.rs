@@ -7,7 +7,7 @@ use pericles::time::{
     Fine, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
     RungeKutta, State, VelocityVerlet,
 };
-use pericles::{PericlesError, System};
+use pericles::{Interrupt, PericlesError, System};
 use pericles_deck::Model;
 
 use super::{Method, Problem, tableau};
@@ -64,7 +64,12 @@ impl Bench {
         let began = Instant::now();
         for _ in 0..steps {
             let t_next = self.state.t + dt;
-            integrator.step(&mut self.system, &mut self.state, t_next)?;
+            integrator.step(
+                &mut self.system,
+                &mut self.state,
+                t_next,
+                Interrupt::never(),
+            )?;
         }
         Ok(began.elapsed().as_secs_f64())
     }

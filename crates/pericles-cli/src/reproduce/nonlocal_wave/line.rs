@@ -13,7 +13,7 @@ use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{
     Implicit, ImplicitRule, Integrator, State, Trigonometric, TrigonometricOptions, VelocityVerlet,
 };
-use pericles::{PointScalar, System};
+use pericles::{Interrupt, PointScalar, System};
 
 use crate::error::CliError;
 
@@ -164,7 +164,7 @@ pub(super) fn march(
 ) -> Result<(), CliError> {
     integrator.start(system, state);
     for k in 1..=steps {
-        integrator.step(system, state, k as f64 * dt)?;
+        integrator.step(system, state, k as f64 * dt, Interrupt::never())?;
         visit(system, state);
     }
     Ok(())

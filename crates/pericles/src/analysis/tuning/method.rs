@@ -75,9 +75,15 @@ pub struct Weights {
     pub pressure: f64,
     /// e_s.
     pub shear: f64,
-    /// A wave number κ (rad per spacing): residuals are also weighted with exp(−(|k|/κ)²), so that the corner of the zone, where no lattice can be
-    /// exact, matters less.
+    /// A wavenumber κ (rad per spacing): residuals are also weighted with exp(−(|k|/κ)²), so that the corner of the zone, where no lattice can be
+    /// exact, matters less. None for equal weights, as published: on plates these spend the freedom on that corner and leave waves of 10 to 50 spacings worse than α ≡ 1 does.
     pub decay: Option<f64>,
+}
+
+impl Weights {
+    /// The decay κ (rad per spacing) that decks take by default. For a horizon of three spacings it keeps the phase speed within 1 % of that of long waves down to 3.0 spacings per
+    /// wavelength in a bar and 5.6 in a plate; equal weights do so down to 23 and 27 only.
+    pub const DECAY: f64 = 1.0;
 }
 
 impl Default for Weights {

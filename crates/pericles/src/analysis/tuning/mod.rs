@@ -37,6 +37,7 @@ mod table;
 pub use functions::{fit_cosines, influence_alebrahim, polygon};
 pub use method::{Combination, Method, Tuning, Weights};
 pub use model::{
-    Assessment, BondClass, DispersionError, ScalingModel, WaveSpeeds, continuum_speeds,
+    Assessment, BondClass, DispersionError, ScalingModel, WaveSpeeds, bond_classes,
+    continuum_speeds,
 };
 pub use table::TunedTable;

@@ -1,5 +1,7 @@
 //! The lattice model whose coefficients are sought, in units of the spacing and the bar wave speed √(E/ρ).
 
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
@@ -23,6 +25,26 @@ pub struct BondClass {
     pub length: f64,
     /// Bonds of a point in this class.
     pub multiplicity: usize,
+}
+
+/// The classes of the bonds of a lattice, by length, and as in tables per class where two have one length.
+pub fn bond_classes(lattice: &BondLattice) -> Vec<BondClass> {
+    let keys = lattice.bonds().iter().map(|bond| {
+        let offset = class_of(bond.offset);
+        let square: i32 = offset.iter().map(|c| c * c).sum();
+        (square, offset.map(Reverse))
+    });
+    let keys: BTreeSet<(i32, [Reverse<i32>; 3])> = keys.collect();
+    keys.into_iter()
+        .map(|(square, offset)| {
+            let offset = offset.map(|Reverse(steps)| steps);
+            BondClass {
+                offset,
+                length: f64::from(square).sqrt(),
+                multiplicity: multiplicity(offset, lattice.dimension()),
+            }
+        })
+        .collect()
 }
 
 /// How far a table is from a medium without dispersion.
@@ -102,23 +124,7 @@ impl ScalingModel {
         let whole = BondLattice::new(&vec![1.0; dimension], reach, |_, _, r| {
             constant * correction.factor(r, n, 1.0)
         })?;
-        let mut classes: Vec<BondClass> = Vec::new();
-        for bond in whole.bonds() {
-            let offset = class_of(bond.offset);
-            if !classes.iter().any(|class| class.offset == offset) {
-                classes.push(BondClass {
-                    offset,
-                    length: bond.length,
-                    multiplicity: multiplicity(offset, dimension),
-                });
-            }
-        }
-        // By length, and as in tables per class where two have one length.
-        let order = |class: &BondClass| {
-            let square: i32 = class.offset.iter().map(|c| c * c).sum();
-            (square, class.offset.map(std::cmp::Reverse))
-        };
-        classes.sort_by_key(order);
+        let classes = bond_classes(&whole);
         let parts: Vec<BondLattice> = classes
             .iter()
             .map(|class| whole.only(|bond| class_of(bond.offset) == class.offset))

@@ -28,6 +28,9 @@ pub struct TunedTable {
     /// Violation of the optimality conditions, relative to the data. For absolute values, whose functional is smoothed, the larger of it and the
     /// relative decrease that one more Newton step promises.
     pub kkt: f64,
+    /// What is left of the functionals that the method makes small, one row for each with an entry per branch (pressure, then shear), over V² and with the spacing as unit:
+    /// (∮ R²)^½ of least squares, ∮ |R| of the absolute method, the values F_m(R) else (F_m(|R|) of the absolute combination). Residuals carry their weights.
+    pub functionals: Vec<Vec<f64>>,
     /// Errors, constraints, stability.
     pub assessment: Assessment,
 }
@@ -88,12 +91,32 @@ impl ScalingModel {
         Ok(TunedTable {
             tuning,
             classes: self.classes().to_vec(),
+            functionals: residuals(&functionals, &tuning, &alpha),
             assessment: self.assess(&alpha)?,
             alpha,
             active: solution.active,
             condition: solution.condition,
             kkt: solution.kkt,
         })
+    }
+
+    /// The same, and where the coefficients make the lattice unstable and there is no bound, the problem again with the bound zero: without negative coefficients no wave grows.
+    ///
+    /// In space signed coefficients are unstable for most horizons, on plates for some horizons of four spacings and more.
+    ///
+    /// # Errors
+    /// As [`ScalingModel::tune`].
+    pub fn tune_stable(&self, tuning: Tuning) -> Result<TunedTable> {
+        let free = self.tune(tuning)?;
+        if free.assessment.stability.is_stable() || tuning.lower_bound.is_some() {
+            return Ok(free);
+        }
+        let bounded = self.tune(Tuning {
+            lower_bound: Some(0.0),
+            ..tuning
+        });
+        // Without a solution the caller learns of the instability.
+        Ok(bounded.unwrap_or(free))
     }
 
     fn check(&self, tuning: &Tuning) -> Result<()> {
@@ -183,6 +206,29 @@ fn integrated(functionals: &Functionals, combination: Combination) -> Vec<Row> {
         all.extend(sums);
     }
     all
+}
+
+/// What is left of each functional, branch by branch.
+fn residuals(functionals: &Functionals, tuning: &Tuning, alpha: &[f64]) -> Vec<Vec<f64>> {
+    let squares = tuning.method == Method::LeastSquares;
+    let absolute = tuning.method == Method::Absolute || tuning.combination == Combination::Absolute;
+    let branches = functionals.samples.first().map_or(0, |s| s.rows.len());
+    let value = |weights: &[f64], branch: usize| -> f64 {
+        let terms = functionals.samples.iter().zip(weights).map(|(sample, w)| {
+            let row = sample.rows[branch].iter().zip(alpha);
+            let residual = row.map(|(b, a)| b * a).sum::<f64>() - sample.values[branch];
+            match (squares, absolute) {
+                (true, _) => w * residual * residual,
+                (_, true) => w * residual.abs(),
+                _ => w * residual,
+            }
+        });
+        let sum: f64 = terms.sum();
+        if squares { sum.max(0.0).sqrt() } else { sum }
+    };
+    let rows = functionals.weights.iter();
+    rows.map(|weights| (0..branches).map(|b| value(weights, b)).collect())
+        .collect()
 }
 
 /// Multiplies the residuals with their weights.

@@ -177,8 +177,8 @@ pub enum AbsorbingError {
     },
     /// An initial field that reaches the end.
     #[error(
-        "the initial field reaches the end {side}: point {point} has {found:e}, the largest is {largest:e}; beyond an absorbing end all is at rest unless \
-         `exterior_data` says how far the field goes on; else move the end outwards"
+        "the initial field reaches the absorbing end {side}: point {point} has {found:.3e}, the largest value is {largest:.3e}; allowed: 1e-6 of it, because the exterior starts \
+         from rest. Give `exterior_data`, the depth to which the field continues beyond the end, or move the end outwards"
     )]
     NotAtRest {
         /// The side.
@@ -190,10 +190,10 @@ pub enum AbsorbingError {
         /// Its largest in the body.
         largest: f64,
     },
-    /// Initial data beyond an end that go on for ever.
+    /// Initial data that do not decay within the exterior points given.
     #[error(
-        "the initial field beyond the end does not die away within the {sites} sites of `exterior_data`: {found:e} is left at the last ones, the largest is {largest:e}; \
-         give more of it, or move the end inwards or outwards to where the field is nothing"
+        "the initial field does not decay within the {sites} exterior points of `exterior_data`: the last ones have {found:.3e}, the largest value of body and exterior is \
+         {largest:.3e}; allowed: 1e-6 of it. Give a larger `exterior_data`, or move the end to where the field is zero"
     )]
     ExteriorData {
         /// Sites with data.
@@ -243,8 +243,8 @@ pub enum AbsorbingError {
     },
     /// Sums of exponentials that miss the tolerance.
     #[error(
-        "no sum of exponentials is as close to the exact history as {tolerance:e}: the best of {fits} fits misses it by {residual:e}; a tolerance of at least \
-         that, a smaller step, or history = \"blocked\", which is exact"
+        "no sum of exponentials meets the tolerance {tolerance:e}: the best of {fits} fits has the error {residual:.1e}; use a larger tolerance, or history = \"blocked\", \
+         which is exact"
     )]
     Fit {
         /// The tolerance asked for.

@@ -1,6 +1,7 @@
 //! Initial fields beyond an absorbing end.
 
 use super::history::History;
+use super::layer::NEGLIGIBLE;
 use super::{AbsorbingError, LatticeStencil};
 use crate::archive::{Archive, Values};
 use crate::error::Result;
@@ -25,22 +26,25 @@ pub struct FreeWave {
 }
 
 impl FreeWave {
-    /// From displacements and velocities of the exterior's sites, the one next to the body first; beyond the last there is nothing. `histories` are two new ones of the end's own kernels.
+    /// From displacements and velocities of the exterior's sites, the one next to the body first; beyond the last they are zero. `body` are the largest |u| and |v| of
+    /// the body itself. `histories` are two new ones of the end's own kernels.
     ///
     /// # Errors
-    /// Fields of different lengths count as [`AbsorbingError::ExteriorData`], as do data that do not end within the sites given: the outermost K are above 1e-12 of the largest.
+    /// Fields of different lengths count as [`AbsorbingError::ExteriorData`], as do data that do not end within the sites given: the outermost K are above 1e-6 of the
+    /// largest of body and exterior.
     pub fn new(
         stencil: &LatticeStencil,
         dt: f64,
         [u, v]: [&[f64]; 2],
+        body: [f64; 2],
         histories: [Box<dyn History>; 2],
     ) -> std::result::Result<Self, AbsorbingError> {
         let reach = stencil.reach();
-        for field in [u, v] {
-            let largest = field.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        for (field, body) in [u, v].into_iter().zip(body) {
+            let largest = field.iter().fold(body, |a: f64, x| a.max(x.abs()));
             let tail = &field[field.len().saturating_sub(reach)..];
             let found = tail.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-            if u.len() != v.len() || found > 1e-12 * largest {
+            if u.len() != v.len() || found > NEGLIGIBLE * largest {
                 let sites = field.len();
                 return Err(AbsorbingError::ExteriorData {
                     sites,

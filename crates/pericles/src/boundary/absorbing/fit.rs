@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
-use super::loewner::Loewner;
+use super::loewner::{Growing, Loewner};
 use super::roots::{expanded, factor_at};
 use super::{AbsorbingError, LatticeStencil, LatticeStep};
 
@@ -34,8 +34,8 @@ pub(super) struct Exponential {
 
 /// Directions per sample point that are tried: kernels with many branch points need more.
 const DIRECTIONS: [usize; 4] = [1, 2, 4, 8];
-/// Singular values kept, as shares of the tolerance.
-const SHARES: [f64; 2] = [1e-3, 1e-5];
+/// Singular values kept, as shares of the tolerance: a fit that fails at one order often holds at the next.
+const SHARES: [f64; 3] = [1e-3, 1e-4, 1e-5];
 /// What crosses may leave of the smallest singular value kept.
 const LEFT: f64 = 0.1;
 /// More rows and columns than this take minutes.
@@ -44,8 +44,6 @@ const MOST_TANGENTS: usize = 6000;
 const MOST_STEPS: usize = 1_000_000_000;
 /// A fit of more than this share of its rows is not supported by enough samples.
 const SUPPORTED: f64 = 0.36;
-/// Fits that miss the tolerance by more are not worth refining.
-const HOPELESS: f64 = 1e4;
 /// Sample points along a half circle without branch points.
 const ALONG: f64 = 60.0;
 /// Distance of samples over that from the nearest branch point.
@@ -92,21 +90,23 @@ impl ExponentialKernels {
                 if order as f64 > SUPPORTED * loewner.size() as f64 {
                     break;
                 }
-                let mut terms = loewner.exponentials(order);
-                let mut residual = samples.miss(&terms);
-                fits += 1;
-                if residual > tolerance && residual < HOPELESS * tolerance {
-                    samples.refine(&mut terms);
-                    residual = samples.miss(&terms);
-                }
-                best = best.min(residual);
-                if residual <= tolerance {
-                    return Ok(Self {
-                        reach,
-                        terms,
-                        present: samples.present.iter().map(|x| x.re).collect(),
-                        residual,
-                    });
+                for growing in Growing::ALL {
+                    let mut terms = loewner.exponentials(order, growing);
+                    let mut residual = samples.miss(&terms);
+                    fits += 1;
+                    if residual > tolerance {
+                        samples.refine(&mut terms);
+                        residual = samples.miss(&terms);
+                    }
+                    best = best.min(residual);
+                    if residual <= tolerance {
+                        return Ok(Self {
+                            reach,
+                            terms,
+                            present: samples.present.iter().map(|x| x.re).collect(),
+                            residual,
+                        });
+                    }
                 }
             }
         }
@@ -151,12 +151,18 @@ struct Samples {
     present: Vec<C>,
     points: Vec<C>,
     values: Vec<DMatrix<C>>,
+    /// Points halfway between the others with their values, which judge a fit only: a superfluous pole with a tiny residue can hide between samples.
+    between: Vec<(C, DMatrix<C>)>,
 }
 
 impl Samples {
     fn new(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Self {
         let reach = stencil.reach();
         let points = sample_points(stencil, step, steps);
+        let between: Vec<C> = points
+            .windows(2)
+            .map(|pair| halfway(pair[0], pair[1]))
+            .collect();
         let complex = |x: &f64| C::new(*x, 0.0);
         let h: Vec<C> = step.present(stencil).iter().map(complex).collect();
         let present = expanded(&h);
@@ -168,14 +174,17 @@ impl Samples {
         Self {
             values: points.par_iter().map(value).collect(),
             points,
+            between: between.into_par_iter().map(|w| (w, value(&w))).collect(),
             present,
         }
     }
 
-    /// The largest error on the samples, of the displacement of a ghost by unit displacements of all outer points.
+    /// The largest error on the samples and halfway between them, of the displacement of a ghost by unit displacements of all outer points.
     fn miss(&self, terms: &[Exponential]) -> f64 {
-        let pairs = self.points.par_iter().zip(&self.values);
-        let errors: Vec<f64> = pairs
+        let fitted = self.points.par_iter().zip(&self.values);
+        let between = self.between.par_iter().map(|(w, value)| (w, value));
+        let errors: Vec<f64> = fitted
+            .chain(between)
             .map(|(w, value)| {
                 let mut left = value.clone();
                 for term in terms {
@@ -239,6 +248,11 @@ impl Samples {
             }
         }
     }
+}
+
+/// The point of the circle between two of its points.
+fn halfway(a: C, b: C) -> C {
+    C::from_polar(a.norm(), 0.5 * (a.arg() + b.arg()))
 }
 
 /// 1/(1 − λ w), the generating function of λ^j, and its conjugate partner, each by half.

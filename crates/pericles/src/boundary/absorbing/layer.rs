@@ -44,12 +44,15 @@ pub struct OuterLayer {
     pub mass: f64,
     /// The lattice that continues the body.
     pub stencil: LatticeStencil,
+    /// The largest initial displacement or velocity in the layer over that of the body. The exterior starts from rest, so the relative error of the end is of
+    /// this size; zero where the field beyond is given.
+    pub neglected: f64,
 }
 
 /// Bonds whose weights differ by less, relative to the largest, are alike.
 const ALIKE: f64 = 1e-11;
-/// The initial field may have this share of its largest value in the outer layer.
-const AT_REST: f64 = 1e-12;
+/// The initial field may have this share of its largest value at the end of what is known of it. Beyond it counts as zero: an error of about this share.
+pub(super) const NEGLIGIBLE: f64 = 1e-6;
 
 impl OuterLayer {
     /// The outer layer of a body with its initial state and the points, ascending, whose bonds never break. The lattice beyond is read off the body's own
@@ -63,9 +66,10 @@ impl OuterLayer {
         start: &State,
         no_fail: &[u32],
     ) -> Result<Self, AbsorbingError> {
-        let layer = Self::with_motion_beyond(system, side, no_fail)?;
+        let mut layer = Self::with_motion_beyond(system, side, no_fail)?;
         for field in [&start.u, &start.v] {
-            layer.check_at_rest(field, system.cloud())?;
+            let share = layer.share_of(field, system.cloud())?;
+            layer.neglected = layer.neglected.max(share);
         }
         Ok(layer)
     }
@@ -135,6 +139,7 @@ impl OuterLayer {
             mass: mass(outermost),
             points,
             stencil,
+            neglected: 0.0,
         };
         layer.check_lasting(system, no_fail)?;
         layer.check_linear(&bonds)?;
@@ -211,21 +216,23 @@ impl OuterLayer {
         Ok(())
     }
 
-    fn check_at_rest(&self, field: &[f64], cloud: &PointCloud) -> Result<(), AbsorbingError> {
+    /// The largest value of a field in the layer over its largest in the body.
+    fn share_of(&self, field: &[f64], cloud: &PointCloud) -> Result<f64, AbsorbingError> {
         let largest = field.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-        match self
-            .points
-            .iter()
-            .find(|&&i| field[i].abs() > AT_REST * largest)
-        {
-            None => Ok(()),
-            Some(&i) => Err(AbsorbingError::NotAtRest {
+        let outer = self.points.iter().copied();
+        let worst = outer.max_by(|&i, &j| field[i].abs().total_cmp(&field[j].abs()));
+        let Some((point, found)) = worst.map(|i| (i, field[i].abs())) else {
+            return Ok(0.0);
+        };
+        if found > NEGLIGIBLE * largest {
+            return Err(AbsorbingError::NotAtRest {
                 side: self.side.name(),
-                point: cloud.user_number(i),
-                found: field[i].abs(),
+                point: cloud.user_number(point),
+                found,
                 largest,
-            }),
+            });
         }
+        Ok(if found > 0.0 { found / largest } else { 0.0 })
     }
 }
 

@@ -32,6 +32,26 @@ pub(super) struct Loewner {
     leaving: DMatrix<f64>,
 }
 
+/// What is done with eigenvalues λ outside the unit circle.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Growing {
+    /// They are left out: right where they are superfluous, as most are.
+    LeftOut,
+    /// They are replaced by 1/λ̄, for their residues to be found again: leaving out one that is needed misses the exterior by its whole residue, some per cent.
+    Reflected,
+}
+
+impl Growing {
+    pub(super) const ALL: [Self; 2] = [Self::LeftOut, Self::Reflected];
+
+    fn treated(self, decay: C) -> C {
+        match self {
+            Self::Reflected if decay.norm() > 1.0 => decay.conj().inv(),
+            _ => decay,
+        }
+    }
+}
+
 /// A point with what is known there.
 struct Tangent {
     at: C,
@@ -117,8 +137,10 @@ impl Loewner {
         self.singular.iter().take_while(|s| **s > least).count()
     }
 
-    /// The decaying exponentials of the realisation of this order: eigenvalues 1/λ of M with Im λ ≥ 0, right and left eigenvectors. None where they are not found.
-    pub(super) fn exponentials(&self, order: usize) -> Vec<Exponential> {
+    /// The exponentials of the realisation of this order: eigenvalues 1/λ of M with Im λ ≥ 0, right and left eigenvectors. None where they are not found.
+    ///
+    /// Rounding puts some eigenvalues that belong near the unit circle on its wrong side.
+    pub(super) fn exponentials(&self, order: usize, growing: Growing) -> Vec<Exponential> {
         let root = |k: usize| self.singular[k].sqrt();
         let scaled = |matrix: &DMatrix<f64>| {
             DMatrix::from_fn(order, matrix.ncols(), |k, m| matrix[(k, m)] / root(k))
@@ -135,7 +157,7 @@ impl Loewner {
         let give = complex(columns) * &q * &vectors;
         let mut take = q.ad_mul(&complex(rows));
         vectors.solve_upper_triangular_mut(&mut take);
-        let decays = triangle.diagonal().map(|pole| pole.inv());
+        let decays = triangle.diagonal().map(|pole| growing.treated(pole.inv()));
         let kept = (0..order).filter(|&p| decays[p].norm() < 1.0 && decays[p].im > -1e-10);
         kept.map(|p| {
             let real = decays[p].im < 1e-10;

@@ -76,6 +76,25 @@ pub(super) fn pairs(surface: &Surface, half_edges: HalfEdges, delta: f64) -> Geo
     )
 }
 
+/// The distance of two vertices, which is `most` at most.
+pub(super) fn distance(
+    surface: &Surface,
+    half_edges: HalfEdges,
+    [a, b]: [u32; 2],
+    most: f64,
+) -> f64 {
+    let unfolding = Unfolding::new(surface, half_edges);
+    let mut search = Search::new(&unfolding, most);
+    let mut found = most;
+    for (source, target) in [(a, b), (b, a)] {
+        let mut row = Vec::new();
+        search.run(source, &mut row);
+        let reached = row.iter().find(|(vertex, _)| *vertex == target);
+        found = reached.map_or(found, |(_, distance)| found.min(*distance));
+    }
+    found
+}
+
 /// What one thread keeps from source to source: only what a search has touched is reset after it.
 struct Search<'a> {
     unfolding: &'a Unfolding,

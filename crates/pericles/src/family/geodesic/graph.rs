@@ -129,6 +129,24 @@ impl Graph {
         )
     }
 
+    /// The length of the shortest path between two vertices, from either end; none if there is no path.
+    pub(super) fn distance(&self, [a, b]: [u32; 2]) -> Option<f64> {
+        if a == b {
+            return Some(0.0);
+        }
+        let mut front = Front::new(self.start.len() - 1);
+        let mut shortest: Option<f64> = None;
+        for (source, target) in [(a, b), (b, a)] {
+            let mut row = Vec::new();
+            self.search(source, f64::INFINITY, &mut front, &mut row);
+            let found = row.into_iter().find(|(vertex, _)| *vertex == target);
+            if let Some((_, distance)) = found {
+                shortest = Some(shortest.map_or(distance, |other| other.min(distance)));
+            }
+        }
+        shortest
+    }
+
     /// Dijkstra's search from one vertex up to `delta`.
     fn search(&self, source: u32, delta: f64, front: &mut Front, row: &mut Vec<(u32, f64)>) {
         front.reach(source, 0.0);

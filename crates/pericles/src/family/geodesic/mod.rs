@@ -75,3 +75,32 @@ pub fn geodesic_pairs(
     }
     Ok(pairs)
 }
+
+/// The length of the shortest path between two vertices, m, however long; none if no path joins them. The lower of what the searches from both ends find.
+///
+/// # Errors
+/// The surface is no oriented manifold; more points on an edge than [`GeodesicMethod::MOST_POINTS`], or none.
+///
+/// # Panics
+/// Vertices that the surface does not have.
+pub fn geodesic_distance(
+    surface: &Surface,
+    [a, b]: [usize; 2],
+    method: GeodesicMethod,
+) -> Result<Option<f64>> {
+    assert!(a.max(b) < surface.len(), "a vertex beyond the last");
+    let half_edges = HalfEdges::new(surface)?;
+    let ends = [a as u32, b as u32];
+    Ok(match method.checked()? {
+        GeodesicMethod::Exact => {
+            // No path is longer than that along edges.
+            let along_edges = Graph::of_edges(surface, &half_edges).distance(ends);
+            along_edges.map(|most| exact::distance(surface, half_edges, ends, most))
+        }
+        GeodesicMethod::Edge => Graph::of_edges(surface, &half_edges).distance(ends),
+        GeodesicMethod::EdgeDiagonals => Graph::with_diagonals(surface, &half_edges).distance(ends),
+        GeodesicMethod::Steiner(points) => {
+            Graph::with_points(surface, &half_edges, points).distance(ends)
+        }
+    })
+}

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::{MatrixFunction, Product, Term, WaveFunction, bessel_into};
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 use crate::parallel::BLOCK;
 
 /// g(A) x = Σ′ c_k T_k(Y) x with Y = 2A/λ − 1, for an operator whose eigenvalues lie in [0, λ].
@@ -106,13 +107,20 @@ fn series(function: WaveFunction, bound: f64, bessel: &[f64], out: &mut [f64]) {
 }
 
 impl MatrixFunction for Chebyshev {
-    fn add(&mut self, apply: &mut Product<'_>, x: &[f64], terms: &mut [Term<'_>]) -> Result<()> {
+    fn add(
+        &mut self,
+        apply: &mut Product<'_>,
+        x: &[f64],
+        terms: &mut [Term<'_>],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let degree = self.prepare(terms);
         let scale = 2.0 / self.bound;
         let [before, here, product] = &mut self.vectors;
         here.copy_from_slice(x);
         accumulate(&self.coefficients, 0, here, terms);
         for k in 1..=degree {
+            interrupt.poll()?;
             apply(here, product);
             self.products += 1;
             // T₁ = Y T₀, T_{k+1} = 2 Y T_k − T_{k−1}; the new one takes the place of the oldest.
@@ -172,7 +180,9 @@ mod tests {
                 ] {
                     let mut out = [0.0];
                     let terms = &mut [Term::new(function, tau, &mut out)];
-                    engine.add(&mut apply, &[1.0], terms).unwrap();
+                    engine
+                        .add(&mut apply, &[1.0], terms, Interrupt::never())
+                        .unwrap();
                     let exact = function.value(tau, square);
                     let largest = match function {
                         WaveFunction::Cosine => 1.0,

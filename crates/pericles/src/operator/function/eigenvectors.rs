@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::{MatrixFunction, Product, Term};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 
 /// g(A) x from all eigenvectors of the matrix, which is symmetric in the inner product Σ m_i x_i y_i.
 ///
@@ -63,7 +64,13 @@ impl Eigenvectors {
 }
 
 impl MatrixFunction for Eigenvectors {
-    fn add(&mut self, _apply: &mut Product<'_>, x: &[f64], terms: &mut [Term<'_>]) -> Result<()> {
+    fn add(
+        &mut self,
+        _apply: &mut Product<'_>,
+        x: &[f64],
+        terms: &mut [Term<'_>],
+        _interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let scaled = DVector::from_iterator(
             x.len(),
             x.iter().zip(&self.root_mass).map(|(x, root)| x * root),

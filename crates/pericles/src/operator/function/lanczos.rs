@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::{MatrixFunction, Product, Term};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::parallel::ordered_sum;
 
 /// g(A) x ≈ ‖x‖ Q g(T) e₁, T the projection of A on the Krylov space of x with the basis Q, orthonormal in the inner product Σ m_i x_i y_i.
@@ -43,7 +44,13 @@ impl Lanczos {
 }
 
 impl MatrixFunction for Lanczos {
-    fn add(&mut self, apply: &mut Product<'_>, x: &[f64], terms: &mut [Term<'_>]) -> Result<()> {
+    fn add(
+        &mut self,
+        apply: &mut Product<'_>,
+        x: &[f64],
+        terms: &mut [Term<'_>],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let norm = self.inner(x, x).sqrt();
         if norm == 0.0 {
             return Ok(());
@@ -58,6 +65,7 @@ impl MatrixFunction for Lanczos {
         let weights = loop {
             let last = diagonal.len();
             let mut next = vec![0.0; x.len()];
+            interrupt.poll()?;
             apply(&self.basis[last], &mut next);
             self.products += 1;
             diagonal.push(self.inner(&next, &self.basis[last]));
@@ -165,7 +173,7 @@ mod tests {
                 y.iter_mut().zip(x).for_each(|(y, x)| *y = 2.0 * x);
             };
             Lanczos::new(vec![1.0; 3])
-                .add(&mut double, &x, &mut terms)
+                .add(&mut double, &x, &mut terms, Interrupt::never())
                 .unwrap();
             assert!(out.iter().all(|x| x.is_nan()), "{out:?}");
         }

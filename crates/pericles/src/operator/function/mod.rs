@@ -22,12 +22,13 @@
 //! the coefficients from cos(a cos φ) = J₀(a) + 2 Σ (−1)^k J_2k(a) cos 2kφ (DLMF 10.12.3).
 //!
 //! ```
+//! use pericles::Interrupt;
 //! use pericles::operator::function::{Chebyshev, MatrixFunction, Term, WaveFunction};
 //! // One oscillator, ω = 2: cos(2 · 1.5).
 //! let mut apply = |x: &[f64], out: &mut [f64]| out[0] = 4.0 * x[0];
 //! let mut u = [0.0];
 //! let terms = &mut [Term::new(WaveFunction::Cosine, 1.5, &mut u)];
-//! Chebyshev::new(5.0, 1).add(&mut apply, &[1.0], terms).unwrap();
+//! Chebyshev::new(5.0, 1).add(&mut apply, &[1.0], terms, Interrupt::never()).unwrap();
 //! assert!((u[0] - 3.0f64.cos()).abs() < 1e-15);
 //! ```
 
@@ -42,6 +43,7 @@ pub use eigenvectors::Eigenvectors;
 pub use lanczos::Lanczos;
 
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 
 /// An entire function of A = W², for a time τ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,8 +117,14 @@ pub trait MatrixFunction: Send {
     /// Adds g(A) x for every term.
     ///
     /// # Errors
-    /// Engines that iterate report when they do not converge.
-    fn add(&mut self, apply: &mut Product<'_>, x: &[f64], terms: &mut [Term<'_>]) -> Result<()>;
+    /// Engines that iterate report when they do not converge, and poll `interrupt` before every product.
+    fn add(
+        &mut self,
+        apply: &mut Product<'_>,
+        x: &[f64],
+        terms: &mut [Term<'_>],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()>;
 }
 
 /// An operator whose eigenvectors are plane waves: functions of it cost a transform forth and one back for each result.

@@ -10,6 +10,7 @@ mod numbers;
 mod operator;
 mod padded;
 mod stencil;
+mod view;
 mod wanted;
 mod working;
 mod zoned;

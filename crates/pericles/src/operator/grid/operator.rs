@@ -10,7 +10,9 @@ use crate::error::Result;
 use crate::family::LANES;
 use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
+use crate::operator::{
+    Accepted, BondView, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce,
+};
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
 
 impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
@@ -212,6 +214,10 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
 
     fn as_linear(&self) -> Option<&dyn LinearOperator> {
         (L::LINEAR && self.floats.is_none()).then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_bonds(&self) -> Option<&dyn BondView> {
+        Some(self)
     }
 
     fn as_zoned(&self) -> Option<&dyn ZonedForce> {

@@ -11,6 +11,7 @@ use solver::StepSolver;
 use super::{Integrator, State, refuse_released_points};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::parallel::{BLOCK, ordered_sum};
 use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
@@ -32,13 +33,16 @@ pub enum ImplicitRule {
 /// (2/τ) atan(τω/2).
 ///
 /// The unknown is w, half the increment of the displacement: (ρ + τ²/4 K) w = ρ [τ/2 v + τ²/4 (a + Δb/ρ)], symmetric and positive definite. Linear systems are solved by
-/// Cholesky's factor, kept from step to step, or by conjugate gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent, to a relative residual of 1e-14, or what
-/// rounding allows up to 1e-12. Absorbing ends ([`MidpointEnd`](crate::boundary::absorbing::MidpointEnd)) add a corner to the matrix and what they remember to the right-hand side. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
+/// Cholesky's factor, kept from step to step, or by conjugate gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent, to a residual of 1e-14 of
+/// the equation's terms (velocity, acceleration, the step's loads and prescribed motions), or what rounding allows: 1e-12 of these terms, or a few units in the last place of the
+/// displacement times the highest stiffness. Absorbing ends ([`MidpointEnd`](crate::boundary::absorbing::MidpointEnd)) add a corner to the matrix and what they remember to the right-hand side. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
 pub struct Implicit {
     rule: ImplicitRule,
     /// Of linear bodies.
     solver: Option<StepSolver>,
     mass: Vec<f64>,
+    /// A bound of ω² of a nonlinear body at rest, 1/s²: what rounding of the displacement is amplified by.
+    stiffest: f64,
 
     /// w
     half: Vec<f64>,
@@ -50,13 +54,16 @@ pub struct Implicit {
 }
 
 /// Asked for of the residual: what is left is an error of the energy in each step.
-const LIMITS: SolveLimits = SolveLimits {
+const LIMITS: SolveLimits<'_> = SolveLimits {
     relative: 1e-14,
     absolute: 0.0,
     iterations: 4000,
+    interrupt: Interrupt::never(),
 };
 /// Accepted where rounding allows no better.
 const ACCEPTED: f64 = 1e-12;
+/// Accepted of τ²/4 ω² m u for the highest ω: displacements are rounded to about 1e-16, and the force of neighbouring points that are rounded differently is that of the shortest wave.
+const ROUNDING: f64 = 1e-15;
 
 impl Implicit {
     /// A scheme for a body.
@@ -76,9 +83,15 @@ impl Implicit {
         refuse_released_points(rule.name(), system)?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
+        let solver = StepSolver::new(solver, system);
+        let stiffest = match solver {
+            Some(_) => 0.0,
+            None => stiffest(system),
+        };
         Ok(Self {
             rule,
-            solver: StepSolver::new(solver, system),
+            solver,
+            stiffest,
             mass: system.masses(),
             half: array(),
             right: array(),
@@ -112,6 +125,7 @@ impl Implicit {
         system: &System,
         t: [f64; 2],
         [u, v, a]: [&[f64]; 3],
+        interrupt: Interrupt<'_>,
     ) -> Result<()> {
         let tau = t[1] - t[0];
         let quarter = 0.25 * tau * tau;
@@ -142,8 +156,13 @@ impl Implicit {
         system.hold(&mut self.right);
         // Prescribed entries are known: the solver sees the free ones.
         let free = &mut self.change;
-        let solved = solver.solve(system, &self.mass, tau, &self.right, free, &mut self.work);
-        let solved = good_enough(solved, norm(&self.right));
+        let limits = SolveLimits {
+            interrupt,
+            ..LIMITS
+        };
+        let work = &mut self.work;
+        let solved = solver.solve(system, &self.mass, tau, &self.right, free, &limits, work);
+        let solved = good_enough(solved, ACCEPTED * norm(&self.right));
         each(&mut self.half, free, |half, free| *half += free);
         solved
     }
@@ -152,9 +171,9 @@ impl Implicit {
         &mut self,
         system: &mut System,
         t: [f64; 2],
-        state: [&[f64]; 3],
+        [u, v, a]: [&[f64]; 3],
+        interrupt: Interrupt<'_>,
     ) -> Result<()> {
-        let [u, v, a] = state;
         let tau = t[1] - t[0];
         // w = τ/2 v + τ²/4 f(u + s w)/s, with what is known on the right.
         let quarter = 0.25 * tau * tau;
@@ -162,6 +181,8 @@ impl Implicit {
             ImplicitRule::Midpoint => (0.5 * (t[0] + t[1]), 1.0, 0.0),
             ImplicitRule::Trapezoidal => (t[1], 2.0, 0.5 * quarter),
         };
+        let total = quarter - known;
+        let of_step = self.size_of_the_step(system, place, u, [total, quarter]);
         // What boundaries give acts at the middle for both rules, and is no part of `a` here.
         ends::without_present(system, a, &mut self.right);
         each(&mut self.right, v, |right, v| {
@@ -170,7 +191,6 @@ impl Implicit {
         system.hold(&mut self.right);
         // The first guess: the explicit step.
         each(&mut self.half, &self.right, |half, right| *half += right);
-        let total = quarter - known;
         let size = &mut self.force;
         size.copy_from_slice(a);
         system.hold(size);
@@ -179,7 +199,14 @@ impl Implicit {
             *a = total * a.abs() + right.abs()
         });
         each(size, &self.mass, |size, m| *size *= m);
-        let scale = norm(size);
+        let scale = norm(size).max(of_step);
+        let mass = &self.mass;
+        let displacement = ordered_sum(u.len(), |k| (mass[k] * u[k]).powi(2)).sqrt();
+        let rounding = ROUNDING * quarter * self.stiffest * displacement;
+        let limits = SolveLimits {
+            interrupt,
+            ..LIMITS
+        };
         let mut problem = Stage {
             system,
             mass: &self.mass,
@@ -191,8 +218,35 @@ impl Implicit {
             reach,
             quarter,
         };
-        let solved = newton_krylov(&mut problem, &mut self.half, scale, &LIMITS, &mut self.work);
-        good_enough(solved.map(|_| ()), scale)
+        let solved = newton_krylov(&mut problem, &mut self.half, scale, &limits, &mut self.work);
+        good_enough(solved.map(|_| ()), (ACCEPTED * scale).max(rounding))
+    }
+
+    /// ‖m (|τ²/4 b/s| + |τ²/4 K w|)‖ for the loads b at the rule's place and the prescribed part of w, which `half` holds: the terms of the equation that velocity and acceleration at the
+    /// start know nothing of. At rest they are all there is.
+    fn size_of_the_step(
+        &mut self,
+        system: &System,
+        t: f64,
+        u: &[f64],
+        [share, quarter]: [f64; 2],
+    ) -> f64 {
+        let (load, pull) = (&mut self.right, &mut self.change);
+        system.external_acceleration_into(t, load);
+        system.hold(load);
+        pull.fill(0.0);
+        if !system.motions().is_empty() {
+            // Where the supports have moved: some bodies have no stiffness at rest.
+            let moved = &mut self.force;
+            moved.copy_from_slice(u);
+            each(moved, &self.half, |moved, half| *moved += half);
+            system.vibration_into(moved, &self.half, pull);
+        }
+        let (load, pull, mass) = (&*load, &*pull, &self.mass);
+        ordered_sum(load.len(), |k| {
+            (mass[k] * (share * load[k].abs() + quarter * pull[k].abs())).powi(2)
+        })
+        .sqrt()
     }
 }
 
@@ -214,6 +268,18 @@ impl ImplicitRule {
             Self::Midpoint => "implicit-midpoint",
             Self::Trapezoidal => "trapezoidal",
         }
+    }
+}
+
+/// A bound of ω² at rest, 1/s²; zero where there is none, as of bonds without stiffness at rest.
+fn stiffest(system: &System) -> f64 {
+    let omega = system
+        .operator()
+        .frequency_bound(&|i| system.density().at(i));
+    if omega.is_finite() {
+        omega * omega
+    } else {
+        0.0
     }
 }
 
@@ -283,10 +349,10 @@ fn norm(x: &[f64]) -> f64 {
     ordered_sum(x.len(), |k| x[k] * x[k]).sqrt()
 }
 
-/// Rounding may keep a solver above what was asked for.
-fn good_enough(solved: Result<()>, scale: f64) -> Result<()> {
+/// Rounding may keep a solver above what was asked for, but not above `accepted`.
+fn good_enough(solved: Result<()>, accepted: f64) -> Result<()> {
     match solved {
-        Err(PericlesError::NotConverged { residual, .. }) if residual <= ACCEPTED * scale => Ok(()),
+        Err(PericlesError::NotConverged { residual, .. }) if residual <= accepted => Ok(()),
         other => other,
     }
 }
@@ -308,17 +374,24 @@ impl Integrator for Implicit {
         super::runge_kutta::start(system, state);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
         let tau = t_next - *t;
         self.prescribe(system, t_next, u);
         match self.solver.take() {
             Some(mut solver) => {
-                let solved = self.solve_linear(&mut solver, system, [*t, t_next], [u, v, a]);
+                let times = [*t, t_next];
+                let solved = self.solve_linear(&mut solver, system, times, [u, v, a], interrupt);
                 self.solver = Some(solver);
                 solved?;
             }
-            None => self.solve_nonlinear(system, [*t, t_next], [u, v, a])?,
+            None => self.solve_nonlinear(system, [*t, t_next], [u, v, a], interrupt)?,
         }
         let [u_next, v_next] = &mut self.next;
         u_next.copy_from_slice(u);

@@ -1,10 +1,10 @@
 //! The linear systems of implicit steps: by a factor that is kept, or by iteration.
 
-use super::{LIMITS, add_and_weigh, ends};
+use super::{add_and_weigh, ends};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::operator::{ForceOperator, LinearOperator};
-use crate::solve::{BandedCholesky, Work, conjugate_gradient};
+use crate::solve::{BandedCholesky, SolveLimits, Work, conjugate_gradient};
 use crate::system::System;
 
 /// How the linear system of a step is solved.
@@ -118,18 +118,19 @@ impl StepSolver {
         tau: f64,
         right: &[f64],
         x: &mut [f64],
+        limits: &SolveLimits<'_>,
         work: &mut Work,
     ) -> Result<()> {
         let mut product = |x: &[f64], out: &mut [f64]| product_into(system, mass, tau, x, out);
         if !self.is_direct(tau, system) {
             x.fill(0.0);
-            return conjugate_gradient(&mut product, right, x, &LIMITS, work).map(|_| ());
+            return conjugate_gradient(&mut product, right, x, limits, work).map(|_| ());
         }
         let factor = self.factor_of(system, mass, tau)?;
         x.copy_from_slice(right);
         factor.solve(x);
         factor
-            .refine(&mut product, right, x, &LIMITS, work)
+            .refine(&mut product, right, x, limits, work)
             .map(|_| ())
     }
 

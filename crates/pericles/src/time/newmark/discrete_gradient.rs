@@ -4,6 +4,7 @@ use super::InnerIterations;
 use super::equation::{StepEquation, centre, root_masses};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::operator::Accepted;
 use crate::parallel::ordered_sum;
 use crate::solve::{SolveLimits, Work, newton_krylov};
@@ -88,7 +89,7 @@ impl DiscreteGradient {
         })
     }
 
-    /// Solves the step for a given c, and returns the c that would have balanced the energy, with the energy that is missing, J.
+    /// Solves the step for a given c.
     fn attempt(
         &mut self,
         system: &System,
@@ -96,14 +97,15 @@ impl DiscreteGradient {
         step: Step,
         c: f64,
         newton: &mut u64,
-    ) -> Result<(f64, f64)> {
+        interrupt: Interrupt<'_>,
+    ) -> Result<Attempt> {
         let theta = 0.5 * step.dt * step.dt;
         let scale = ordered_sum(self.scaled.len(), |k| self.scaled[k].powi(2)).sqrt();
-        let moved = step.dt * (2.0 * step.kinetic).sqrt();
         let limits = SolveLimits {
-            absolute: 0.1 * self.tolerance * moved,
+            absolute: 0.1 * self.tolerance * step.reach,
             relative: ROUNDING,
             iterations: NEWTON,
+            interrupt,
         };
         let mut equation = StepEquation {
             system,
@@ -142,24 +144,37 @@ impl DiscreteGradient {
         let shape = ordered_sum(next.len(), |k| {
             (root_mass[k] * (moved(k) - means[k / n])).powi(2)
         });
-        let missing = system.operator().energy(step.t, next) - step.elastic + work;
-        let balanced = if shape > 0.0 { missing / shape } else { 0.0 };
-        Ok((balanced, missing - c * shape))
+        let elastic = system.operator().energy(step.t, next);
+        let missing = elastic - step.elastic + work;
+        let velocity = |k: usize| 2.0 * moved(k) / step.dt - state.v[k];
+        let twice = ordered_sum(next.len(), |k| (root_mass[k] * velocity(k)).powi(2));
+        Ok(Attempt {
+            balanced: if shape > 0.0 { missing / shape } else { 0.0 },
+            missing: missing - c * shape,
+            energy: 0.5 * twice + elastic,
+        })
     }
 
     /// Finds the c that balances the energy: by secants, kept between values that gain and lose it.
     ///
     /// The energy that a step gains falls as c grows: c is a drag. Below −1/θ the equation is no longer positive definite.
-    fn balance(&mut self, system: &System, state: &State, step: Step) -> Result<f64> {
-        let allowed = self.tolerance * (step.kinetic + step.elastic);
+    fn balance(
+        &mut self,
+        system: &System,
+        state: &State,
+        step: Step,
+        interrupt: Interrupt<'_>,
+    ) -> Result<f64> {
         let unit = 2.0 / (step.dt * step.dt);
         let (mut c, mut newton) = (self.correction.max(-0.5 * unit), 0);
         let (mut gains, mut loses) = (-0.95 * unit, f64::INFINITY);
         let mut before: Option<(f64, f64)> = None;
-        let mut missing = f64::INFINITY;
+        let (mut missing, mut allowed) = (f64::INFINITY, 0.0);
         for _ in 0..MOST {
-            let balanced;
-            (balanced, missing) = self.attempt(system, state, step, c, &mut newton)?;
+            let attempt = self.attempt(system, state, step, c, &mut newton, interrupt)?;
+            // From rest the energy is what the loads put in within the step.
+            allowed = self.tolerance * attempt.energy.max(step.kinetic + step.elastic);
+            missing = attempt.missing;
             if missing.abs() <= allowed {
                 self.iterations.count(newton, missing.abs());
                 return Ok(c);
@@ -173,7 +188,7 @@ impl DiscreteGradient {
                 Some((c_before, missing_before)) if missing != missing_before => {
                     c - missing * (c - c_before) / (missing - missing_before)
                 }
-                _ => balanced,
+                _ => attempt.balanced,
             };
             before = Some((c, missing));
             c = if next > gains && next < loses && (next - c).abs() < 4.0 * unit {
@@ -194,6 +209,16 @@ impl DiscreteGradient {
     }
 }
 
+/// A step solved for one c.
+struct Attempt {
+    /// The c that would have balanced the energy.
+    balanced: f64,
+    /// The energy that is missing, J.
+    missing: f64,
+    /// Kinetic and elastic energy at its end, J.
+    energy: f64,
+}
+
 /// What a step starts with.
 #[derive(Clone, Copy)]
 struct Step {
@@ -201,6 +226,8 @@ struct Step {
     dt: f64,
     kinetic: f64,
     elastic: f64,
+    /// ‖√m Δu‖ of free flight, or by the loads alone, the larger: the scale of what the step moves.
+    reach: f64,
 }
 
 impl Integrator for DiscreteGradient {
@@ -224,11 +251,20 @@ impl Integrator for DiscreteGradient {
         system.start(state.t, &state.u, &state.v, &mut state.a);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let (n, dt) = (system.points(), t_next - state.t);
         let theta = 0.5 * dt * dt;
         system.external_acceleration_into(state.t, &mut self.mean);
         system.external_acceleration_into(t_next, &mut self.next);
+        let (first, last, root) = (&self.mean, &self.next, &self.root_mass);
+        let pushed = ordered_sum(root.len(), |k| (root[k] * (first[k] + last[k])).powi(2)).sqrt();
+        let kinetic = system.kinetic_energy(&state.v);
         Sum::new()
             .plus(dt, &state.v)
             .plus(0.5 * theta, &self.mean)
@@ -247,10 +283,11 @@ impl Integrator for DiscreteGradient {
         let step = Step {
             t: t_next,
             dt,
-            kinetic: system.kinetic_energy(&state.v),
+            kinetic,
             elastic: system.operator().energy(state.t, &state.u),
+            reach: (dt * (2.0 * kinetic).sqrt()).max(0.5 * theta * pushed),
         };
-        self.correction = self.balance(system, state, step)?;
+        self.correction = self.balance(system, state, step, interrupt)?;
         // v′ = 2 Δu/dt − v, and the mean velocity Δu/dt.
         let (next, mean) = (&self.next, &mut self.mean);
         for k in 0..next.len() {

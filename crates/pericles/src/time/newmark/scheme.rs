@@ -5,6 +5,7 @@ use super::equation::{StepEquation, root_masses};
 use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
+use crate::interrupt::Interrupt;
 use crate::operator::{Accepted, On};
 use crate::solve::{SolveLimits, Work, newton_krylov};
 use crate::system::System;
@@ -108,7 +109,13 @@ impl Newmark {
     }
 
     /// Evaluate and correct until the velocity stays. Leaves the last acceleration found in `next[3]`.
-    fn iterate(&mut self, system: &mut System, t: f64, dt: f64) -> Result<()> {
+    fn iterate(
+        &mut self,
+        system: &mut System,
+        t: f64,
+        dt: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let push = self.options.gamma * dt;
         self.next[2].fill(0.0);
         if let Inner::Anderson(anderson) = &mut self.inner {
@@ -117,6 +124,7 @@ impl Newmark {
         self.correct(system, t, dt);
         let mut change = f64::INFINITY;
         for k in 1..=u64::from(self.options.iterations) {
+            interrupt.poll()?;
             let [u, v, a, found] = &mut self.next;
             system.acceleration(t, u, v, On::All, found);
             // The iterate before is not needed any more: it becomes the change.
@@ -166,7 +174,13 @@ impl Newmark {
     }
 
     /// Newton's method on u′ − uP − β dt² (f(u′) + b)/ρ = 0.
-    fn solve(&mut self, system: &mut System, state: &State, t: f64, dt: f64) -> Result<()> {
+    fn solve(
+        &mut self,
+        system: &mut System,
+        state: &State,
+        [t, dt]: [f64; 2],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let Inner::NewtonKrylov(newton) = &mut self.inner else {
             return Ok(());
         };
@@ -202,6 +216,7 @@ impl Newmark {
             absolute: self.options.tolerance * least / velocity,
             relative: ROUNDING,
             iterations: self.options.iterations as usize,
+            interrupt,
         };
         let scale = scaled.iter().map(|y| y * y).sum::<f64>().sqrt();
         let mut equation = StepEquation {
@@ -304,7 +319,13 @@ impl Integrator for Newmark {
         system.start(state.t, &state.u, &state.v, &mut state.a);
     }
 
-    fn step(&mut self, system: &mut System, state: &mut State, t_next: f64) -> Result<()> {
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
         let (n, dt) = (system.points(), t_next - state.t);
         let NewmarkOptions { beta, gamma, .. } = self.options;
         let [u, v] = &mut self.predicted;
@@ -316,8 +337,10 @@ impl Integrator for Newmark {
             .plus((1.0 - gamma) * dt, &state.a)
             .onto(&state.v, &self.zone, n, v);
         match self.inner {
-            Inner::NewtonKrylov(_) => self.solve(system, state, t_next, dt)?,
-            Inner::FixedPoint | Inner::Anderson(_) => self.iterate(system, t_next, dt)?,
+            Inner::NewtonKrylov(_) => self.solve(system, state, [t_next, dt], interrupt)?,
+            Inner::FixedPoint | Inner::Anderson(_) => {
+                self.iterate(system, t_next, dt, interrupt)?
+            }
         }
         self.accept(system, state, t_next, dt);
         state.t = t_next;

@@ -1,27 +1,28 @@
 //! Wave speeds of the elastic material that a bond-based one approaches.
 
-use pericles::material::StressState;
+use super::StressState;
 
 /// Speeds of waves, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct WaveSpeeds {
+pub struct ElasticWaves {
     /// Pressure waves; in a bar the bar wave, √(E/ρ).
-    pub(crate) pressure: f64,
+    pub pressure: f64,
     /// Shear and Rayleigh waves; none in a bar.
-    pub(crate) transverse: Option<Transverse>,
+    pub transverse: Option<TransverseWaves>,
 }
 
 /// Speeds of transverse waves, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Transverse {
-    pub(crate) shear: f64,
-    /// Waves along a free surface, which a crack in mode I cannot overtake.
-    pub(crate) rayleigh: f64,
+pub struct TransverseWaves {
+    /// Shear waves, m/s.
+    pub shear: f64,
+    /// Rayleigh waves along a free surface, which a crack in mode I cannot overtake, m/s.
+    pub rayleigh: f64,
 }
 
-impl WaveSpeeds {
+impl ElasticWaves {
     /// The speeds for Young's modulus (Pa), density (kg/m³) and the state of stress, with Poisson's ratio fixed by the state.
-    pub(crate) fn of(young: f64, density: f64, state: StressState) -> Self {
+    pub fn of(young: f64, density: f64, state: StressState) -> Self {
         let Some(nu) = state.poisson_ratio() else {
             return Self {
                 pressure: (young / density).sqrt(),
@@ -36,7 +37,7 @@ impl WaveSpeeds {
         };
         Self {
             pressure: shear / ratio.sqrt(),
-            transverse: Some(Transverse {
+            transverse: Some(TransverseWaves {
                 shear,
                 rayleigh: shear * rayleigh(ratio).sqrt(),
             }),
@@ -74,7 +75,7 @@ mod tests {
     #[test]
     fn glasses_of_the_fracture_studies() {
         let rayleigh = |young, density| {
-            WaveSpeeds::of(young, density, StressState::PlaneStrain)
+            ElasticWaves::of(young, density, StressState::PlaneStrain)
                 .transverse
                 .unwrap()
                 .rayleigh
@@ -85,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_steel_bar() {
-        let speeds = WaveSpeeds::of(210e9, 7850.0, StressState::Uniaxial);
+        let speeds = ElasticWaves::of(210e9, 7850.0, StressState::Uniaxial);
         assert!((speeds.pressure - 5172.2).abs() < 0.1);
         assert_eq!(speeds.transverse, None);
     }

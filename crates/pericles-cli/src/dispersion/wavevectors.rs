@@ -1,0 +1,104 @@
+//! Frequencies at given wave vectors.
+
+use std::path::Path;
+
+use pericles::analysis::{BondLattice, Mode, Vector, verlet_frequency};
+use pericles_io::{Cell, Column, CsvTable};
+use serde_json::{Value as Json, json};
+
+use crate::console;
+use crate::error::CliError;
+use crate::units::significant;
+
+/// The modes at one wave vector, fastest first.
+pub(crate) struct AtWaveVector {
+    /// rad/m
+    k: Vector,
+    modes: Vec<Mode>,
+    /// Time step for the time-discrete frequency, s.
+    dt: f64,
+}
+
+impl AtWaveVector {
+    /// The modes of a lattice at a wave vector (rad/m).
+    pub(crate) fn of(lattice: &BondLattice, k: Vector, dt: f64) -> Self {
+        let mut modes = lattice.modes(k);
+        modes.reverse();
+        Self { k, modes, dt }
+    }
+
+    fn size(&self) -> f64 {
+        self.k.iter().map(|k| k * k).sum::<f64>().sqrt()
+    }
+
+    /// ω of a mode, that of velocity Verlet, and the phase speed; none where the wave grows.
+    fn numbers(&self, mode: &Mode) -> [Option<f64>; 3] {
+        let omega = Some(mode.omega()).filter(|omega| omega.is_finite());
+        [
+            omega,
+            omega.and_then(|omega| verlet_frequency(omega, self.dt)),
+            omega.map(|omega| omega / self.size()),
+        ]
+    }
+
+    fn json(&self) -> Json {
+        let modes = self.modes.iter().map(|mode| {
+            let [omega, verlet, speed] = self.numbers(mode);
+            json!({
+                "omega": omega, "omega_verlet": verlet, "phase_velocity": speed,
+                "polarisation": mode.polarisation, "longitudinal": mode.longitudinal(self.k),
+            })
+        });
+        json!({ "k": self.k, "modes": modes.collect::<Vec<_>>() })
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let modes: Vec<String> = self
+            .modes
+            .iter()
+            .map(|mode| match self.numbers(mode) {
+                [Some(omega), _, Some(speed)] => format!(
+                    "{} 1/s ({} m/s)",
+                    significant(omega, 5),
+                    significant(speed, 4)
+                ),
+                _ => "growing".into(),
+            })
+            .collect();
+        let k = self.k.map(|k| significant(k, 4)).join(", ");
+        console::print(format_args!("ω at k = ({k}) rad/m   {}", modes.join("; ")))
+    }
+}
+
+/// All of them, for the summary.
+pub(crate) fn summary(all: &[AtWaveVector]) -> Json {
+    all.iter().map(AtWaveVector::json).collect()
+}
+
+/// All of them, on the screen.
+pub(crate) fn print(all: &[AtWaveVector]) -> Result<(), CliError> {
+    all.iter().try_for_each(AtWaveVector::print)
+}
+
+/// A row for each mode; cells are empty where a wave grows.
+pub(crate) fn write(path: &Path, all: &[AtWaveVector]) -> Result<(), CliError> {
+    let mut columns = ["k_x", "k_y", "k_z"]
+        .map(|name| Column::real(name, "rad/m"))
+        .to_vec();
+    columns.push(Column::integer("mode"));
+    columns.extend(["omega", "omega_verlet"].map(|name| Column::real(name, "rad/s")));
+    columns.push(Column::real("phase_velocity", "m/s"));
+    columns.push(Column::real("longitudinal", ""));
+    let mut table = CsvTable::create(path, &columns)?;
+    for place in all {
+        for (number, mode) in place.modes.iter().enumerate() {
+            let mut cells: Vec<Cell> = place.k.map(Cell::from).to_vec();
+            cells.push((number as i64).into());
+            let numbers = place.numbers(mode);
+            cells.extend(numbers.map(|number| Cell::from(number.unwrap_or(f64::NAN))));
+            cells.push(mode.longitudinal(place.k).into());
+            table.append(&cells)?;
+        }
+    }
+    Ok(table.flush()?)
+}

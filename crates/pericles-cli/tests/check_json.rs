@@ -1,0 +1,166 @@
+//! `pericles check --json`: every number that is printed, in SI units.
+
+mod common;
+
+use std::path::Path;
+
+use common::{PLATE, report, succeed, text};
+use serde_json::Value;
+
+/// All numbers of a JSON value.
+fn numbers(value: &Value, found: &mut Vec<f64>) {
+    match value {
+        Value::Number(number) => found.extend(number.as_f64()),
+        Value::Array(list) => list.iter().for_each(|entry| numbers(entry, found)),
+        Value::Object(map) => map.values().for_each(|entry| numbers(entry, found)),
+        _ => {}
+    }
+}
+
+/// The numbers of a printed text, each with the value of one unit in its last digit.
+fn printed(text: &str) -> Vec<(f64, f64)> {
+    // Digits are grouped by blanks: `1 234 567`.
+    let characters: Vec<char> = text.chars().collect();
+    let digit = |k: usize| characters.get(k).is_some_and(char::is_ascii_digit);
+    let group = |k: usize| {
+        characters.get(k) == Some(&' ') && (1..=3).all(|j| digit(k + j)) && !digit(k + 4)
+    };
+    let mut found = Vec::new();
+    let mut k = 0;
+    while k < characters.len() {
+        let begins = digit(k) && (k == 0 || !characters[k - 1].is_alphanumeric());
+        if !begins {
+            k += 1;
+            continue;
+        }
+        let mut word = String::new();
+        loop {
+            if digit(k) || (characters.get(k) == Some(&'.') && digit(k + 1)) {
+                word.push(characters[k]);
+                k += 1;
+            } else if !word.contains('.') && group(k) {
+                k += 1;
+            } else {
+                break;
+            }
+        }
+        let decimals = word.split_once('.').map_or(0, |(_, digits)| digits.len());
+        let mut exponent = 0;
+        if characters.get(k) == Some(&'e') {
+            let rest: String = characters[k + 1..]
+                .iter()
+                .take_while(|c| c.is_ascii_digit() || **c == '-')
+                .collect();
+            exponent = rest.parse().unwrap();
+            k += 1 + rest.len();
+        }
+        let scale = 10f64.powi(exponent);
+        let value: f64 = word.parse().unwrap();
+        found.push((value * scale, scale * 10f64.powi(-(decimals as i32))));
+    }
+    found
+}
+
+/// Whether a printed number is one of those of the JSON, with the factor of a prefix or of percent.
+fn is_held(printed: f64, last: f64, numbers: &[f64]) -> bool {
+    let factors = (-6..=6).map(|k| 1000f64.powi(k)).chain([0.01]);
+    factors.into_iter().any(|factor| {
+        let near = |number: &f64| (number.abs() - printed * factor).abs() <= 0.501 * last * factor;
+        numbers.iter().any(near)
+    })
+}
+
+fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
+    succeed(folder, &format!("check {deck} --json check.json"));
+    let json: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("check.json")).unwrap()).unwrap();
+    let mut held = Vec::new();
+    numbers(&json, &mut held);
+    let said = text(&succeed(folder, &format!("check {deck}")).stdout);
+    for line in said.lines().skip(1) {
+        // A time of the clock differs from call to call.
+        if ["run time", "their cost", "do they pay"]
+            .iter()
+            .any(|name| line.trim().starts_with(name))
+        {
+            continue;
+        }
+        for (value, last) in printed(line) {
+            assert!(
+                is_held(value, last, &held),
+                "{value} of `{line}` is not in {json:#}"
+            );
+        }
+    }
+    json
+}
+
+#[test]
+fn the_scanner_reads_numbers_as_they_are_printed() {
+    let found = printed("1 234 567 bonds (2.50 GPa), 46.0 ns of 3D; 1.5e-3 and 12 345");
+    let expected = [
+        (1234567.0, 1.0),
+        (2.5, 0.01),
+        (46.0, 0.1),
+        (3.0, 1.0),
+        (1.5e-3, 1e-4),
+        (12345.0, 1.0),
+    ];
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for ((value, last), (right, digit)) in found.iter().zip(expected) {
+        assert!(
+            (value - right).abs() < 1e-9 && (last / digit - 1.0).abs() < 1e-9,
+            "{found:?}"
+        );
+    }
+    assert!(is_held(46.0, 0.1, &[4.604e-8]));
+    assert!(!is_held(46.0, 0.1, &[4.61e-8]));
+    assert!(is_held(5.8, 0.1, &[-0.0579]));
+}
+
+#[test]
+fn the_json_of_check_holds_every_number_that_is_printed() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    std::fs::write(folder.join("plate.toml"), PLATE).unwrap();
+    let json = assert_json_holds_what_is_printed(folder, "plate.toml");
+    assert_eq!(json["deck"], "plate.toml");
+    assert_eq!(json["title"], "Torn plate");
+    assert_eq!(json["points"], 288);
+    assert_eq!(json["spacing"], 1e-3);
+    assert_eq!(json["dt"], 1e-7);
+    for key in [
+        "/wave_speeds/rayleigh",
+        "/run_seconds",
+        "/horizon_ratio",
+        "/end",
+    ] {
+        let number = json.pointer(key).and_then(Value::as_f64);
+        assert!(number.is_some_and(|number| number > 0.0), "{key}: {json:#}");
+    }
+    for example in [
+        "wave/two-materials",
+        "multi-time-step/notched-plate",
+        "absorbing/free-end",
+    ] {
+        succeed(folder, &format!("new {example} deck.toml"));
+        assert_json_holds_what_is_printed(folder, "deck.toml");
+        std::fs::remove_file(folder.join("deck.toml")).unwrap();
+    }
+}
+
+#[test]
+fn the_json_on_the_standard_output_stands_alone_and_has_the_keys_of_run_json() {
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("plate.toml"), PLATE).unwrap();
+    let said = text(&succeed(place.path(), "check plate.toml --json -").stdout);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    succeed(place.path(), "run plate.toml --quiet --set time.end=1us");
+    let run = report(&place.path().join("plate"));
+    for (key, value) in run["model"].as_object().unwrap() {
+        // The run is shorter.
+        if key != "steps" {
+            assert_eq!(json[key], *value, "{key}");
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The stop conditions of a model.
+
+use pericles::{StopCondition, StopWhen, System};
+
+use super::Sets;
+use crate::deck::Deck;
+use crate::error::DeckError;
+use crate::fault::Fault;
+use crate::reader::Path;
+use crate::stop;
+
+impl Deck {
+    /// The stop conditions; those that can never be met are refused.
+    pub(super) fn stops(&self, system: &System, sets: &Sets) -> Result<Vec<StopWhen>, DeckError> {
+        let mut stops = Vec::new();
+        for (k, stop) in self.time.stop_when.iter().enumerate() {
+            let path = Path::from("time.stop_when").index(k);
+            let never = |reason| {
+                let set = stop.set.clone();
+                Err(self.at_path(&path, Fault::NeverStops { set, reason }))
+            };
+            let condition = match stop.condition {
+                stop::StopCondition::ReactionBelow(share) => {
+                    // The motions of a system are those of the deck, in its order.
+                    let of_set = |k: &usize| self.prescribe[*k].set == stop.set;
+                    let motions: Vec<usize> = (0..self.prescribe.len()).filter(of_set).collect();
+                    if motions.is_empty() {
+                        return never(
+                            "no [[prescribe]] names this set, so that it has no reaction",
+                        );
+                    }
+                    StopCondition::ReactionBelow { share, motions }
+                }
+                stop::StopCondition::DamageAbove(_) if !system.operator().can_break() => {
+                    return never("the bonds of this body never break");
+                }
+                stop::StopCondition::DamageAbove(damage) => {
+                    let points = self.members(sets, &stop.set, &path)?.clone();
+                    StopCondition::DamageAbove { damage, points }
+                }
+            };
+            stops.push(StopWhen::new(stop.set.clone(), condition));
+        }
+        Ok(stops)
+    }
+}

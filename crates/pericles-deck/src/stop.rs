@@ -1,0 +1,51 @@
+//! `[[time.stop_when]]`: conditions that end a run before its last step.
+
+use crate::quantity::Quantity;
+use crate::reader::Table;
+use crate::set::SetNames;
+
+/// A condition on a set of points; the run ends after the first step that meets one of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StopWhen {
+    /// The set.
+    pub set: String,
+    /// What it must have come to.
+    pub condition: StopCondition,
+}
+
+/// What a set must have come to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StopCondition {
+    /// The reaction is below this share of its peak.
+    ReactionBelow(f64),
+    /// The damage of a point is above this value.
+    DamageAbove(f64),
+}
+
+pub(crate) fn stop_when(table: Table<'_>, sets: &SetNames) -> Option<StopWhen> {
+    let set = table.required("set").and_then(|item| sets.reference(&item));
+    let condition = table
+        .exactly_one(&["reaction_below", "damage_above"])
+        .and_then(|(key, item)| {
+            if key == "reaction_below" {
+                let share = item.within(
+                    Quantity::Number,
+                    "a number above 0 and below 1, the share of the largest reaction so far",
+                    |share| share > 0.0 && share < 1.0,
+                );
+                share.map(StopCondition::ReactionBelow)
+            } else {
+                let damage = item.within(
+                    Quantity::Number,
+                    "a damage of at least 0 and below 1",
+                    |damage| (0.0..1.0).contains(&damage),
+                );
+                damage.map(StopCondition::DamageAbove)
+            }
+        });
+    table.finish();
+    Some(StopWhen {
+        set: set?,
+        condition: condition?,
+    })
+}

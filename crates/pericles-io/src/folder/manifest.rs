@@ -1,0 +1,197 @@
+//! What a run may write into its folder, on record before it does: what `--force` may remove.
+//!
+//! The file `.manifest` has a line for each name, relative to the folder; `*` stands for one or more digits, for series such as
+//! `fields/fields_*.vtu`. Folders of versions without it are recognised by the content of their `run.json`.
+
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use pericles::observe::Field;
+use serde_json::Value;
+
+use crate::{IoError, write_atomically};
+
+/// The name of the file.
+pub(super) const MANIFEST: &str = ".manifest";
+
+const HEADING: &str = "# Files of a Pericles run";
+
+/// What runs write besides pictures, whose names begin with those of fields.
+const USUAL: [&str; 12] = [
+    "run.json",
+    "report.html",
+    "fields.pvd",
+    "history.csv",
+    "reactions.csv",
+    "probes.csv",
+    "cracks.csv",
+    "fragments.csv",
+    "surface.csv",
+    "fields/fields_*.vtu",
+    "checkpoints/step-*.chk",
+    "checkpoints/failed.chk",
+];
+
+/// The names on record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Manifest {
+    names: Vec<String>,
+    /// Pictures of fields, of which versions without a manifest kept no record.
+    pictures: bool,
+}
+
+impl Manifest {
+    /// The names that runs of versions without a manifest wrote.
+    pub(super) fn usual() -> Self {
+        Self {
+            names: USUAL.map(String::from).to_vec(),
+            pictures: true,
+        }
+    }
+
+    /// What is on record in a folder; none if it is no folder of a run.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub(super) fn of(folder: &Path) -> Result<Option<Self>, IoError> {
+        let path = folder.join(MANIFEST);
+        match fs::read_to_string(&path) {
+            Ok(text) => Ok(Self::parse(&text)),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                Ok(is_report(&folder.join("run.json")).then(Self::usual))
+            }
+            Err(error) => Err(IoError::reading(&path, error)),
+        }
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        let mut lines = text.lines();
+        if lines.next() != Some(HEADING) {
+            return None;
+        }
+        Some(Self {
+            names: lines.map(str::to_owned).collect(),
+            pictures: false,
+        })
+    }
+
+    /// Puts names on record in a folder, beside those that are.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written.
+    pub(super) fn add(folder: &Path, names: &[String]) -> Result<(), IoError> {
+        let path = folder.join(MANIFEST);
+        let mut known = match fs::read_to_string(&path) {
+            Ok(text) => Self::parse(&text).unwrap_or_default(),
+            Err(error) if error.kind() == ErrorKind::NotFound => Self::default(),
+            Err(error) => return Err(IoError::reading(&path, error)),
+        };
+        for name in names {
+            if !known.names.contains(name) {
+                known.names.push(name.clone());
+            }
+        }
+        write_atomically(&path, |file| {
+            writeln!(file, "{HEADING}")?;
+            known
+                .names
+                .iter()
+                .try_for_each(|name| writeln!(file, "{name}"))
+        })
+    }
+
+    /// Whether a file of this name, relative to the folder and with `/` before the last part if it is in a sub-folder, is on record.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|pattern| matches(pattern, name)) || self.pictures && is_picture(name)
+    }
+}
+
+/// Whether a name is that of a pattern, whose `*` is one or more digits.
+fn matches(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        None => pattern == name,
+        Some((before, after)) => name
+            .strip_prefix(before)
+            .and_then(|rest| rest.strip_suffix(after))
+            .is_some_and(is_number),
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Whether a name is that of a picture or animation of a field.
+fn is_picture(name: &str) -> bool {
+    let Some(name) = name.strip_prefix("pictures/") else {
+        return false;
+    };
+    let stem = match name.strip_suffix(".apng") {
+        Some(stem) => Some(stem),
+        None => name
+            .strip_suffix(".png")
+            .and_then(|stem| stem.rsplit_once('-'))
+            .filter(|(_, number)| number.len() >= 6 && is_number(number))
+            .map(|(stem, _)| stem),
+    };
+    stem.is_some_and(|stem| {
+        Field::ALL
+            .iter()
+            .any(|field| stem.starts_with(field.name()))
+    })
+}
+
+/// Whether a file is the report of a run: other programs write a `run.json` as well.
+fn is_report(path: &Path) -> bool {
+    let report = || -> Option<Value> { serde_json::from_str(&fs::read_to_string(path).ok()?).ok() };
+    report().is_some_and(|report| {
+        report.pointer("/program/name") == Some(&Value::from("pericles"))
+            && report.pointer("/deck/source").is_some()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_star_is_digits_and_nothing_else() {
+        let pattern = "fields/fields_*.vtu";
+        assert!(matches(pattern, "fields/fields_000012.vtu"));
+        for other in [
+            "fields/fields_.vtu",
+            "fields/fields_best.vtu",
+            "fields/mine.vtu",
+            "fields_000012.vtu",
+        ] {
+            assert!(!matches(pattern, other), "{other}");
+        }
+        assert!(matches("run.json", "run.json") && !matches("run.json", "old-run.json"));
+        for (name, ours) in [
+            ("pictures/Damage-000002.png", true),
+            ("pictures/Velocity_y_2-000002.png", true),
+            ("pictures/Damage.apng", true),
+            ("pictures/Damage-best.png", false),
+            ("pictures/me-000001.png", false),
+            ("Damage-000002.png", false),
+        ] {
+            assert_eq!(is_picture(name), ours, "{name}");
+        }
+    }
+
+    #[test]
+    fn names_are_added_once_and_other_files_are_no_manifest() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path();
+        assert_eq!(Manifest::of(folder).unwrap(), None);
+        for _ in 0..2 {
+            Manifest::add(folder, &["run.json".into(), "fields/fields_*.vtu".into()]).unwrap();
+        }
+        let manifest = Manifest::of(folder).unwrap().unwrap();
+        assert_eq!(manifest.names, ["run.json", "fields/fields_*.vtu"]);
+        assert!(manifest.has("fields/fields_000000.vtu") && !manifest.has("history.csv"));
+        fs::write(folder.join(MANIFEST), "history.csv\n").unwrap();
+        assert_eq!(Manifest::of(folder).unwrap(), None);
+    }
+}

@@ -1,0 +1,172 @@
+//! Tables of numbers from text: a line for each row, `#` or `!` begins a comment, numbers are separated by commas or blanks.
+
+use std::path::{Path, PathBuf};
+
+use crate::IoError;
+use crate::points::words;
+use crate::whole::read_whole;
+
+/// Why a file gives no table.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RowsError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// A line that holds something else than it should.
+    #[error("{}:{line}: {reason}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// Too few rows.
+    #[error("{}: lines of numbers: {found}; needed: {needed}", path.display())]
+    TooFew {
+        /// The file.
+        path: PathBuf,
+        /// Rows in the file.
+        found: usize,
+        /// Rows needed.
+        needed: usize,
+    },
+}
+
+/// Reads a table of so many rows, with a column for each name; the numbers row by row.
+///
+/// # Errors
+/// A file that cannot be read or needs more than `memory` bytes; the first line that is not as many finite numbers as there are columns, or a line too
+/// many; too few lines.
+pub fn read_rows(
+    path: impl AsRef<Path>,
+    rows: usize,
+    columns: &[&str],
+    memory: u64,
+) -> Result<Vec<f64>, RowsError> {
+    /// A number takes eight bytes and has two characters with the blank behind it; a list that grows has room for twice its length.
+    const EXPANSION: u64 = 9;
+    let path = path.as_ref();
+    let content = read_whole(path, EXPANSION, memory)?;
+    parse_rows(path, &content, rows, columns)
+}
+
+/// The table in the content of a file, which messages call by this name.
+///
+/// # Errors
+/// As [`read_rows`], but for a file that cannot be read.
+pub fn parse_rows(
+    name: impl AsRef<Path>,
+    content: &[u8],
+    rows: usize,
+    columns: &[&str],
+) -> Result<Vec<f64>, RowsError> {
+    let path = || name.as_ref().to_path_buf();
+    let content = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
+    let mut numbers = Vec::new();
+    for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
+        let refused = |reason: String| RowsError::Line {
+            path: path(),
+            line: k + 1,
+            reason,
+        };
+        let line = std::str::from_utf8(line).map_err(|_| {
+            refused("this is no text in UTF-8; the numbers are given as text".into())
+        })?;
+        let words = words(line);
+        if words.is_empty() {
+            continue;
+        }
+        if numbers.len() == rows * columns.len() {
+            return Err(refused(format!(
+                "a line of numbers beyond the {rows} that are needed"
+            )));
+        }
+        if words.len() != columns.len() {
+            return Err(refused(format!(
+                "{} numbers where {} are needed: {}",
+                words.len(),
+                columns.len(),
+                columns.join(" ")
+            )));
+        }
+        for (word, column) in words.iter().zip(columns) {
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            let number = number.ok_or_else(|| {
+                refused(format!(
+                    "{column} is `{word}`; allowed: a finite number (names of columns only behind `#`)"
+                ))
+            })?;
+            numbers.push(number);
+        }
+    }
+    let found = numbers.len() / columns.len().max(1);
+    if found < rows {
+        return Err(RowsError::TooFew {
+            path: path(),
+            found,
+            needed: rows,
+        });
+    }
+    Ok(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMNS: [&str; 2] = ["u_x", "v_x"];
+
+    #[test]
+    fn rows_come_in_their_order() {
+        let text = "\u{feff}# u_x v_x\n1e-3, -2\r\n\n 0.5\t4 ! the end\n";
+        let numbers = parse_rows("u.txt", text.as_bytes(), 2, &COLUMNS).unwrap();
+        assert_eq!(numbers, [1e-3, -2.0, 0.5, 4.0]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_reported_with_file_and_line() {
+        let cases: [(&[u8], &str); 7] = [
+            (
+                b"1 2\n3\n",
+                "u.txt:2: 1 numbers where 2 are needed: u_x v_x",
+            ),
+            (b"1 2 3\n", "u.txt:1: 3 numbers where 2 are needed: u_x v_x"),
+            (
+                b"u_x v_x\n1 2\n3 4",
+                "u.txt:1: u_x is `u_x`; allowed: a finite number (names of columns only behind `#`)",
+            ),
+            (
+                b"1 2\n3 nan\n",
+                "u.txt:2: v_x is `nan`; allowed: a finite number",
+            ),
+            (b"1 2\n", "u.txt: lines of numbers: 1; needed: 2"),
+            (
+                b"1 2\n3 4\n\n5 6",
+                "u.txt:4: a line of numbers beyond the 2 that are needed",
+            ),
+            (b"\xff\xfe", "u.txt:1: this is no text in UTF-8"),
+        ];
+        for (text, says) in cases {
+            let error = parse_rows("u.txt", text, 2, &COLUMNS)
+                .unwrap_err()
+                .to_string();
+            assert!(error.starts_with(says), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_file_beyond_the_memory_is_refused() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("u.txt");
+        std::fs::write(&path, "1 2\n3 4\n").unwrap();
+        assert!(read_rows(&path, 2, &COLUMNS, 100).is_ok());
+        let error = read_rows(&path, 2, &COLUMNS, 50).unwrap_err();
+        assert!(
+            matches!(error, RowsError::Io(IoError::TooLarge { .. })),
+            "{error}"
+        );
+    }
+}
