@@ -314,16 +314,24 @@ fn speed(speed: f64) -> String {
 fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
     /// Worth a word.
     const NOTICED: f64 = 0.01;
-    let mut line = format!("{} in bulk", percent(facts.stiffness_error));
+    let mut line = format!("{} in bulk", deviation(facts.stiffness_error));
     if facts.dimension > 1 {
-        line += &format!(", {} in shear along the axes", percent(facts.shear_error));
+        line += &format!(", {} in shear along the axes", deviation(facts.shear_error));
     }
     line += ", of the grid's interior";
     let calibration = deck.material.bonds.modulus.calibration;
-    if facts.stiffness_error.abs() > NOTICED && calibration != Calibration::Lattice {
+    if facts.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
         line += "; modulus = \"lattice\" makes it 0 in bulk";
     }
     line
+}
+
+/// A relative deviation with its sign; what rounding leaves is none.
+fn deviation(ratio: f64) -> String {
+    // Plus zero: no minus before a zero.
+    let rounded = (ratio * 1e6).round() * 1e-6 + 0.0;
+    let sign = if rounded > 0.0 { "+" } else { "" };
+    format!("{sign}{}", percent(rounded))
 }
 
 /// What cracks along the planes of the lattice cost.
@@ -331,12 +339,7 @@ fn crack_planes(facts: &Facts) -> String {
     let planes: Vec<String> = facts
         .crack_planes
         .iter()
-        .map(|plane| {
-            let sign = if plane.deviation > 0.0 { "+" } else { "" };
-            // What rounding leaves is nothing.
-            let deviation = (plane.deviation * 1e6).round() * 1e-6;
-            format!("{} {sign}{}", plane.plane, percent(deviation))
-        })
+        .map(|plane| format!("{} {}", plane.plane, deviation(plane.deviation)))
         .collect();
     let calibration = match facts.fracture_calibration {
         Some(calibration) => format!(" (fracture_calibration = \"{calibration}\")"),

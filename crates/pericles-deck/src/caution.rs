@@ -367,7 +367,7 @@ impl Subject for Caution {
             }
             Self::NothingActs => "add [[load]], [[prescribe]] or [[initial]]",
             Self::StiffnessError { .. } => {
-                "modulus = \"lattice\" gives the modulus on this grid; or take a horizon of three spacings and more"
+                "modulus = \"lattice\" makes the bulk stiffness exact on a grid (\"continuum\" for spectral forces and Gauss nodes); a longer horizon brings it nearer"
             }
             Self::ShearStiffness { .. } => {
                 "a horizon of one spacing joins a point to few neighbours off the axes; take three spacings"
