@@ -9,20 +9,60 @@
 use crate::operator::CoarseBreak;
 use crate::system::System;
 
+/// Passes over the bonds of a step at most. One is enough where few bonds share a point; where all bonds of a point break at once, each pass leaves some energy to the next.
+const PASSES: usize = 32;
+/// Energy that may be left, over that of all bonds.
+const LEFT: f64 = 1e-6;
+
 impl System {
     /// Settles the bonds that broke at the end of a step, time t: changes the velocities v of their ends.
+    ///
+    /// In each pass every bond asks for its impulse from the same velocities; all impulses together are scaled so that they take the energy that is still missing, or as much
+    /// of it as they can.
     pub fn settle_breaking(&mut self, t: f64, v: &mut [f64]) {
-        let breaks = self.operator_mut().take_coarse_breaks();
+        let mut breaks = self.operator_mut().take_coarse_breaks();
         if breaks.is_empty() {
             return;
         }
         self.coarse_breaks.add(breaks.len() as u64);
         let mut free = vec![1.0; v.len()];
         self.hold_at(t, &mut free);
-        let impulse = self.impulses(&breaks, v, &free);
+        let shares: Vec<f64> = breaks.iter().map(|bond| bond.missing.abs()).collect();
+        let all: f64 = shares.iter().sum();
+        let mut left: f64 = breaks.iter().map(|bond| bond.missing).sum();
+        for _ in 0..PASSES {
+            if left.abs() <= LEFT * all {
+                break;
+            }
+            let impulse = self.impulses(&breaks, v, &free);
+            let taken = self.push(&impulse, left, v, &free);
+            if taken == 0.0 {
+                break;
+            }
+            left -= taken;
+            for (bond, share) in breaks.iter_mut().zip(&shares) {
+                bond.missing = left * share / all;
+            }
+        }
+    }
+
+    /// Applies impulses, N s, scaled so that they take the energy `missing`, J, or as much of it as they can; books and returns what they took.
+    fn push(&mut self, impulse: &[f64], missing: f64, v: &mut [f64], free: &[f64]) -> f64 {
         let n = self.points();
+        let pushed = || impulse.iter().enumerate().filter(|(_, push)| **push != 0.0);
+        let (mut rate, mut compliance) = (0.0, 0.0);
+        for (entry, push) in pushed() {
+            rate += push * v[entry];
+            compliance += free[entry] * push * push / self.mass(entry % n);
+        }
+        let scale = separating_impulse(rate, compliance, missing);
+        // Impulses against the bonds' own are no separation.
+        if scale <= 0.0 || !scale.is_finite() {
+            return 0.0;
+        }
         let (mut given, mut work, mut reaction) = (0.0, 0.0, [0.0; 3]);
-        for (entry, &push) in impulse.iter().enumerate().filter(|(_, push)| **push != 0.0) {
+        for (entry, push) in pushed() {
+            let push = scale * push;
             if free[entry] == 0.0 {
                 // The support takes the impulse.
                 given += push * v[entry];
@@ -36,6 +76,7 @@ impl System {
         }
         self.book_reaction(work, reaction);
         self.operator_mut().dissipate(-given);
+        -given
     }
 
     /// Bonds that broke within a step too coarse for them so far.
