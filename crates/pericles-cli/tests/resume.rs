@@ -419,7 +419,8 @@ fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
             "{message}"
         );
     };
-    let changes: [(&str, fn(&str) -> String); 3] = [
+    type Change = (&'static str, fn(&str) -> String);
+    let changes: [Change; 3] = [
         // The last digit of a coordinate.
         ("ring.txt", |text| {
             text.replacen("0.0462500", "0.0462501", 1)

@@ -162,11 +162,14 @@ pub(crate) fn checkpoint(table: Table<'_>) -> Option<Checkpoint> {
 /// The word for a schedule that is never due.
 const NEVER: &str = "never";
 
+/// A field, and one of its components.
+type FieldComponent = (Field, Option<usize>);
+
 /// When rows are added to the history, and the fields whose extremes it holds.
 fn history(
     table: &Table<'_>,
     dimension: Option<usize>,
-) -> (Option<Schedule>, Option<Vec<(Field, Option<usize>)>>) {
+) -> (Option<Schedule>, Option<Vec<FieldComponent>>) {
     if is_never(table, "history") {
         return (Some(Schedule::Never), Some(Vec::new()));
     }

@@ -320,7 +320,10 @@ fn bonds_torn_by_coarse_steps_dissipate_as_with_fine_ones() {
     assert!(fine.balance().abs() < 1e-5 * fine.initial, "{fine:?}");
     for part in [0.5, 1.0] {
         let (energies, [least, largest]) = torn_plate(part, true);
-        eprintln!("{part}: {energies:?} {least} {largest}, fine {}", fine.dissipated);
+        eprintln!(
+            "{part}: {energies:?} {least} {largest}, fine {}",
+            fine.dissipated
+        );
         assert!(
             energies.balance().abs() < 5e-4 * energies.initial,
             "{energies:?}"

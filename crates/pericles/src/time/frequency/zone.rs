@@ -312,7 +312,8 @@ mod tests {
 
     #[test]
     fn the_bound_is_above_every_plane_wave_and_close_to_the_highest() {
-        let cases: [(usize, f64, fn(f64) -> f64, i32); 8] = [
+        type Case = (usize, f64, fn(f64) -> f64, i32);
+        let cases: [Case; 8] = [
             (1, 1.0, |_| 1.0, 2000),
             (1, 3.0, |_| 1.0, 2000),
             (1, 40.0, |r| (-0.01 * r * r).exp(), 20_000),
