@@ -57,6 +57,7 @@ pub fn space_content(
         .as_ref()
         .map_or_else(|| field.to_vec(), |affine| affine.without(cloud, field));
     let dx = cloud.spacing();
+    let noise = ROUND_OFF * field.iter().map(|x| x * x).sum::<f64>();
     let mut worst: Option<f64> = None;
     // Lines of one length share a plan.
     let mut planner = RealFftPlanner::new();
@@ -87,12 +88,12 @@ pub fn space_content(
                 energies[1] += share * found[1];
             }
         }
-        let mut noise = 0.0;
         if let Some(affine) = &affine {
-            let square = if strain { dx * dx * n as f64 } else { 0.0 };
-            energies[1] += square * affine.strain_energy(axis);
-            energies[1] += if strain { 0.0 } else { affine.kinetic };
-            noise = ROUND_OFF * square * affine.gradient.norm_squared();
+            energies[1] += if strain {
+                dx * dx * n as f64 * affine.strain_energy(axis)
+            } else {
+                affine.kinetic
+            };
         }
         if energies[1] > noise {
             let share = energies[0] / energies[1];
@@ -102,8 +103,8 @@ pub fn space_content(
     worst
 }
 
-/// Share of the energy of a rotation that its round-off may have.
-const ROUND_OFF: f64 = 1e-20;
+/// Energy along an axis, as a share of Σ|u|², that may be round-off: of a rotation, or along an axis on which the field does not depend.
+const ROUND_OFF: f64 = 1e-24;
 
 /// The affine field nearest to a field in the mean square.
 struct Affine {

@@ -373,7 +373,7 @@ mod tests {
         let pair = |x: f64| PointCloud::new(1, vec![x, x + 1.0], vec![1.0; 2], 1.0);
         assert!(pair(1e9).is_ok());
         let message = pair(-1e12).unwrap_err().to_string();
-        assert!(message.contains("1000 Gm from the origin"), "{message}");
+        assert!(message.contains("1.00 Tm from the origin"), "{message}");
         assert!(message.contains("4.50 Gm"), "{message}");
     }
 }

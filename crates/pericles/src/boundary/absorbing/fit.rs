@@ -35,7 +35,7 @@ pub(super) struct Exponential {
 /// Directions per sample point that are tried: kernels with many branch points need more.
 const DIRECTIONS: [usize; 4] = [1, 2, 4, 8];
 /// Singular values kept, as shares of the tolerance: a fit that fails at one order often holds at the next.
-const SHARES: [f64; 3] = [1e-3, 1e-4, 1e-5];
+const SHARES: [f64; 2] = [1e-3, 1e-5];
 /// What crosses may leave of the smallest singular value kept.
 const LEFT: f64 = 0.1;
 /// More rows and columns than this take minutes.
@@ -79,10 +79,12 @@ impl ExponentialKernels {
         let reach = stencil.reach();
         let samples = Samples::new(stencil, step, steps);
         let (mut best, mut fits) = (f64::INFINITY, 0);
-        for directions in DIRECTIONS {
-            if samples.points.len() * directions > MOST_TANGENTS {
-                break;
-            }
+        let searches = Growing::ALL.into_iter().flat_map(|growing| {
+            let all = DIRECTIONS.into_iter();
+            let few = all.take_while(|count| samples.points.len() * count <= MOST_TANGENTS);
+            few.map(move |directions| (growing, directions))
+        });
+        for (growing, directions) in searches {
             for share in SHARES {
                 let least = LEFT * share * tolerance;
                 let loewner = Loewner::new(&samples.points, &samples.values, directions, least);
@@ -90,23 +92,21 @@ impl ExponentialKernels {
                 if order as f64 > SUPPORTED * loewner.size() as f64 {
                     break;
                 }
-                for growing in Growing::ALL {
-                    let mut terms = loewner.exponentials(order, growing);
-                    let mut residual = samples.miss(&terms);
-                    fits += 1;
-                    if residual > tolerance {
-                        samples.refine(&mut terms);
-                        residual = samples.miss(&terms);
-                    }
-                    best = best.min(residual);
-                    if residual <= tolerance {
-                        return Ok(Self {
-                            reach,
-                            terms,
-                            present: samples.present.iter().map(|x| x.re).collect(),
-                            residual,
-                        });
-                    }
+                let mut terms = loewner.exponentials(order, growing);
+                let mut residual = samples.miss(&terms);
+                fits += 1;
+                if residual > tolerance {
+                    samples.refine(&mut terms);
+                    residual = samples.miss(&terms);
+                }
+                best = best.min(residual);
+                if residual <= tolerance {
+                    return Ok(Self {
+                        reach,
+                        terms,
+                        present: samples.present.iter().map(|x| x.re).collect(),
+                        residual,
+                    });
                 }
             }
         }

@@ -117,8 +117,11 @@ impl<'a> Lanczos<'a> {
     pub fn enclosure(&self) -> Enclosure {
         let estimate = largest_eigenvalue(&self.diagonal, &self.off);
         let bound = match self.depth {
-            Some(depth) => upper_bound(&self.diagonal, &self.off, estimate, depth),
-            None => f64::INFINITY,
+            // Bodies without stiffness have no scale in which to look for a bound.
+            Some(depth) if estimate > 0.0 && estimate.is_finite() => {
+                upper_bound(&self.diagonal, &self.off, estimate, depth)
+            }
+            _ => f64::INFINITY,
         };
         Enclosure { estimate, bound }
     }
