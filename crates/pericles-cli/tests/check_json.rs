@@ -70,6 +70,13 @@ fn is_held(printed: f64, last: f64, numbers: &[f64]) -> bool {
     })
 }
 
+/// A line without Miller indices such as `(10)`, which are names.
+fn without_planes(line: &str, json: &Value) -> String {
+    let planes = json["crack_planes"].as_array().into_iter().flatten();
+    let names = planes.filter_map(|plane| plane["plane"].as_str());
+    names.fold(line.to_owned(), |line, name| line.replace(name, ""))
+}
+
 fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
     succeed(folder, &format!("check {deck} --json check.json"));
     let json: Value =
@@ -85,7 +92,7 @@ fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
         {
             continue;
         }
-        for (value, last) in printed(line) {
+        for (value, last) in printed(&without_planes(line, &json)) {
             assert!(
                 is_held(value, last, &held),
                 "{value} of `{line}` is not in {json:#}"
