@@ -148,13 +148,10 @@ fn a_folder_that_is_removed_ends_the_run() {
 
 #[test]
 fn a_second_ctrl_c_ends_the_run_at_once() {
-    let place = tempfile::tempdir().unwrap();
-    let bar = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/statics/bar.toml");
-    // One step, to a balance that rounding forbids: it would take days.
-    let line = format!(
-        "run {} --threads 1 --set body.spacing=1e-4 --set time.tolerance=1e-12 --set time.iterations=100000000 --out twice",
-        bar.display()
-    );
+    let place = with_plate();
+    // One coarse step of a thousand fine ones, which are not interrupted.
+    let line = "run plate.toml --threads 1 --set body.spacing=2e-5 --set sets.top.layer.cells=300 --set material.critical_stretch=0.1 \
+                --set time.scheme=respa --set time.ratio=1000 --set time.fine=top --set time.dt=1e-9 --out twice";
     let first = place.path().join("twice/checkpoints/step-000000000000.chk");
     let child = pericles(place.path())
         .args(line.split_whitespace())

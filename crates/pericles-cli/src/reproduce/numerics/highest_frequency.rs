@@ -113,7 +113,11 @@ const BODIES: [Body; 20] = [
             "material.horizon=infinite",
         ],
     ),
-    ("bar, conical kernel", BAR, &["material.influence=conical"]),
+    (
+        "bar, conical kernel",
+        BAR,
+        &["material.influence={ function = \"conical\" }"],
+    ),
     (
         "bar of Gauss nodes",
         BAR,
@@ -131,7 +135,7 @@ const BODIES: [Body; 20] = [
     (
         "plate, conical kernel",
         PLATE,
-        &["material.influence=conical"],
+        &["material.influence={ function = \"conical\" }"],
     ),
     (
         "plate with a hole",
