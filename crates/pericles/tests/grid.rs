@@ -597,7 +597,7 @@ fn unusable_input_is_refused() {
     .unwrap();
     assert!(matches!(
         make(&Arc::new(scattered), &material, &[]),
-        Err(PericlesError::WrongDimension { .. })
+        Err(PericlesError::FormNotUsable { .. })
     ));
     assert!(matches!(
         make(&body(&[12.0], false), &material, &[]),
