@@ -139,6 +139,8 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 ) {
     let m = grid.offsets.len();
     let threshold = T::splat(threshold);
+    // Asked for few bonds only: behind a pointer, so that no part of it is compiled into the vector loop.
+    let breakable = std::hint::black_box(breakable);
     for (number, chunk) in block.chunks.iter().enumerate() {
         let place = grid.place(chunk);
         let here = grid.here::<T>(place);
