@@ -262,7 +262,7 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nstop_when = [{ set = \"all\", damage_above = 0.1 }]", (26, 14), "{ set", &["the bonds of this body never break", "a material that can break"]),
     wrong("window = 3", "window = 0", (20, 10), "0", &["a positive number"]),
     wrong("window = 3", "window = 0.01", (20, 10), "0.01", &["contains no point: the nearest one is 5.0000e-2 m away"]),
-    wrong("window = 3", "window = 3\ncentre = 1e18", (17, 12), "\"nonlocal-pulse\"", &["a sum of 4.0e18 terms", "at most 1e5"]),
+    wrong("window = 3", "window = 3\ncentre = 1e18", (17, 12), "\"nonlocal-pulse\"", &["a sum of 2.0e18 terms", "at most 1e5"]),
     wrong("width = 1", "width = 1e-9", (17, 12), "\"nonlocal-pulse\"", &["move exact.centre into the body"]),
     wrong("solution = \"nonlocal-pulse\"", "solution = \"pulse\"", (17, 12), "\"pulse\"", &["unknown exact solution `pulse`", "\"local-pulse\""]),
 ];

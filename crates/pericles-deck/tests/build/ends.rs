@@ -126,7 +126,7 @@ fn ends_that_cannot_be_continued_are_refused() {
             "set = \"middle\"\n",
             "",
             (16, 1),
-            "the initial field reaches the end -x: point 0 has 1e0",
+            "the initial field reaches the absorbing end -x: point 0 has 1e0",
         ),
         (
             "[[initial]]",
@@ -182,7 +182,7 @@ fn fields_go_on_beyond_an_end() {
     let message = refusal(&bell).to_string();
     assert!(message.contains("exterior_data"), "{message}");
     let message = refusal(&bell.replace("side = \"+x\"", &data.replace("70", "20"))).to_string();
-    assert!(message.contains("does not die away"), "{message}");
+    assert!(message.contains("does not decay within"), "{message}");
 }
 
 #[test]
