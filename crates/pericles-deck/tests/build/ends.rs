@@ -126,7 +126,7 @@ fn ends_that_cannot_be_continued_are_refused() {
             "set = \"middle\"\n",
             "",
             (16, 1),
-            "the initial field reaches the absorbing end -x: point 0 has 1e0",
+            "the initial field reaches the absorbing end -x: point 2 has 1.000e0",
         ),
         (
             "[[initial]]",
