@@ -3,7 +3,7 @@
 use pericles::material::{Calibration, Fracture, FractureCalibration};
 use pericles_deck::{Deck, Model};
 
-/// A body and what [material] says besides density and modulus.
+/// A body and the keys of [material] other than density and modulus.
 fn text(body: &str, material: &str) -> String {
     format!(
         "[body]\n{body}\n[material]\ndensity = 2440\nyoungs_modulus = \"72 GPa\"\n{material}\n\

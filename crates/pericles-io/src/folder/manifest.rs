@@ -17,7 +17,7 @@ pub(super) const MANIFEST: &str = ".manifest";
 
 const HEADING: &str = "# Files of a Pericles run";
 
-/// What runs write besides pictures, whose names begin with those of fields.
+/// Files of a run other than pictures, whose names begin with those of fields.
 const USUAL: [&str; 12] = [
     "run.json",
     "report.html",

@@ -44,7 +44,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                         let length = self.bonds.length(&self.cloud, i, j);
                         let stiffness = self.stiffness_of(entry, i, j) / length;
                         let largest = &mut stiffest[place(offset(i, j))];
-                        // Numbers that are none, and negative ones, are for the caller to refuse.
+                        // NaN and negative numbers are refused by the caller.
                         *largest = if stiffness >= 0.0 && !largest.is_nan() {
                             largest.max(stiffness)
                         } else {
