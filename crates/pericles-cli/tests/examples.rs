@@ -177,9 +177,13 @@ fn a_tube_flies_apart() {
     let report = report(&out);
     // The start brings all the energy there is.
     assert!(report["audit"]["energy_drift"].as_f64().unwrap().abs() < 5e-3);
-    // Fragments are expected: no warning of bonds that break in masses.
+    // Fragments are expected: no warning of bonds that break in masses. With the test's large cells the horizon of 1.7 spacings makes bonds 10 % too stiff.
     let warnings = report["model"]["warnings"].as_array().unwrap();
-    assert!(warnings.is_empty(), "{warnings:?}");
+    let of_stiffness = |warning: &serde_json::Value| {
+        let line = warning.as_str().unwrap();
+        line.contains("of the bulk stiffness asked for")
+    };
+    assert!(warnings.iter().all(of_stiffness), "{warnings:?}");
 }
 
 #[test]

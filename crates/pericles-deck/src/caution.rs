@@ -202,7 +202,8 @@ pub enum Caution {
     },
     /// A period that waves cross within the run.
     #[error(
-        "the period of {period:e} m is short for this run: at its end the waves of the next period are about {estimate:.1e} of the pulse within {window:e} m of its middle"
+        "the period of {} is short for this run: at its end the waves of the next period are about {estimate:.1e} of the pulse within {} of its middle",
+        quantity(*period, "m"), quantity(*window, "m")
     )]
     ShortPeriod {
         /// The period, m.

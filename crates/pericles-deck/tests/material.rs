@@ -5,9 +5,11 @@ use pericles_deck::{Deck, Model};
 
 /// A body and the keys of [material] other than density and modulus.
 fn text(body: &str, material: &str) -> String {
+    // A body on which nothing acts would be warned of.
     format!(
         "[body]\n{body}\n[material]\ndensity = 2440\nyoungs_modulus = \"72 GPa\"\n{material}\n\
-         [time]\nend = 1e-6\ndt = 1e-7\nallow_unstable = true\n"
+         [time]\nend = 1e-6\ndt = 1e-7\nallow_unstable = true\n\
+         [[initial]]\nrandom_velocity = {{ radius = 1e-3 }}\n"
     )
 }
 

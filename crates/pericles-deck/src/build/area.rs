@@ -58,29 +58,28 @@ pub(crate) fn doubt(cloud: &PointCloud, points: &[u32], axis: usize) -> Option<A
     /// How much deeper a column may be than the median one: caps of balls and cylinders are.
     const UNEVEN: usize = 4;
     let area = seen_along(cloud, points, axis);
-    let depth = |axis: usize| points.len() as f64 / columns(cloud, points, axis).len() as f64;
-    let others = (0..cloud.dimension()).filter(|&c| c != axis);
-    let thinnest = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)));
-    if let Some(other) = thinnest.filter(|&other| depth(axis) > DEEPER * depth(other)) {
-        let face = seen_along(cloud, points, other);
-        return Some(AreaDoubt::Thinner {
-            axis,
-            area,
-            other,
-            face,
-        });
-    }
-    let columns = columns(cloud, points, axis);
+    let levels = columns(cloud, points, axis);
     let apart = |levels: &BTreeSet<i64>| {
         let (first, last) = (levels.first(), levels.last());
         first
             .zip(last)
             .is_some_and(|(first, last)| last - first + 1 > levels.len() as i64)
     };
-    let mut depths: Vec<usize> = columns.values().map(BTreeSet::len).collect();
+    let mut depths: Vec<usize> = levels.values().map(BTreeSet::len).collect();
     depths.sort_unstable();
     let uneven = depths[depths.len() - 1] > UNEVEN * depths[depths.len() / 2];
-    (uneven || columns.values().any(apart)).then_some(AreaDoubt::Parts { axis, area })
+    if uneven || levels.values().any(apart) {
+        return Some(AreaDoubt::Parts { axis, area });
+    }
+    let depth = |axis: usize| points.len() as f64 / columns(cloud, points, axis).len() as f64;
+    let others = (0..cloud.dimension()).filter(|&c| c != axis);
+    let other = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)))?;
+    (depth(axis) > DEEPER * depth(other)).then(|| AreaDoubt::Thinner {
+        axis,
+        area,
+        other,
+        face: seen_along(cloud, points, other),
+    })
 }
 
 /// The area of a set seen along an axis, m²: that of the cells which no other cell of the set hides. For a box it is a face of the box, for a

@@ -101,7 +101,7 @@ fn plate_with_time(time: &str) -> String {
 /// A pulse on a ring of Gaussian bonds, all of it compared with the solution.
 fn ring() -> String {
     WAVE.replace("bonds = \"spectral\"\n", "")
-        .replace("window = 3\n", "")
+        .replace("window = 3\n", "start = true\n")
 }
 
 /// A bar of 20 cells, held at its left end and pulled at its right one, in two materials.

@@ -93,7 +93,10 @@ fn a_step_between_the_bounds_of_the_stable_one_is_warned_of_and_one_above_is_ref
         frequency.unstable_step(2.0),
     ];
     assert!(stable < unstable, "{frequency:?}");
-    let deck = |dt: f64| PLATE.replace("end = \"2 us\"", &format!("end = \"2 us\"\ndt = {dt:e}"));
+    let deck = |dt: f64| {
+        let time = format!("end = {:e}\ndt = {dt:e}", 20.0 * dt);
+        PLATE.replace("end = \"2 us\"", &time)
+    };
     let warnings = |dt: f64| build(&deck(dt)).warnings;
     assert!(warnings(stable * (1.0 - 1e-12)).is_empty());
     let between = warnings((stable * unstable).sqrt());
@@ -109,12 +112,12 @@ fn schemes_that_do_not_fit_are_refused() {
         (
             "scheme = \"respa\"\nratio = 4\nfine = [\"middle\", \"thin\"]",
             59,
-            "overlap",
+            "share points",
         ),
         (
             "scheme = \"respa\"\nratio = 4\nfine = \"thin\"",
             59,
-            "at least a horizon",
+            "at least as thick as its longest bond",
         ),
         (
             "scheme = \"rk4-mts\"\nratio = 4\nfine = \"middle\"\ndt = \"1 us\"",
@@ -163,6 +166,7 @@ fn a_given_step_ends_on_time() {
             r#"
 body = {{ shape = "bar", length = 40, spacing = 1 }}
 material = {{ model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }}
+initial = [{{ velocity = 1 }}]
 time = {{ end = {end}, dt = {dt} }}
 "#
         ))

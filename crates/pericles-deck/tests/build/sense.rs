@@ -20,7 +20,7 @@ fn what_is_odd_is_warned_of() {
     assert!(text.contains("`middle`"), "{text}");
     let (line, text) = cautions(
         "end = \"2 us\"",
-        "end = \"2 us\"\ndt = \"0.35 us\"\nallow_unstable = true",
+        "end = \"2 us\"\ndt = \"0.4 us\"\nallow_unstable = true",
     );
     assert_eq!(line, 55);
     assert!(text.contains("allow_unstable"), "{text}");
@@ -56,7 +56,9 @@ fn a_short_period_is_warned_of() {
         panic!("{:?}", warned.warnings)
     };
     assert!(
-        warning.to_string().contains("the period of 1e1 m is short"),
+        warning
+            .to_string()
+            .contains("the period of 10.0 m is short"),
         "{warning}"
     );
     assert_eq!(

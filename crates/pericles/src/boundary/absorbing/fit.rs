@@ -38,6 +38,8 @@ const DIRECTIONS: [usize; 4] = [1, 2, 4, 8];
 const SHARES: [f64; 2] = [1e-3, 1e-5];
 /// What crosses may leave of the smallest singular value kept.
 const LEFT: f64 = 0.1;
+/// What crosses leave by rounding, as a share of the largest: below it there are as many of them as rows.
+const NOISE: f64 = 4.0 * f64::EPSILON;
 /// More rows and columns than this take minutes.
 const MOST_TANGENTS: usize = 6000;
 /// Samples lie as close to each other as a fifth of the reciprocal; the differences of values there have lost half their digits and more.
@@ -86,7 +88,7 @@ impl ExponentialKernels {
         });
         for (growing, directions) in searches {
             for share in SHARES {
-                let least = LEFT * share * tolerance;
+                let least = (LEFT * share * tolerance).max(NOISE);
                 let loewner = Loewner::new(&samples.points, &samples.values, directions, least);
                 let order = loewner.rank(share * tolerance);
                 if order as f64 > SUPPORTED * loewner.size() as f64 {
