@@ -10,9 +10,8 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
-use pericles::operator::{
-    BondForce, Breaking, ConvolutionForce, DamageMeasure, Ends, LinearOperator, Route, Toeplitz,
-};
+use pericles::operator::{BondForce, Breaking, DamageMeasure, LinearOperator};
+use pericles_waves::linear::{ConvolutionForce, Ends, Route, Toeplitz};
 use pericles::space::{Grid, PointCloud, Shape};
 
 fn wave(len: usize) -> Vec<f64> {

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use pericles::family::geodesic::Ball;
 use pericles::kernel::ActsOn;
-use pericles::material::{BondConstants, Calibration, ElasticWaves, SurfaceBond};
+use pericles::material::{BondConstants, Calibration, ElasticWaves};
 use pericles::observe::Probe;
-use pericles::space::surface::AreaRule;
 use pericles_deck::{Deck, KernelQuality, Model, Scheme, SurfaceDeck, VertexAreas};
+use pericles_manifold::SurfaceBond;
+use pericles_manifold::geodesic::Ball;
+use pericles_manifold::surface::AreaRule;
 use serde::Serialize;
 use serde_json::{Value, json};
 

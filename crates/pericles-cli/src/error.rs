@@ -4,10 +4,10 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use miette::Diagnostic;
-use pericles::space::surface::SurfaceError;
 use pericles::{PericlesError, SimulationError};
 use pericles_deck::DeckError;
 use pericles_io::{IoError, MeshError};
+use pericles_manifold::surface::SurfaceError;
 
 use crate::console;
 use crate::drawn::Drawn;

@@ -4,11 +4,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use pericles::Simulation;
-use pericles::boundary::absorbing::{EndReport, KernelMethod, Side};
 use pericles::cache::{Cache, NoCache};
 use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
-use pericles::observe::{CrackTracker, EnergyInequality, Schedule, SurfaceMeasure};
-use pericles::space::surface::Surface;
+use pericles::observe::{CrackTracker, Schedule};
 use pericles_deck::{
     Deck, ExactReference, FileError, LoadReport, Model, Picture, Precision, Resources, Scheme,
 };
@@ -20,6 +18,9 @@ use pericles_io::{
     DiskCache, IoError, MeshError, OutputFolder, PointsError, RowsError, read_points, read_rows,
     read_surface,
 };
+use pericles_manifold::surface::Surface;
+use pericles_manifold::{EnergyInequality, SurfaceMeasure};
+use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
 use crate::args::Caching;

@@ -1,8 +1,8 @@
 //! `[[boundary]]`: ends and sides through which waves leave.
 
-use pericles::boundary::absorbing::history::HistoryForm;
-use pericles::boundary::absorbing::{EndPlan, KernelMethod, Side};
 use pericles::space::Face;
+use pericles_waves::absorbing::history::HistoryForm;
+use pericles_waves::absorbing::{EndPlan, KernelMethod, Side};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;

@@ -1,8 +1,8 @@
 //! What is odd about a deck though a run may be meant.
 
 use miette::Severity;
-use pericles::space::surface::SurfaceCaution;
 use pericles::units::{quantity, significant};
+use pericles_manifold::surface::SurfaceCaution;
 
 use crate::build::AreaDoubt;
 use crate::finding::Subject;

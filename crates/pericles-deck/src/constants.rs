@@ -4,7 +4,7 @@ use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, StressState,
 };
-use pericles::operator::BondForm;
+use pericles_waves::ForceForm;
 
 use crate::body::{BodyRead, Quadrature};
 use crate::quantity::Quantity;
@@ -91,13 +91,13 @@ pub(crate) enum Sums {
 impl Sums {
     pub(crate) fn of(
         influence: Option<&Influence>,
-        form: Option<BondForm>,
+        form: Option<ForceForm>,
         body: &BodyRead,
     ) -> Self {
         let quadrature = body.body.as_ref().map(|body| body.quadrature);
         match influence.map(|influence| &influence.function) {
             Some(InfluenceFunction::Classes(_)) => Self::Lattice,
-            _ if form == Some(BondForm::Spectral) => Self::Spectral,
+            _ if form == Some(ForceForm::Spectral) => Self::Spectral,
             _ if quadrature == Some(Quadrature::Gauss) => Self::Gauss,
             _ => Self::Any,
         }

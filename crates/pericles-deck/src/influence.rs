@@ -1,9 +1,9 @@
 //! The influence function of a material.
 
-use pericles::analysis::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
 use pericles::material::StressState;
+use pericles_dispersion::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};

@@ -1,10 +1,11 @@
 //! `[material]`: constants, horizon, influence function and breaking.
 
-use pericles::analysis::tuning::TunedTable;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Treatment};
-use pericles::operator::{BondForm, DamageMeasure};
+use pericles::operator::DamageMeasure;
+use pericles_dispersion::tuning::TunedTable;
+use pericles_waves::ForceForm;
 
 use crate::body::BodyRead;
 use crate::constants::{
@@ -39,7 +40,7 @@ pub struct Material {
     /// How damage is measured.
     pub damage: DamageMeasure,
     /// How bonds are kept: a matter of speed only.
-    pub form: BondForm,
+    pub form: ForceForm,
 }
 
 /// A part of other stiffness.
@@ -143,17 +144,17 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
 }
 
 /// How bonds are kept.
-fn form(table: &Table<'_>) -> Option<BondForm> {
+fn form(table: &Table<'_>) -> Option<ForceForm> {
     table.choice_or_first(
         "bonds",
         "form of bonds",
         &[
-            ("fastest", BondForm::Fastest),
-            ("grid", BondForm::Grid),
-            ("grid-f32", BondForm::FloatGrid),
-            ("list", BondForm::List),
-            ("convolution", BondForm::Convolution),
-            ("spectral", BondForm::Spectral),
+            ("fastest", ForceForm::Fastest),
+            ("grid", ForceForm::Grid),
+            ("grid-f32", ForceForm::FloatGrid),
+            ("list", ForceForm::List),
+            ("convolution", ForceForm::Convolution),
+            ("spectral", ForceForm::Spectral),
         ],
     )
 }

@@ -1,9 +1,9 @@
 //! The scheme of `[time]` and its parameters.
 
 use pericles::time::{
-    Follow, FunctionMethod, ImplicitRule, Interpolant, LinearSolver, LoadRule, NewmarkOptions,
-    Predictor, RelaxationOptions, TrigonometricOptions,
+    Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor, RelaxationOptions,
 };
+use pericles_waves::{FunctionMethod, LoadRule, TrigonometricOptions};
 
 use crate::newmark;
 use crate::quantity::Quantity;

@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
-use pericles::family::geodesic::{Ball, GeodesicMethod};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PowerMaterial, StressState,
-    SurfaceBond,
+    BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, StressState,
 };
-use pericles::operator::{BondForm, DamageMeasure};
-use pericles::space::surface::{AreaRule, Surface, SurfaceChecks, SurfaceError};
+use pericles::operator::DamageMeasure;
 use pericles::space::{Grid, Shape};
+use pericles_manifold::geodesic::{Ball, GeodesicMethod};
+use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks, SurfaceError};
+use pericles_manifold::{PowerMaterial, SurfaceBond};
+use pericles_waves::ForceForm;
 
 use crate::body::{Body, Quadrature};
 use crate::material::{self, Inclusion, Material};
@@ -462,6 +463,6 @@ pub(crate) fn no_bonds() -> Material {
         interface: Default::default(),
         surface_correction: Default::default(),
         damage: DamageMeasure::default(),
-        form: BondForm::List,
+        form: ForceForm::List,
     }
 }

@@ -1,6 +1,5 @@
 //! The one error type of the library.
 
-use crate::boundary::absorbing::AbsorbingError;
 use crate::units::{precise, quantity};
 
 /// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
@@ -413,9 +412,31 @@ pub enum PericlesError {
         /// The ratio asked for.
         tolerance: f64,
     },
-    /// No absorbing end can be made.
-    #[error("absorbing end: {0}")]
-    Absorbing(#[from] AbsorbingError),
+    /// A boundary that the scheme of the run cannot take along.
+    #[error(
+        "absorbing end: a boundary of this run is made for {}, not for {scheme}{}",
+        listed(needed),
+        why_not(scheme)
+    )]
+    BoundaryScheme {
+        /// The scheme of the run.
+        scheme: &'static str,
+        /// The schemes of the boundary.
+        needed: &'static [&'static str],
+    },
+    /// A run longer than what a boundary is made for.
+    #[error(
+        "absorbing end: the run has {steps} steps, its absorbing end is made for {made_for}: make it for all steps of the run"
+    )]
+    BoundarySteps {
+        /// Steps of the run.
+        steps: u64,
+        /// Steps of the boundary.
+        made_for: u64,
+    },
+    /// What a crate that extends the engine refuses.
+    #[error(transparent)]
+    Extension(Box<dyn std::error::Error + Send + Sync>),
     /// The inner iteration of a step that does not end.
     #[error(
         "{}",
@@ -437,9 +458,6 @@ pub enum PericlesError {
         /// A step below dt that converges in as many iterations, s; none if the step is not the reason.
         safe: Option<f64>,
     },
-    /// A surface that cannot be used.
-    #[error(transparent)]
-    Surface(#[from] crate::space::surface::SurfaceError),
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {
@@ -466,7 +484,7 @@ fn spacings_that_fit(fitting: &[f64]) -> String {
 }
 
 /// Checks that a quantity is positive and finite.
-pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64> {
+pub fn positive(quantity: &'static str, value: f64) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
@@ -529,5 +547,24 @@ fn capital(sentence: &str) -> String {
     match sentence.strip_prefix("give") {
         Some(rest) => format!("Give{rest}"),
         None => sentence.to_owned(),
+    }
+}
+
+/// The names with commas and an "or".
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_string(),
+        [all @ .., last] => format!("{} or {last}", all.join(", ")),
+    }
+}
+
+/// The reason behind a scheme that one may expect to work.
+fn why_not(scheme: &str) -> &'static str {
+    match scheme {
+        "trigonometric" => {
+            ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
+        }
+        _ => "",
     }
 }

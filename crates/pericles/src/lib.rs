@@ -49,7 +49,6 @@
 //! ```
 
 mod accounts;
-pub mod analysis;
 mod archive;
 pub mod bench;
 pub mod boundary;
@@ -75,7 +74,7 @@ pub mod units;
 
 pub use accounts::{Completed, Ledger};
 pub use archive::{Archive, Saved, Values};
-pub use error::{PericlesError, Result};
+pub use error::{PericlesError, Result, positive};
 pub use guard::Cause;
 pub use interrupt::Interrupt;
 pub use simulation::{Control, Outcome, Simulation, SimulationError};

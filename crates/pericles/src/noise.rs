@@ -45,7 +45,7 @@ pub fn uniform_in_ball(dimension: usize, radius: f64, seed: u64, count: usize) -
 }
 
 /// Numbers in (−1, 1) (SplitMix64).
-pub(crate) fn noise(len: usize, seed: u64) -> Vec<f64> {
+pub fn noise(len: usize, seed: u64) -> Vec<f64> {
     let mut generator = SplitMix64::new(seed);
     (0..len).map(|_| generator.signed()).collect()
 }

@@ -12,7 +12,7 @@ use crate::operator::On;
 pub const BLOCK: usize = 512;
 
 /// Calls `work(first point, one slice per component, the block's own state)` for every block, on all cores, without allocating.
-pub(crate) fn for_each_block<const D: usize, S: Send>(
+pub fn for_each_block<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
     work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
@@ -146,7 +146,7 @@ fn run_length(points: &[u32]) -> usize {
 }
 
 /// The components of a component-major array.
-pub(crate) fn components_mut<const D: usize>(array: &mut [f64], n: usize) -> [&mut [f64]; D] {
+pub fn components_mut<const D: usize>(array: &mut [f64], n: usize) -> [&mut [f64]; D] {
     let mut rest = array;
     std::array::from_fn(|_| {
         let (component, tail) = std::mem::take(&mut rest).split_at_mut(n);
@@ -156,7 +156,7 @@ pub(crate) fn components_mut<const D: usize>(array: &mut [f64], n: usize) -> [&m
 }
 
 /// The components of a component-major array.
-pub(crate) fn components<const D: usize>(array: &[f64], n: usize) -> [&[f64]; D] {
+pub fn components<const D: usize>(array: &[f64], n: usize) -> [&[f64]; D] {
     std::array::from_fn(|c| &array[c * n..(c + 1) * n])
 }
 

@@ -3,7 +3,6 @@
 use std::sync::OnceLock;
 
 use crate::archive::{Archive, Saved};
-use crate::boundary::absorbing::AbsorbingError;
 use crate::error::PericlesError;
 use crate::guard::{Alarm, Cause, Watched};
 use crate::interrupt::Interrupt;
@@ -362,16 +361,10 @@ impl Simulation {
         for boundary in self.system.boundaries() {
             let needed = boundary.schemes();
             if !needed.is_empty() && !needed.contains(&scheme) {
-                let what = "a boundary of this run";
-                return Err(AbsorbingError::Scheme {
-                    what,
-                    scheme,
-                    needed,
-                }
-                .into());
+                return Err(PericlesError::BoundaryScheme { scheme, needed });
             }
             if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
-                return Err(AbsorbingError::TooManySteps { steps, made_for }.into());
+                return Err(PericlesError::BoundarySteps { steps, made_for });
             }
         }
         Ok(())

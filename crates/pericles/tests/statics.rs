@@ -560,31 +560,3 @@ fn a_body_that_fails_under_its_load_is_said_to_have_no_static_state() {
     }
     assert!(!message.contains("m/s"), "{message}");
 }
-
-#[test]
-fn stress_of_a_body_without_single_bonds_is_refused() {
-    use pericles::observe::{Field, Snapshot, StartEnergy};
-    let cloud = boxed([0.0; 3], &[0.16, 0.12], DX, 0.01);
-    let mut steel = steel(Fracture::Unbreakable);
-    steel.law = pericles::material::PairLaw::Linear;
-    let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
-    let body = BondBody {
-        cloud: &cloud,
-        material: &steel,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
-    let operator = body.operator(BondForm::Convolution).unwrap().operator;
-    let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
-    let state = State::at_rest(2 * cloud.len());
-    let snapshot = Snapshot::new(&system, &state, StartEnergy::default(), 0.0);
-    let refused = snapshot.check(Field::Stress).unwrap_err().to_string();
-    assert!(
-        refused.starts_with("Stress is a sum over single bonds"),
-        "{refused}"
-    );
-    snapshot.check(Field::Velocity).unwrap();
-}

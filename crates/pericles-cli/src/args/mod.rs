@@ -6,8 +6,8 @@ mod values;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use pericles::family::geodesic::GeodesicMethod;
 use pericles::operator::InstructionSet;
+use pericles_manifold::geodesic::GeodesicMethod;
 
 use crate::exit::Exit;
 use crate::plot::Frames;

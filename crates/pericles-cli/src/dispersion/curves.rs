@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use pericles::analysis::tuning::BondClass;
-use pericles::analysis::{BondLattice, Contour, ContourPoint, PolarSpeeds, verlet_frequency};
+use pericles_dispersion::tuning::BondClass;
+use pericles_dispersion::{BondLattice, Contour, ContourPoint, PolarSpeeds, verlet_frequency};
 use pericles_io::{Axis, Cell, Column, CsvTable, Curve, LineChart};
 
 use crate::error::CliError;

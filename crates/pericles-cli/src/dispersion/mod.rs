@@ -4,10 +4,10 @@ pub(crate) mod curves;
 pub(crate) mod spectrum;
 mod wavevectors;
 
-use pericles::analysis::spectrum::{SpectrumRun, measure};
-use pericles::analysis::tuning::{TunedTable, bond_classes, continuum_speeds};
-use pericles::analysis::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
 use pericles_deck::{Deck, KernelQuality, Model, PlaneWaves};
+use pericles_dispersion::spectrum::{SpectrumRun, measure};
+use pericles_dispersion::tuning::{TunedTable, bond_classes, continuum_speeds};
+use pericles_dispersion::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
 use pericles_io::{OutputFolder, write_atomically};
 use serde_json::{Value as Json, json};
 
@@ -85,7 +85,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
 struct Analysis {
     lattice: BondLattice,
     contour: Contour,
-    points: Vec<pericles::analysis::ContourPoint>,
+    points: Vec<pericles_dispersion::ContourPoint>,
     stability: Stability,
     /// Of the branches, m/s; none where a branch changes its nature from segment to segment.
     targets: Vec<Option<f64>>,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pericles::analysis::spectrum::MeasuredSpectrum;
+use pericles_dispersion::spectrum::MeasuredSpectrum;
 use pericles_io::{Axis, Backdrop, Cell, Column, CsvTable, Curve, LineChart};
 
 use super::curves::Curves;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pericles::analysis::{BondLattice, Mode, Vector, verlet_frequency};
+use pericles_dispersion::{BondLattice, Mode, Vector, verlet_frequency};
 use pericles_io::{Cell, Column, CsvTable};
 use serde_json::{Value as Json, json};
 

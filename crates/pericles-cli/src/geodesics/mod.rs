@@ -6,10 +6,10 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::family::geodesic::{
+use pericles_manifold::geodesic::{
     GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_distance, geodesic_pairs,
 };
-use pericles::space::surface::{Surface, SurfaceChecks, SurfaceReport};
+use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceReport};
 use serde::Serialize;
 
 use crate::args::{GeodesicsArgs, Pair};

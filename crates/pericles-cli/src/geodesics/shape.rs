@@ -1,7 +1,7 @@
 //! A surface from the command line: a shape such as `torus(1,0.4,40,20)`, else a file.
 
-use pericles::space::surface::{Surface, SurfaceError};
 use pericles_io::read_surface;
+use pericles_manifold::surface::{Surface, SurfaceError};
 
 use crate::error::CliError;
 use crate::machine;

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use pericles::material::{BondConstants, Fracture, PairLaw, SurfaceCorrection};
 use pericles::observe::TrackedCrack;
-use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody};
-use pericles::space::surface::Surface;
+use pericles::operator::{BondBody, CompositeBody};
 use pericles::space::{GradedCloud, PointCloud, PointSet};
 use pericles::{PericlesError, PointScalar};
+use pericles_manifold::surface::Surface;
+use pericles_waves::AssembledForce;
+use pericles_waves::ForceForm;
 
 use super::graded::Grids;
 use super::parts::Composition;
@@ -29,7 +31,7 @@ pub(super) struct Assembled {
     pub(super) sets: Sets,
     pub(super) constants: BondConstants,
     pub(super) parts: Vec<BondConstants>,
-    pub(super) bonds: AssembledBonds,
+    pub(super) bonds: AssembledForce,
     pub(super) cracks: Vec<TrackedCrack>,
     pub(super) density: PointScalar,
 }
@@ -121,10 +123,10 @@ impl Deck {
         Ok(Assembled {
             surface: Some(Arc::new(surface)),
             sets,
-            bonds: AssembledBonds {
+            bonds: AssembledForce {
                 operator,
                 cuts: Vec::new(),
-                form: BondForm::List,
+                form: ForceForm::List,
             },
             cracks: Vec::new(),
             density: PointScalar::Uniform(deck.material.density),
@@ -146,13 +148,13 @@ impl Deck {
     /// Refuses everything at once that a periodic body cannot have.
     fn check_periodic(&self) -> Result<(), DeckError> {
         let material = &self.material;
-        let spectral = material.form == BondForm::Spectral;
+        let spectral = material.form == ForceForm::Spectral;
         let law = material.bonds.law;
         let right_law = law == PairLaw::Linear || (law == PairLaw::GreenStrain && spectral);
         let breaks = material.bonds.fracture != Fracture::Unbreakable;
         let listed = matches!(
             material.form,
-            BondForm::List | BondForm::Grid | BondForm::FloatGrid
+            ForceForm::List | ForceForm::Grid | ForceForm::FloatGrid
         );
         let corrected = material.surface_correction != SurfaceCorrection::None;
         let conflicts: Vec<String> = [
@@ -264,7 +266,7 @@ impl Deck {
         composite: CompositeBody<'_>,
         grids: Grids<'_>,
         warnings: &mut Vec<Warning>,
-    ) -> Result<(AssembledBonds, Vec<TrackedCrack>), DeckError> {
+    ) -> Result<(AssembledForce, Vec<TrackedCrack>), DeckError> {
         let crack = |k| Path::from("crack").index(k);
         for (k, pre_crack) in self.cracks.iter().enumerate() {
             // The library tells what is wrong with a crack, not with which.
@@ -290,23 +292,21 @@ impl Deck {
             self.graded_bonds(&composite, grids)?
         } else {
             let form = match self.material.form {
-                BondForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
-                    BondForm::List
+                ForceForm::Fastest if self.output.wants_tensors() && !self.body.periodic => {
+                    ForceForm::List
                 }
-                BondForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
-                    composite.fastest_bonds()
+                ForceForm::Fastest if self.time.scheme.has_two_steps() && !self.body.periodic => {
+                    composite.fastest_form().into()
                 }
-                BondForm::FloatGrid if !self.time.scheme.bears_rounding() => {
+                ForceForm::FloatGrid if !self.time.scheme.bears_rounding() => {
                     return Err(self.at_material(PericlesError::FormNotUsable {
-                        form: BondForm::FloatGrid.name(),
+                        form: ForceForm::FloatGrid.name(),
                         reason: "this scheme needs forces in double precision; use \"grid\", or a Verlet or Runge–Kutta scheme with one step",
                     }));
                 }
                 form => form,
             };
-            composite
-                .operator(form)
-                .map_err(|error| self.at_material(error))?
+            pericles_waves::assemble(&composite, form).map_err(|error| self.at_material(error))?
         };
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in surfaces.iter().zip(&assembled.cuts).enumerate() {

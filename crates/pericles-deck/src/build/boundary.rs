@@ -1,13 +1,13 @@
 //! Absorbing ends of a model.
 
-use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
-    LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
-};
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
 use pericles::{PericlesError, System};
+use pericles_waves::absorbing::{
+    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
+    LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
+};
 
 use super::step::Steps;
 use super::{Resources, Sets};

@@ -1,11 +1,11 @@
 //! Plane waves in a deck's body: what the kernel and the grid do to them, and which loads, motions and initial values send out waves that the grid distorts.
 
-use pericles::analysis::{
-    BondLattice, KernelWaves, PhaseErrors, Resolved, space_content, stability, time_content,
-};
 use pericles::boundary::{MotionKind, TimeFunction};
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
+use pericles_dispersion::{
+    BondLattice, KernelWaves, PhaseErrors, Resolved, space_content, stability, time_content,
+};
 
 use super::Model;
 use crate::caution::Caution;

@@ -1,9 +1,7 @@
 //! The exact solution of a model and the points it is compared at.
 
-use pericles::analysis::exact::{
-    BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse,
-};
 use pericles::space::{PointCloud, PointSet};
+use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
 
 use crate::caution::Caution;
 use crate::deck::Deck;

@@ -2,7 +2,9 @@
 
 use pericles::PericlesError;
 use pericles::material::PairLaw;
-use pericles::operator::{AssembledBonds, BondForm, CompositeBody, GradedBody};
+use pericles::operator::{CompositeBody, GradedBody};
+use pericles_waves::AssembledForce;
+use pericles_waves::ForceForm;
 
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -21,8 +23,8 @@ impl Deck {
         &self,
         composite: &CompositeBody<'_>,
         grids: Grids<'_>,
-    ) -> Result<AssembledBonds, DeckError> {
-        if !matches!(self.material.form, BondForm::Fastest | BondForm::List) {
+    ) -> Result<AssembledForce, DeckError> {
+        if !matches!(self.material.form, ForceForm::Fastest | ForceForm::List) {
             let error = PericlesError::Graded {
                 what: "bonds of this form",
                 reason: "there is no one lattice; leave `bonds` out or give \"list\"",
@@ -58,9 +60,10 @@ impl Deck {
             stiffness: body.stiffness,
             damage: body.damage,
         };
-        graded.operator().map_err(|error| match error {
+        let bonds = graded.operator().map_err(|error| match error {
             PericlesError::Graded { .. } => self.at("material.fracture_energy", error),
             error => self.at_material(error),
-        })
+        })?;
+        Ok(bonds.into())
     }
 }

@@ -13,8 +13,8 @@
 //!
 //! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
 
-use pericles::operator::BondForm;
 use pericles::space::{GradedGrid, PointCloud, Shape};
+use pericles_waves::ForceForm;
 
 use super::{Model, Resources};
 use crate::deck::Deck;
@@ -174,9 +174,9 @@ impl Deck {
         let transform = TRANSFORM * 2f64.powi(dimension as i32) * (dimension as f64).powi(2);
         let listed = self.bytes_of_listed_bond();
         let bonds = match self.material.form {
-            BondForm::List => listed * neighbours,
-            BondForm::Convolution | BondForm::Spectral => transform,
-            BondForm::Grid | BondForm::FloatGrid => neighbours / 8.0,
+            ForceForm::List => listed * neighbours,
+            ForceForm::Convolution | ForceForm::Spectral => transform,
+            ForceForm::Grid | ForceForm::FloatGrid => neighbours / 8.0,
             _ if self.body.periodic => transform,
             _ if self.is_on_one_grid() => (neighbours / 8.0).max(transform),
             _ => listed * neighbours,
@@ -193,7 +193,7 @@ impl Deck {
         let list = self.bytes_of_listed_bond() * bonds;
         let found = match (&self.surface, model.form) {
             (Some(_), _) => VERTEX * points + GEODESIC * bonds,
-            (None, BondForm::List) => list,
+            (None, ForceForm::List) => list,
             // Whether every part of a static body has a support is found on a list of its bonds.
             _ if matches!(self.time.scheme, Scheme::Relaxation(_)) => list,
             _ => 0.0,

@@ -32,14 +32,14 @@ pub use resources::{FileError, PointsReader, Resources, SurfaceReader, TableRead
 
 use std::sync::Arc;
 
-use pericles::boundary::absorbing::{EndReport, Side};
 use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
-use pericles::operator::BondForm;
-use pericles::space::surface::Surface;
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, Simulation, StopWhen, System};
+use pericles_manifold::surface::Surface;
+use pericles_waves::ForceForm;
+use pericles_waves::absorbing::{EndReport, Side};
 
 use self::assemble::Assembled;
 use crate::deck::Deck;
@@ -64,7 +64,7 @@ pub struct Model {
     /// The constants of the other materials, in the order of `[[material.part]]`.
     pub parts: Vec<BondConstants>,
     /// How the bonds are kept.
-    pub form: BondForm,
+    pub form: ForceForm,
     /// Bonds that pre-cracks cut.
     pub precut_bonds: u64,
     /// The pre-cracks in the order of the deck, for following their tips.

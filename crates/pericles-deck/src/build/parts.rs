@@ -2,8 +2,8 @@
 
 use pericles::PointScalar;
 use pericles::material::{BondConstants, BondMaterial, Calibration, PairClasses};
-use pericles::operator::BondForm;
 use pericles::space::PointCloud;
+use pericles_waves::ForceForm;
 
 use super::Sets;
 use crate::body::Quadrature;
@@ -109,7 +109,7 @@ impl Deck {
     ) -> pericles::Result<BondConstants> {
         let constants = material.constants(cloud, self.body.state)?;
         let integrals =
-            self.material.form == BondForm::Spectral || self.body.quadrature == Quadrature::Gauss;
+            self.material.form == ForceForm::Spectral || self.body.quadrature == Quadrature::Gauss;
         if !integrals {
             return Ok(constants);
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pericles::cache::{Cache, NoCache};
 use pericles::space::ListedPoints;
-use pericles::space::surface::Surface;
+use pericles_manifold::surface::Surface;
 
 use crate::fault::Fault;
 

@@ -3,9 +3,10 @@
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
     MultiTimeStepOptions, Newmark, Predictor, Relaxation, Respa, RungeKutta, Tableau,
-    Trigonometric, VelocityVerlet,
+    VelocityVerlet,
 };
 use pericles::{PericlesError, System};
+use pericles_waves::Trigonometric;
 
 use super::Sets;
 use super::step::Steps;

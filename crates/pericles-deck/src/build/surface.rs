@@ -6,9 +6,9 @@ use std::sync::Arc;
 use pericles::PericlesError;
 use pericles::cache::Cache;
 use pericles::operator::ForceOperator;
-use pericles::operator::surface::SurfaceBody;
 use pericles::space::PointCloud;
-use pericles::space::surface::{Surface, SurfaceChecks};
+use pericles_manifold::force::SurfaceBody;
+use pericles_manifold::surface::{Surface, SurfaceChecks};
 
 use super::{FileError, Resources, Sets};
 use crate::deck::Deck;
@@ -38,7 +38,8 @@ impl Deck {
             VertexAreas::Rule(rule) => surface.vertex_areas(rule),
             VertexAreas::Same(area) => vec![area; surface.len()],
         };
-        let cloud = PointCloud::of_surface(&surface, areas)
+        let cloud = surface
+            .points(areas)
             .map_err(|error| self.at("body.areas", error))?;
         Ok((surface, cloud))
     }

@@ -1,6 +1,6 @@
 //! A plate as a whole: points, bonds, sets, a run, what is refused.
 
-use pericles::operator::BondForm;
+use pericles_waves::ForceForm;
 
 use super::{PLATE, STATIC, build, parse, refusal};
 
@@ -197,7 +197,7 @@ fn parts_have_their_own_density_and_strength() {
     let model = build(STATIC);
     assert_eq!(
         (model.steps, model.dt, model.form),
-        (4, 0.25, BondForm::List)
+        (4, 0.25, ForceForm::List)
     );
     let density = |x: f64| {
         model

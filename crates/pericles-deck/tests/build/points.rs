@@ -1,7 +1,7 @@
 //! Points of all kinds, and the forms of their bonds.
 
-use pericles::operator::BondForm;
 use pericles_deck::{Deck, DeckError, Model};
+use pericles_waves::ForceForm;
 
 use super::{build, parse, plate_with_time, refusal, ring};
 
@@ -45,7 +45,7 @@ fn parts_with_smaller_cells() {
     let text =
         plate_with_time("").replace("fracture_energy = \"135 J/m2\"", "critical_stretch = 0.002");
     let (plain, fine) = (build(&text), build(&refined(&text, "3 mm")));
-    assert!(fine.cloud.len() > plain.cloud.len() && fine.form == BondForm::List);
+    assert!(fine.cloud.len() > plain.cloud.len() && fine.form == ForceForm::List);
     let volume = |model: &Model| model.cloud.volumes().iter().sum::<f64>();
     assert!((volume(&fine) / volume(&plain) - 1.0).abs() < 1e-12);
     // Half the horizon: twice the frequency, half the step.
@@ -115,8 +115,8 @@ fn forms_of_linear_bodies() {
 
 #[test]
 fn surfaces_come_from_files_handed_in() {
-    use pericles::space::surface::Surface;
     use pericles_deck::{FileError, Resources};
+    use pericles_manifold::surface::Surface;
     let text = r#"
 [body]
 shape = "surface"

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use pericles::space::surface::SurfaceError;
+use pericles_manifold::surface::SurfaceError;
 
 use super::SURFACE_ENDINGS;
 use crate::IoError;

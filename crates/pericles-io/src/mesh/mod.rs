@@ -31,7 +31,7 @@ pub use fields::{FieldColumn, FieldData, parse_fields, read_fields};
 
 use std::path::Path;
 
-use pericles::space::surface::{Surface, SurfaceError};
+use pericles_manifold::surface::{Surface, SurfaceError};
 
 use crate::whole::read_whole;
 use error::Fault;

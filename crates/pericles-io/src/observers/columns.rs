@@ -1,9 +1,10 @@
 //! Columns that only some histories have.
 
-use pericles::analysis::exact::{ExactSolution, Miss};
-use pericles::observe::{EnergyInequality, Field, Snapshot};
+use pericles::observe::{Field, Snapshot};
 use pericles::space::PointSet;
 use pericles::{Archive, Result, Saved, Values};
+use pericles_manifold::EnergyInequality;
+use pericles_waves::exact::{ExactSolution, Miss};
 
 use super::pictures::{name_of, scalar_of};
 use super::table::whole;

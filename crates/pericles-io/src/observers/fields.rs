@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
-use pericles::space::surface::Surface;
 use pericles::{Archive, Result, Saved, Values};
+use pericles_manifold::surface::Surface;
 
 use super::background::Background;
 use super::table::misfit;

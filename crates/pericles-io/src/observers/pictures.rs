@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
-use pericles::space::surface::Surface;
 use pericles::{Archive, PericlesError, Result, Saved, Values};
+use pericles_manifold::surface::Surface;
 
 use crate::error::IoError;
 use crate::picture::{CellSize, ColourMap, FieldPicture, write_animation};

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use pericles::observe::{EnergyBound, ObserveError, Observer, Snapshot, SurfaceMeasure};
+use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles::{Archive, Result, Saved, Values};
+use pericles_manifold::{EnergyBound, SurfaceMeasure};
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};

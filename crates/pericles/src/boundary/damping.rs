@@ -1,6 +1,5 @@
 //! Layers in which motion dies away: an approximate absorbing side of bodies in any dimension.
 
-use super::absorbing::LatticeScheme;
 use super::{Boundary, Exchange};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
@@ -181,7 +180,7 @@ impl Boundary for DampingLayer {
     }
 
     fn schemes(&self) -> &'static [&'static str] {
-        LatticeScheme::VelocityVerlet.names()
+        &["velocity-verlet"]
     }
 }
 

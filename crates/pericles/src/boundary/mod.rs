@@ -1,6 +1,5 @@
 //! Loads, prescribed motion, and boundaries with memory.
 
-pub mod absorbing;
 mod damping;
 mod function;
 mod load;

@@ -1,15 +1,14 @@
 //! Families: which points are bonded, and how strongly a neighbour's volume counts.
 //!
 //! A point's family are the points within the horizon δ. [`BondList`] stores all families; [`VolumeCorrection`] weighs cells that the
-//! horizon cuts; [`Crack`] removes bonds before the run starts. Distances along surfaces are found by [`geodesic`].
+//! horizon cuts; [`Crack`] removes bonds before the run starts.
 
 mod bonds;
 mod crack;
-pub mod geodesic;
 mod search;
 mod volume;
 
 pub use bonds::{BondList, Cut, LANES};
 pub use crack::{Crack, Cutter, EndRule};
-pub use search::pairs_within;
+pub use search::{pairs_where, pairs_within};
 pub use volume::VolumeCorrection;

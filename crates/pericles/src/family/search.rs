@@ -15,7 +15,7 @@ pub fn pairs_within(cloud: &PointCloud, reach: f64) -> (Vec<usize>, Vec<u32>) {
 }
 
 /// The pairs at most `reach` apart of which `wanted(i, j, distance)` is true. It must be the same from both ends.
-pub(super) fn pairs_where(
+pub fn pairs_where(
     cloud: &PointCloud,
     reach: f64,
     wanted: &(dyn Fn(usize, usize, f64) -> bool + Sync),

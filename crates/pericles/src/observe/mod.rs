@@ -4,21 +4,17 @@
 //! asked for, once per snapshot.
 
 mod crack;
-mod energy_inequality;
 mod fragments;
 mod probe;
 mod schedule;
 mod snapshot;
-mod surface;
 mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
-pub use energy_inequality::EnergyInequality;
 pub use fragments::{FragmentCount, Fragments};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
 pub use snapshot::{Energies, Field, Snapshot, StartEnergy};
-pub use surface::{EnergyBound, EnergyZone, SurfaceMeasure, SurfaceReading};
 
 use crate::archive::Saved;
 

@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{
-    BondForce, Breaking, ConvolutionForce, CostComparison, DamageMeasure, FastLaw, ForceOperator,
-    GaussForce, GridForce, SpectralCubicForce, SpectralForce,
-};
+use super::{BondForce, Breaking, DamageMeasure, FastLaw, ForceOperator, GridForce};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, LANES};
 use crate::material::{
@@ -26,10 +23,6 @@ pub enum BondForm {
     FloatGrid,
     /// A list of every point's bonds ([`BondForce`]).
     List,
-    /// Transforms of a linear body's kernel ([`ConvolutionForce`], or [`GaussForce`] on Gauss nodes).
-    Convolution,
-    /// Plane waves of a linear periodic body ([`SpectralForce`]).
-    Spectral,
 }
 
 impl BondForm {
@@ -40,8 +33,6 @@ impl BondForm {
             Self::Grid => "grid",
             Self::FloatGrid => "grid-f32",
             Self::List => "list",
-            Self::Convolution => "convolution",
-            Self::Spectral => "spectral",
         }
     }
 }
@@ -79,16 +70,8 @@ pub struct AssembledBonds {
 const SPARSE: usize = 8;
 
 impl BondBody<'_> {
-    /// The form that is fastest for this body.
+    /// The faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {
-        if self.convolution_is_fastest() {
-            return BondForm::Convolution;
-        }
-        self.fastest_bonds()
-    }
-
-    /// The faster of grid and list, for schemes that take the force apart by points.
-    pub fn fastest_bonds(&self) -> BondForm {
         match self.cloud.lattice() {
             Some(lattice) if self.stiffness.is_empty() => {
                 let [x, y, z] = lattice.shape;
@@ -103,70 +86,6 @@ impl BondBody<'_> {
         }
     }
 
-    /// Periodic bodies have no other form that follows all their bonds; otherwise it is a matter of cost.
-    fn convolution_is_fastest(&self) -> bool {
-        /// What a bond of the list costs over one of the grid, about.
-        const GRID_GAIN: f64 = 5.0;
-        let material = self.material;
-        if self.cloud.is_periodic() {
-            return true;
-        }
-        let possible = material.law == PairLaw::Linear
-            && !self.constants.critical_stretch.is_finite()
-            && self.cracks.is_empty()
-            && self.stiffness.is_empty();
-        if !possible {
-            return false;
-        }
-        if GaussForce::fits(self.cloud) {
-            return true;
-        }
-        let costs = CostComparison::new(self.cloud, material.horizon, material.volume_correction);
-        costs.is_ok_and(|costs| GRID_GAIN * costs.convolution < costs.bond_list)
-    }
-
-    fn transformed<const D: usize>(&self, form: BondForm) -> Result<Box<dyn ForceOperator>> {
-        let refuse = |reason| {
-            Err(PericlesError::FormNotUsable {
-                form: form.name(),
-                reason,
-            })
-        };
-        if !self.stiffness.is_empty() {
-            return refuse(
-                "parts of other stiffness are no convolution; use \"list\", or leave the inclusions out",
-            );
-        }
-        if !self.cracks.is_empty() {
-            return refuse(
-                "pre-cracks cut single bonds, which it cannot; use \"list\" or \"grid\"",
-            );
-        }
-        let (cloud, periodic) = (self.cloud.clone(), self.cloud.is_periodic());
-        Ok(match form {
-            BondForm::Spectral if !periodic => {
-                return refuse(
-                    "Fourier series need a body whose opposite faces are one: set body.periodic = true, or use \"convolution\"",
-                );
-            }
-            BondForm::Spectral => Box::new(SpectralForce::<D>::new(
-                cloud,
-                self.material,
-                self.constants,
-            )?),
-            _ if GaussForce::fits(&cloud) => {
-                Box::new(GaussForce::new(cloud, self.material, self.constants)?)
-            }
-            _ => Box::new(ConvolutionForce::<D>::new(
-                cloud,
-                self.material,
-                self.constants,
-                &[],
-                [periodic; D],
-            )?),
-        })
-    }
-
     /// The operator.
     ///
     /// # Errors
@@ -179,7 +98,6 @@ impl BondBody<'_> {
             (PairLaw::BondStretch, 1) => self.operator_of::<BondStretch, 1>(form),
             (PairLaw::BondStretch, 2) => self.operator_of::<BondStretch, 2>(form),
             (PairLaw::BondStretch, 3) => self.operator_of::<BondStretch, 3>(form),
-            (PairLaw::GreenStrain, 1) if form == BondForm::Spectral => self.cubic(),
             (PairLaw::GreenStrain, 1) => self.listed::<GreenBond, 1>(form),
             (PairLaw::GreenStrain, 2) => self.listed::<GreenBond, 2>(form),
             (PairLaw::GreenStrain, 3) => self.listed::<GreenBond, 3>(form),
@@ -201,21 +119,6 @@ impl BondBody<'_> {
                 dimension,
             }),
         }
-    }
-
-    fn cubic(&self) -> Result<AssembledBonds> {
-        if !self.stiffness.is_empty() || !self.cracks.is_empty() {
-            return Err(PericlesError::FormNotUsable {
-                form: BondForm::Spectral.name(),
-                reason: "parts of other stiffness and pre-cracks have no Fourier series; use \"list\"",
-            });
-        }
-        let force = SpectralCubicForce::new(self.cloud.clone(), self.material, self.constants)?;
-        Ok(AssembledBonds {
-            operator: Box::new(force),
-            cuts: Vec::new(),
-            form: BondForm::Spectral,
-        })
     }
 
     fn treated(
@@ -263,7 +166,7 @@ impl BondBody<'_> {
                     form: BondForm::List,
                 })
             }
-            BondForm::Grid | BondForm::FloatGrid | BondForm::Convolution | BondForm::Spectral => {
+            BondForm::Grid | BondForm::FloatGrid => {
                 refuse(form, "this law is kept as a list: \"list\" or \"fastest\"")
             }
         }
@@ -275,10 +178,7 @@ impl BondBody<'_> {
             chosen => chosen,
         };
         let (operator, cuts): (Box<dyn ForceOperator>, _) = match form {
-            BondForm::Convolution | BondForm::Spectral => {
-                (self.transformed::<D>(form)?, Vec::new())
-            }
-            BondForm::Grid | BondForm::FloatGrid | BondForm::List if self.cloud.is_periodic() => {
+            _ if self.cloud.is_periodic() => {
                 return Err(PericlesError::FormNotUsable {
                     form: form.name(),
                     reason: "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",

@@ -23,19 +23,40 @@ pub struct CompositeBody<'a> {
     pub correction: SurfaceCorrection,
 }
 
+impl<'a> From<BondBody<'a>> for CompositeBody<'a> {
+    /// A body of one material without a correction.
+    fn from(body: BondBody<'a>) -> Self {
+        Self {
+            body,
+            classes: None,
+            correction: SurfaceCorrection::None,
+        }
+    }
+}
+
 impl CompositeBody<'_> {
     /// Whether it is no more than its [`BondBody`].
     pub fn is_plain(&self) -> bool {
         self.classes.is_none() && self.correction == SurfaceCorrection::None
     }
 
-    /// The faster of grid and list, for schemes that take the force apart by points.
-    pub fn fastest_bonds(&self) -> BondForm {
+    /// The faster of grid and list.
+    pub fn fastest_form(&self) -> BondForm {
         if self.is_plain() {
-            self.body.fastest_bonds()
+            self.body.fastest_form()
         } else {
             BondForm::List
         }
+    }
+
+    /// The refusal of a form, by its name, that keeps bonds of one material only, without corrections.
+    pub fn only_listed(&self, form: &'static str) -> PericlesError {
+        let reason = if self.body.cloud.is_periodic() {
+            "bonds through periodic faces are followed in bodies of one material only, which have no surfaces to correct either"
+        } else {
+            "several materials and surface corrections are kept as a list: \"list\" or \"fastest\""
+        };
+        PericlesError::FormNotUsable { form, reason }
     }
 
     /// The operator.
@@ -46,21 +67,8 @@ impl CompositeBody<'_> {
         if self.is_plain() {
             return self.body.operator(form);
         }
-        let refuse = |reason| {
-            Err(PericlesError::FormNotUsable {
-                form: form.name(),
-                reason,
-            })
-        };
-        if self.body.cloud.is_periodic() {
-            return refuse(
-                "bonds through periodic faces are followed in bodies of one material only, which have no surfaces to correct either",
-            );
-        }
-        if !matches!(form, BondForm::Fastest | BondForm::List) {
-            return refuse(
-                "several materials and surface corrections are kept as a list: \"list\" or \"fastest\"",
-            );
+        if self.body.cloud.is_periodic() || !matches!(form, BondForm::Fastest | BondForm::List) {
+            return Err(self.only_listed(form.name()));
         }
         match (self.body.material.law, self.body.cloud.dimension()) {
             (PairLaw::Linear, 1) => self.list::<LinearBond, 1>(),
@@ -75,9 +83,10 @@ impl CompositeBody<'_> {
             (PairLaw::Literal57, 1) => self.list::<LiteralBond, 1>(),
             // The body alone refuses it, with the reason.
             (PairLaw::Literal57, _) => self.body.operator(form),
-            (PairLaw::Treated(..), _) => refuse(
-                "treatments of nonlinear laws are for bodies of one material without surface correction",
-            ),
+            (PairLaw::Treated(..), _) => Err(PericlesError::FormNotUsable {
+                form: form.name(),
+                reason: "treatments of nonlinear laws are for bodies of one material without surface correction",
+            }),
         }
     }
 

@@ -70,7 +70,7 @@ pub(super) struct BlockDamage {
 
 impl CoarseBreak {
     /// A bond that broke with this force and dissipated so much, J, where it should be about `critical`; none if that is near enough.
-    pub(super) fn of<const D: usize>(
+    pub fn of<const D: usize>(
         ends: [usize; 2],
         force: [f64; D],
         dissipated: f64,
@@ -112,7 +112,7 @@ pub(super) fn take_coarse_breaks(blocks: &mut [BlockDamage]) -> Vec<CoarseBreak>
 }
 
 /// Bonds in the order of their ends, without the second copies.
-pub(super) fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
+pub fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
     coarse.sort_by_key(|bond| bond.points);
     coarse.dedup_by_key(|bond| bond.points);
     coarse

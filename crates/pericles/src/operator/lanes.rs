@@ -334,16 +334,18 @@ impl InstructionSet {
 
 /// Compiles one inlined function for every instruction set and chooses among the copies at run time.
 ///
-/// Written `= body on lanes`, the function's first generic argument is the set's own type of eight doubles (see [`Lanes`]); `on floats`, of sixteen floats.
+/// Written `= body on lanes`, the function's first generic argument is the set's own type of eight doubles (see [`Lanes`](crate::operator::lanes::Lanes)); `on floats` (inside the engine), of sixteen
+/// floats. The function made takes the [`InstructionSet`](crate::operator::InstructionSet) first: one of [`InstructionSet::available`](crate::operator::InstructionSet::available), for any other has undefined results.
+#[macro_export]
 macro_rules! for_each_instruction_set {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident) => {
-        for_each_instruction_set! {
+        $crate::for_each_instruction_set! {
             @compile [$body::<$($argument),*>] [$body::<$($argument),*>] [$body::<$($argument),*>]
             $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)
         }
     };
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident on lanes) => {
-        for_each_instruction_set! {
+        $crate::for_each_instruction_set! {
             @compile
             [$body::<$crate::operator::lanes::F64x8, $($argument),*>]
             [$body::<$crate::operator::lanes_x86::Avx2x8, $($argument),*>]
@@ -352,7 +354,7 @@ macro_rules! for_each_instruction_set {
         }
     };
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident on floats) => {
-        for_each_instruction_set! {
+        $crate::for_each_instruction_set! {
             @compile
             [$body::<$crate::operator::floats::F32x16, $($argument),*>]
             [$body::<$crate::operator::floats_x86::Avx2x16, $($argument),*>]
@@ -364,7 +366,7 @@ macro_rules! for_each_instruction_set {
      $(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),*)) => {
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)]
-        $visibility fn $name<$($generics)*>(set: InstructionSet, $($parameter: $type),*) {
+        $visibility fn $name<$($generics)*>(set: $crate::operator::InstructionSet, $($parameter: $type),*) {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
@@ -377,10 +379,10 @@ macro_rules! for_each_instruction_set {
                 }
                 match set {
                     // SAFETY: InstructionSet::detect found these features on this machine.
-                    InstructionSet::Avx512 => return unsafe { avx512::<$($argument),*>($($parameter),*) },
+                    $crate::operator::InstructionSet::Avx512 => return unsafe { avx512::<$($argument),*>($($parameter),*) },
                     // SAFETY: as above.
-                    InstructionSet::Avx2 => return unsafe { avx2::<$($argument),*>($($parameter),*) },
-                    InstructionSet::Baseline => {}
+                    $crate::operator::InstructionSet::Avx2 => return unsafe { avx2::<$($argument),*>($($parameter),*) },
+                    $crate::operator::InstructionSet::Baseline => {}
                 }
             }
             let _ = set;
@@ -388,7 +390,7 @@ macro_rules! for_each_instruction_set {
         }
     };
 }
-pub(crate) use for_each_instruction_set;
+pub use for_each_instruction_set;
 
 #[cfg(test)]
 mod tests {

@@ -14,11 +14,11 @@ use crate::family::LANES;
 
 /// Eight numbers in one 512-bit register.
 #[derive(Clone, Copy)]
-pub(crate) struct Avx512x8(__m512d);
+pub struct Avx512x8(__m512d);
 
 /// Eight numbers in two 256-bit registers.
 #[derive(Clone, Copy)]
-pub(crate) struct Avx2x8(__m256d, __m256d);
+pub struct Avx2x8(__m256d, __m256d);
 
 macro_rules! arithmetic {
     ($trait:ident, $method:ident, $wide:ident, $half:ident) => {

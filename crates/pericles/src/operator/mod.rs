@@ -18,20 +18,19 @@ mod fast_law;
 mod floats;
 #[cfg(target_arch = "x86_64")]
 mod floats_x86;
-pub mod function;
 mod graded;
 mod grid;
 pub mod lanes;
 #[cfg(target_arch = "x86_64")]
-pub(crate) mod lanes_x86;
-pub mod linear;
+#[doc(hidden)]
+pub mod lanes_x86;
 mod linearisation;
 mod list;
-pub(crate) mod prefetch;
-mod records;
-mod rows;
+pub mod pool;
+pub mod prefetch;
+pub mod records;
+pub mod rows;
 mod springs;
-pub mod surface;
 mod view;
 mod zoned;
 
@@ -39,15 +38,11 @@ use std::ops::Range;
 
 pub use assemble::{AssembledBonds, BondBody, BondForm};
 pub use composite::CompositeBody;
-pub use damage::{Breaking, CoarseBreak, DamageMeasure};
+pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
 pub use fast_law::{FastLaw, FixedBond};
 pub use graded::{EndLaw, GradedBody};
 pub use grid::GridForce;
 pub use lanes::InstructionSet;
-pub use linear::{
-    ConvolutionForce, CostComparison, Ends, GaussForce, Route, SpectralCubicForce, SpectralForce,
-    Symbol, Toeplitz,
-};
 pub use linearisation::Linearisation;
 pub use list::BondForce;
 pub use springs::{LatticeSpring, LatticeSprings};
@@ -256,7 +251,21 @@ pub trait LinearOperator: Send + Sync {
     }
 
     /// The operator as one whose eigenvectors are known, if it is one.
-    fn as_diagonal(&self) -> Option<&dyn function::Diagonal> {
+    fn as_diagonal(&self) -> Option<&dyn Diagonal> {
         None
     }
+}
+
+/// A linear operator whose eigenvectors are known: any function of it costs two changes of basis.
+pub trait Diagonal: Send + Sync {
+    /// Adds g(A) x to the result of every function, with A = K/ρ + shift (1/s²) for the same density ρ (kg/m³) everywhere.
+    fn add_functions(&self, density: f64, shift: f64, x: &[f64], functions: &mut [FunctionOf<'_>]);
+}
+
+/// A function of an operator applied to a vector.
+pub struct FunctionOf<'a> {
+    /// g at an eigenvalue of the operator.
+    pub value: &'a (dyn Fn(f64) -> f64 + Sync),
+    /// Where g(A) x is added.
+    pub out: &'a mut [f64],
 }

@@ -2,7 +2,7 @@
 
 /// Asks for the cache line of an entry that will be read soon. Nothing happens if the array ends before.
 #[inline(always)]
-pub(crate) fn prefetch<T>(array: &[T], at: usize) {
+pub fn prefetch<T>(array: &[T], at: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

@@ -6,10 +6,10 @@ use super::lanes::Row;
 use crate::parallel::BLOCK;
 
 /// One row for each point; what a row holds behind the components is its owner's.
-pub(super) type Records = [Row];
+pub type Records = [Row];
 
 /// Writes a component-major field to the first numbers of the rows.
-pub(super) fn pack<const D: usize>(field: &[f64], records: &mut Records) {
+pub fn pack<const D: usize>(field: &[f64], records: &mut Records) {
     let n = records.len();
     records
         .par_chunks_mut(8 * BLOCK)
@@ -18,12 +18,7 @@ pub(super) fn pack<const D: usize>(field: &[f64], records: &mut Records) {
 }
 
 /// The same for the rows of the points from `first` on.
-pub(super) fn pack_part<const D: usize>(
-    field: &[f64],
-    n: usize,
-    first: usize,
-    records: &mut Records,
-) {
+pub fn pack_part<const D: usize>(field: &[f64], n: usize, first: usize, records: &mut Records) {
     for c in 0..D {
         let component = &field[c * n + first..][..records.len()];
         for (record, number) in records.iter_mut().zip(component) {

@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::On;
 
 /// Rows of a block: its first point, and which of its points are wanted.
-pub(super) struct Rows<'a> {
+pub struct Rows<'a> {
+    /// The first point of the block.
     pub first: usize,
     which: Which<'a>,
 }

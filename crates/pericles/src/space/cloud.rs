@@ -1,6 +1,5 @@
 //! The points of a body.
 
-use super::surface::Surface;
 use super::{Point, Region};
 use crate::error::{PericlesError, Result, positive};
 
@@ -145,18 +144,23 @@ impl PointCloud {
         self.periodic
     }
 
-    /// The vertices of a surface in 3D, with their areas (m²) where other bodies have volumes: densities are then per area.
+    /// Points of a surface in 3D, with their areas (m²) where other bodies have volumes: densities are then per area.
+    ///
+    /// `spacing` is their typical distance, m; `user_numbers[i]` the number of point i in files.
     ///
     /// # Errors
-    /// Areas that are not positive, or not one a vertex.
-    pub fn of_surface(surface: &Surface, areas: Vec<f64>) -> Result<Self> {
-        let positions = surface.positions();
+    /// Areas that are not positive, or not one a point.
+    pub fn of_areas(
+        positions: &[Point],
+        areas: Vec<f64>,
+        spacing: f64,
+        user_numbers: &[u32],
+    ) -> Result<Self> {
         let flat = (0..3)
             .flat_map(|c| positions.iter().map(move |position| position[c]))
             .collect();
-        let spacing = (surface.area() / surface.len() as f64).sqrt();
         let mut cloud = Self::with_spacing(3, flat, areas, 1.0, Some(spacing))?;
-        cloud.user_numbers = surface.user_numbers().to_vec();
+        cloud.user_numbers = user_numbers.to_vec();
         Ok(cloud)
     }
 

@@ -6,7 +6,7 @@ use super::Point;
 const BITS: u32 = 20;
 
 /// The numbers of points in the order of a Hilbert curve through their bounding cube. Cost O(n log n).
-pub(super) fn hilbert_order(points: &[Point]) -> Vec<u32> {
+pub fn hilbert_order(points: &[Point]) -> Vec<u32> {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for point in points {
         for c in 0..3 {

@@ -1,8 +1,7 @@
 //! Points in space: clouds, regular grids, regions and named sets.
 //!
 //! A body is a set of points with volumes. [`PointCloud`] holds it as structure of arrays; [`Grid`] makes clouds of cell
-//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Region`] says which points of space belong to a hole, a set or a layer. Triangulated surfaces are in
-//! [`surface`].
+//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Region`] says which points of space belong to a hole, a set or a layer.
 //!
 //! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates handed to regions always have three components,
 //! the missing ones zero.
@@ -15,9 +14,9 @@ mod listed;
 mod quadrature;
 mod rectangular;
 mod region;
-pub mod surface;
 
 pub use cloud::{Lattice, PointCloud, PointSet};
+pub use curve::hilbert_order;
 pub use graded::{Finer, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
 pub use listed::ListedPoints;

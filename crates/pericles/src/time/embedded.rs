@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::runge_kutta::{Stages, StepForm, start};
+use super::runge_kutta::{Stages, StepForm};
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
 use crate::archive::{Archive, Counter, Saved, Values};
@@ -169,7 +169,7 @@ impl Integrator for AdaptiveRungeKutta {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
-        start(system, state);
+        state.start(system);
     }
 
     fn step(

@@ -13,7 +13,6 @@ mod relaxation;
 mod respa;
 mod runge_kutta;
 mod tableau;
-mod trigonometric;
 mod verlet;
 mod zone;
 mod zones;
@@ -34,7 +33,6 @@ pub use relaxation::{Damping, Relaxation, RelaxationOptions};
 pub use respa::Respa;
 pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
-pub use trigonometric::{FunctionMethod, LoadRule, Trigonometric, TrigonometricOptions};
 pub use verlet::VelocityVerlet;
 
 use crate::accounts::Completed;
@@ -72,15 +70,16 @@ impl State {
 }
 
 impl State {
+    /// Begins a run: prescribed values and the acceleration at the start.
+    pub fn start(&mut self, system: &mut System) {
+        system.constrain(self.t, &mut self.u, &mut self.v);
+        system.constrain_velocity(self.t, &mut self.v);
+        system.start(self.t, &self.u, &self.v, &mut self.a);
+    }
+
     /// Ends a step of length dt at time t with the displacement and velocity in `next`, which then hold those before the step: decides breaking, books work and
     /// impulse, and evaluates the acceleration.
-    pub(crate) fn complete(
-        &mut self,
-        system: &mut System,
-        [u, v]: &mut [Vec<f64>; 2],
-        t: f64,
-        dt: f64,
-    ) {
+    pub fn complete(&mut self, system: &mut System, [u, v]: &mut [Vec<f64>; 2], t: f64, dt: f64) {
         let completed = Completed {
             t,
             dt,
@@ -191,7 +190,7 @@ pub trait Integrator: Saved + Send {
 
 /// Refuses what a scheme cannot follow whose step is solved for, or reaches far, with the supports of its start: boundaries with a memory, for the reason given, and points
 /// that are let go.
-fn refuse_changes_of_support(
+pub fn refuse_changes_of_support(
     scheme: &'static str,
     of_boundaries: &'static str,
     system: &System,
@@ -204,7 +203,7 @@ fn refuse_changes_of_support(
 }
 
 /// Refuses points that are let go.
-fn refuse_released_points(scheme: &'static str, system: &System) -> Result<()> {
+pub fn refuse_released_points(scheme: &'static str, system: &System) -> Result<()> {
     if !system.releases_points() {
         return Ok(());
     }

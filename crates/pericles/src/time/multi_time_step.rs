@@ -4,7 +4,7 @@ use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
 use super::refinement::{Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
-use super::runge_kutta::{Stages, StepForm, start};
+use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State, Tableau};
@@ -138,7 +138,7 @@ impl Integrator for MultiTimeStep {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
-        start(system, state);
+        state.start(system);
         self.refinement.start(system);
     }
 

@@ -3,7 +3,6 @@
 use super::fine_region::Fine;
 use super::refinement::{Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
-use super::runge_kutta::start;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State};
@@ -134,7 +133,7 @@ impl Integrator for Respa {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
-        start(system, state);
+        state.start(system);
         self.refinement.start(system);
         self.evaluate(system, state.t, &state.u);
     }

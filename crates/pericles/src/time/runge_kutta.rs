@@ -129,7 +129,7 @@ impl Integrator for RungeKutta {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
-        start(system, state);
+        state.start(system);
     }
 
     fn step(
@@ -174,13 +174,6 @@ impl Integrator for RungeKutta {
         state.step += 1;
         Ok(())
     }
-}
-
-/// Prescribed values and the acceleration at the start.
-pub(super) fn start(system: &mut System, state: &mut State) {
-    system.constrain(state.t, &mut state.u, &mut state.v);
-    system.constrain_velocity(state.t, &mut state.v);
-    system.start(state.t, &state.u, &state.v, &mut state.a);
 }
 
 /// The method carries nothing from step to step but the state.

@@ -3,11 +3,6 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use pericles::boundary::absorbing::history::BlockedHistory;
-use pericles::boundary::absorbing::{
-    AbsorbingEnd, GhostKernels, LatticeStencil, LatticeStep, OuterLayer, Side, contour_kernels,
-    semi_discrete_kernels,
-};
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeCourse, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
@@ -16,6 +11,11 @@ use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{
     Archive, Control, Outcome, PericlesError, PointScalar, Saved, Simulation, System, Values,
+};
+use pericles_waves::absorbing::history::BlockedHistory;
+use pericles_waves::absorbing::{
+    AbsorbingEnd, GhostKernels, LatticeStencil, LatticeStep, OuterLayer, Side, contour_kernels,
+    semi_discrete_kernels,
 };
 
 use crate::error::CliError;

@@ -4,19 +4,19 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Instant;
 
-use pericles::boundary::absorbing::history::{
-    BlockedHistory, DirectHistory, ExponentialHistory, History, HistoryCost,
-};
-use pericles::boundary::absorbing::{
-    AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
-    OuterLayer, Side, contour_kernels,
-};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
 use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Control, PericlesError, PointScalar, Simulation, System};
+use pericles_waves::absorbing::history::{
+    BlockedHistory, DirectHistory, ExponentialHistory, History, HistoryCost,
+};
+use pericles_waves::absorbing::{
+    AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
+    OuterLayer, Side, contour_kernels,
+};
 
 use super::PAPER;
 use crate::error::CliError;

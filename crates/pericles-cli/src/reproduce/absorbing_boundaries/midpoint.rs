@@ -1,11 +1,11 @@
 //! Exact ends within implicit steps, against a larger body with the same step.
 
-use pericles::boundary::absorbing::history::BlockedHistory;
-use pericles::boundary::absorbing::{
-    GhostKernels, LatticeStep, MidpointEnd, OuterLayer, Side, contour_kernels,
-};
 use pericles::time::{Implicit, ImplicitRule};
 use pericles::{Control, PericlesError, Simulation};
+use pericles_waves::absorbing::history::BlockedHistory;
+use pericles_waves::absorbing::{
+    GhostKernels, LatticeStep, MidpointEnd, OuterLayer, Side, contour_kernels,
+};
 
 use super::PAPER;
 use super::bar::Bar;

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use pericles::boundary::absorbing::Side;
-use pericles::boundary::absorbing::strip::{StripEnd, StripLattice};
 use pericles::family::VolumeCorrection;
-use pericles::operator::linear::ConvolutionForce;
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Control, PericlesError, PointScalar, Simulation, System};
 use pericles_io::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart};
+use pericles_waves::absorbing::Side;
+use pericles_waves::absorbing::strip::{StripEnd, StripLattice};
+use pericles_waves::linear::ConvolutionForce;
 
 use super::PAPER;
 use crate::error::CliError;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use pericles::PericlesError;
-use pericles::boundary::absorbing::{
+use pericles_waves::absorbing::{
     GhostKernels, LatticeStencil, green_functions, green_functions_closed, trapezoidal_kernels,
 };
 

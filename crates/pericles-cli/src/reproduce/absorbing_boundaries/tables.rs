@@ -1,7 +1,7 @@
 //! Tables 2 to 6: errors of the truncated bar against the solution in continuous time.
 
-use pericles::boundary::absorbing::Side;
 use pericles::time::State;
+use pericles_waves::absorbing::Side;
 
 use super::bar::{Bar, Kind, Source};
 use super::{PAPER, figures};

@@ -1,7 +1,5 @@
 //! Critical stretches of two glasses with the original and the tuned influence functions, and what a crack costs on the lattice.
 
-use pericles::analysis::BondLattice;
-use pericles::analysis::tuning::{Method, influence_alebrahim, polygon};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
@@ -9,6 +7,8 @@ use pericles::material::{
     StressState,
 };
 use pericles::space::{Grid, Shape};
+use pericles_dispersion::BondLattice;
+use pericles_dispersion::tuning::{Method, influence_alebrahim, polygon};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

@@ -1,11 +1,11 @@
 //! The influence function printed as a sum of cosines, and what it keeps of the table it stands for.
 
-use pericles::analysis::long_wave_speeds;
-use pericles::analysis::tuning::{
-    Method, continuum_speeds, fit_cosines, influence_alebrahim, polygon,
-};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::StressState;
+use pericles_dispersion::long_wave_speeds;
+use pericles_dispersion::tuning::{
+    Method, continuum_speeds, fit_cosines, influence_alebrahim, polygon,
+};
 use pericles_io::{Axis, Curve, LineChart};
 
 use super::super::row::Row;

@@ -14,12 +14,12 @@ mod two_dimensional;
 
 use std::path::PathBuf;
 
-use pericles::analysis::trace;
-use pericles::analysis::tuning::{
-    Combination, Method, ScalingModel, TunedTable, Tuning, continuum_speeds,
-};
 use pericles::family::VolumeCorrection;
 use pericles::material::StressState;
+use pericles_dispersion::trace;
+use pericles_dispersion::tuning::{
+    Combination, Method, ScalingModel, TunedTable, Tuning, continuum_speeds,
+};
 use pericles_io::{Axis, Curve, LineChart};
 
 use super::{Context, Study};

@@ -1,7 +1,7 @@
 //! Coefficients of bars, by all methods.
 
-use pericles::analysis::long_wave_speeds;
 use pericles::material::StressState;
+use pericles_dispersion::long_wave_speeds;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

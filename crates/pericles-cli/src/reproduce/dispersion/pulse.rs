@@ -6,13 +6,13 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use pericles::analysis::BondLattice;
-use pericles::analysis::spectrum::{Complex64, CubeTransform, PeriodicForce};
-use pericles::analysis::tuning::{Tuning, Weights, continuum_speeds};
 use pericles::material::StressState;
 use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Control, PointScalar, Simulation, System};
+use pericles_dispersion::BondLattice;
+use pericles_dispersion::spectrum::{Complex64, CubeTransform, PeriodicForce};
+use pericles_dispersion::tuning::{Tuning, Weights, continuum_speeds};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

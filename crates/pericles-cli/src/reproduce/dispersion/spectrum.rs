@@ -1,9 +1,9 @@
 //! Spectra measured in time-domain runs, against the time-discrete curve of the analysis.
 
-use pericles::analysis::spectrum::{SpectrumRun, measure};
-use pericles::analysis::trace;
-use pericles::analysis::tuning::Method;
 use pericles::material::StressState;
+use pericles_dispersion::spectrum::{SpectrumRun, measure};
+use pericles_dispersion::trace;
+use pericles_dispersion::tuning::Method;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

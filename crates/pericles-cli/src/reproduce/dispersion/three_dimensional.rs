@@ -1,8 +1,8 @@
 //! Coefficients of cubic lattices, which the paper does not treat.
 
-use pericles::analysis::long_wave_speeds;
-use pericles::analysis::tuning::{Combination, Method, Tuning, continuum_speeds};
 use pericles::material::StressState;
+use pericles_dispersion::long_wave_speeds;
+use pericles_dispersion::tuning::{Combination, Method, Tuning, continuum_speeds};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

@@ -1,8 +1,8 @@
 //! Coefficients of plates, signed and bounded, and what they do to waves over the whole zone.
 
-use pericles::analysis::tuning::{Method, Tuning, continuum_speeds};
-use pericles::analysis::{long_wave_speeds, polar_speeds};
 use pericles::material::StressState;
+use pericles_dispersion::tuning::{Method, Tuning, continuum_speeds};
+use pericles_dispersion::{long_wave_speeds, polar_speeds};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

@@ -1,8 +1,9 @@
 //! Growth, plateau and concentration for p = 5.
 
-use pericles::observe::{Field, SurfaceMeasure};
+use pericles::observe::Field;
 use pericles_io::Axis;
 use pericles_io::observers::PictureOf;
+use pericles_manifold::SurfaceMeasure;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

@@ -1,8 +1,8 @@
 //! Distances on icospheres of the unit sphere, against arcs of great circles: which methods converge.
 
-use pericles::family::geodesic::{GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_pairs};
-use pericles::space::surface::{AreaRule, Surface, SurfaceChecks};
 use pericles_io::{Axis, Curve, LineChart};
+use pericles_manifold::geodesic::{GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_pairs};
+use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks};
 
 use super::super::row::Row;
 use super::{Context, PAPER, Study};

@@ -16,10 +16,10 @@ mod figure_6;
 mod geodesics;
 mod modes;
 
-use pericles::observe::SurfaceMeasure;
 use pericles::{Control, Simulation};
 use pericles_deck::Deck;
 use pericles_io::{Axis, Curve, LineChart};
+use pericles_manifold::SurfaceMeasure;
 
 use super::{Context, Study};
 use crate::error::CliError;

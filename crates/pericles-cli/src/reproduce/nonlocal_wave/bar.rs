@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use pericles::analysis::exact::{BarMode, ExactSolution, StretchedBar};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::Influence;
 use pericles::material::BondMaterial;
 use pericles::time::State;
+use pericles_waves::exact::{BarMode, ExactSolution, StretchedBar};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

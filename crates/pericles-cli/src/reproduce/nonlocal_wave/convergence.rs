@@ -1,6 +1,6 @@
 //! Table 1: errors as the grid and the step are refined together.
 
-use pericles::analysis::exact::LineSolution;
+use pericles_waves::exact::LineSolution;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

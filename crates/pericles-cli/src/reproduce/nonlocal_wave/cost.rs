@@ -4,9 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use pericles::material::StressState;
-use pericles::operator::{LinearOperator, SpectralForce};
-use pericles::time::{FunctionMethod, Integrator, State, Trigonometric, TrigonometricOptions};
+use pericles::operator::LinearOperator;
+use pericles::time::{Integrator, State};
 use pericles::{PointScalar, System};
+use pericles_waves::linear::SpectralForce;
+use pericles_waves::{FunctionMethod, Trigonometric, TrigonometricOptions};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use pericles::System;
 use pericles::boundary::{Load, TimeFunction};
-use pericles::observe::{EnergyInequality, Snapshot, StartEnergy};
+use pericles::observe::{Snapshot, StartEnergy};
 use pericles::time::State;
 use pericles_io::{Axis, Curve, LineChart};
+use pericles_manifold::EnergyInequality;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

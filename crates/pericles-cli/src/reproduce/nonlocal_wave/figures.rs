@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use pericles::analysis::exact::ExactSolution;
 use pericles_io::{Axis, Curve, LineChart};
+use pericles_waves::exact::ExactSolution;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

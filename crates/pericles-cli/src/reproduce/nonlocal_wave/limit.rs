@@ -1,6 +1,6 @@
 //! Table 3: the local limit l → 0.
 
-use pericles::analysis::exact::{LineSolution, TravellingPulse};
+use pericles_waves::exact::{LineSolution, TravellingPulse};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
-use pericles::analysis::exact::ExactSolution;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, DamageMeasure};
+use pericles::operator::{BondBody, DamageMeasure};
 use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
-use pericles::time::{
-    Implicit, ImplicitRule, Integrator, State, Trigonometric, TrigonometricOptions, VelocityVerlet,
-};
+use pericles::time::{Implicit, ImplicitRule, Integrator, State, VelocityVerlet};
 use pericles::{Interrupt, PointScalar, System};
+use pericles_waves::ForceForm;
+use pericles_waves::exact::ExactSolution;
+use pericles_waves::{Trigonometric, TrigonometricOptions};
 
 use crate::error::CliError;
 
@@ -99,14 +99,14 @@ pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, C
 
 /// A body with free ends.
 pub(super) fn system(cloud: &Arc<PointCloud>, material: &BondMaterial) -> Result<System, CliError> {
-    system_as(cloud, material, BondForm::Convolution)
+    system_as(cloud, material, ForceForm::Convolution)
 }
 
 /// A body whose bonds are kept in this form.
 pub(super) fn system_as(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
-    form: BondForm,
+    form: ForceForm,
 ) -> Result<System, CliError> {
     let constants = material.constants(cloud, StressState::Uniaxial)?;
     let body = BondBody {
@@ -118,7 +118,7 @@ pub(super) fn system_as(
         stiffness: &[],
         damage: DamageMeasure::default(),
     };
-    let operator = body.operator(form)?.operator;
+    let operator = pericles_waves::assemble(&body.into(), form)?.operator;
     Ok(System::new(
         Arc::clone(cloud),
         operator,

@@ -1,6 +1,6 @@
 //! Table 2: a stiff medium, a long time and steps beyond the explicit limit.
 
-use pericles::analysis::exact::LineSolution;
+use pericles_waves::exact::LineSolution;
 
 use super::super::row::Row;
 use super::super::{Context, Study};

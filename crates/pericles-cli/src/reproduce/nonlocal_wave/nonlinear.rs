@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use pericles::System;
 use pericles::material::{BondMaterial, CubicLaw, PairLaw, Treatment};
-use pericles::operator::{BondForm, Linearisation};
+use pericles::operator::Linearisation;
 use pericles::space::PointCloud;
-use pericles::time::{
-    Implicit, ImplicitRule, Integrator, State, Trigonometric, TrigonometricOptions, VelocityVerlet,
-};
+use pericles::time::{Implicit, ImplicitRule, Integrator, State, VelocityVerlet};
 use pericles_io::{Axis, Curve, LineChart};
+use pericles_waves::ForceForm;
+use pericles_waves::{Trigonometric, TrigonometricOptions};
 
 use super::super::row::Row;
 use super::super::{Context, Study};
@@ -47,7 +47,7 @@ fn material(law: PairLaw) -> BondMaterial {
 
 fn body(law: PairLaw) -> Result<System, CliError> {
     let cloud = nodes(Method::Msv, H)?;
-    system_as(&cloud, &material(law), BondForm::List)
+    system_as(&cloud, &material(law), ForceForm::List)
 }
 
 fn start(cloud: &PointCloud, height: f64) -> State {
@@ -180,8 +180,8 @@ fn series() -> Result<Row, CliError> {
     let cloud = Arc::new(cells_of(-18.0, 36.0, 0.125)?);
     let ring = Arc::new(PointCloud::clone(&cloud).with_periodic_faces()?);
     let material = material(PairLaw::GreenStrain);
-    let sums = system_as(&cloud, &material, BondForm::List)?;
-    let waves = system_as(&ring, &material, BondForm::Spectral)?;
+    let sums = system_as(&cloud, &material, ForceForm::List)?;
+    let waves = system_as(&ring, &material, ForceForm::Spectral)?;
     let run = |body| moved(body, &mut VelocityVerlet, HEIGHT, 60);
     let miss = largest(&run(sums)?, &run(waves)?, 0.0) / HEIGHT;
     let row = Row::new(

@@ -3,12 +3,13 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use pericles::analysis::exact::ExactSolution;
 use pericles::material::StressState;
-use pericles::operator::SpectralForce;
 use pericles::space::PointCloud;
-use pericles::time::{State, Trigonometric, TrigonometricOptions};
+use pericles::time::State;
 use pericles::{PointScalar, System};
+use pericles_waves::exact::ExactSolution;
+use pericles_waves::linear::SpectralForce;
+use pericles_waves::{Trigonometric, TrigonometricOptions};
 
 use super::super::row::Row;
 use super::super::{Context, Study};

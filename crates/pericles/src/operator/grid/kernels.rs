@@ -12,7 +12,7 @@ use super::stencil::Offset;
 use crate::family::LANES;
 use crate::operator::damage::Tally;
 use crate::operator::fast_law::FastLaw;
-use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set, vector};
+use crate::operator::lanes::{Lanes, for_each_instruction_set, vector};
 
 /// Read-only arrays as the loops see them.
 pub(super) struct Grid<'a, N, const D: usize> {

@@ -6,7 +6,7 @@ use super::kernels::{Grid, force_chunks};
 use super::layout::Chunk;
 use crate::family::LANES;
 use crate::operator::fast_law::FastLaw;
-use crate::operator::lanes::{InstructionSet, Lanes, for_each_instruction_set};
+use crate::operator::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
 
 /// Which points exert a force, one byte per chunk.

@@ -11,7 +11,7 @@ use crate::material::{BondConstants, BondMaterial, PairClasses};
 use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::lanes::Row;
-use crate::operator::linear::pool::Pool;
+use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::{ForceOperator, InstructionSet, On};

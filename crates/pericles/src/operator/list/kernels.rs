@@ -9,7 +9,7 @@ use super::stiffness::Stiffness;
 use crate::family::{BondList, LANES};
 use crate::operator::damage::Tally;
 use crate::operator::fast_law::{FastLaw, FixedBond};
-use crate::operator::lanes::{F64x8, InstructionSet, Lanes, dot, for_each_instruction_set, vector};
+use crate::operator::lanes::{F64x8, Lanes, dot, for_each_instruction_set, vector};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 

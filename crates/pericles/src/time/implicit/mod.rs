@@ -371,7 +371,7 @@ impl Integrator for Implicit {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
-        super::runge_kutta::start(system, state);
+        state.start(system);
     }
 
     fn step(

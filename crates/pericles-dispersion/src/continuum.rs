@@ -1,0 +1,180 @@
+//! Plane waves of a kernel without a grid.
+
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+
+use gauss_quad::GaussLegendre;
+
+use pericles::kernel::{Influence, InfluenceFunction};
+
+/// Plane waves of the nonlocal continuum: what an influence function and a horizon do to waves before any grid does.
+///
+/// In d dimensions ω² of a wave along the unit vector n with polarisation e is
+///
+/// ω²(k) = (c/ρ) ∫_{|ξ|<δ} α(|ξ|) (1 − cos(k n·ξ)) (e·ξ)²/|ξ|³ dV,
+///
+/// isotropic, with e = n for pressure waves and e ⟂ n for shear waves. Speeds are given relative to those of long waves, so that the bond constant does not enter.
+#[derive(Debug, Clone)]
+pub struct KernelWaves {
+    dimension: usize,
+    /// r (m) with α(r) r^(d−2) and the quadrature's weight.
+    radii: Vec<[f64; 2]>,
+    horizon: f64,
+}
+
+impl KernelWaves {
+    /// The waves of a kernel with the given horizon (m), to be asked for wavenumbers up to `largest` (rad/m). None for tables per class of bonds: they belong to a grid and have no
+    /// continuum.
+    pub fn new(
+        dimension: usize,
+        influence: &Influence,
+        horizon: f64,
+        largest: f64,
+    ) -> Option<Self> {
+        /// Radians of k r that one panel of 32 nodes resolves to round-off.
+        const PANEL: f64 = 20.0;
+        const NODES: NonZeroUsize = NonZeroUsize::new(32).unwrap();
+        if matches!(influence.function, InfluenceFunction::Classes(_)) {
+            return None;
+        }
+        let rule = GaussLegendre::new(NODES);
+        let mut radii = Vec::new();
+        for piece in influence.smooth_pieces(horizon).windows(2) {
+            let panels = ((piece[1] - piece[0]) * largest / PANEL).ceil().max(1.0);
+            let width = (piece[1] - piece[0]) / panels;
+            for panel in 0..panels as usize {
+                let start = piece[0] + width * panel as f64;
+                for (node, weight) in rule.as_node_weight_pairs() {
+                    let r = start + 0.5 * width * (node + 1.0);
+                    let density = influence.alpha(r, horizon) * r.powi(dimension as i32 - 2);
+                    radii.push([r, 0.5 * width * weight * density]);
+                }
+            }
+        }
+        Some(Self {
+            dimension,
+            radii,
+            horizon,
+        })
+    }
+
+    /// Phase speeds at a wavenumber (rad/m) over those of long waves: pressure, then shear (in a bar pressure alone). Zero where ω² is negative.
+    pub fn relative_speeds(&self, wavenumber: f64) -> Vec<f64> {
+        let cosines = self.cosines(wavenumber * self.horizon);
+        let branches = self.dimension.min(2);
+        let mut sums = vec![[0.0; 2]; branches];
+        for [r, weight] in &self.radii {
+            for &(mu, share) in &cosines {
+                let phase = wavenumber * r * mu;
+                // 1 − cos φ and what it is for long waves, φ²/2.
+                let values = [2.0 * (0.5 * phase).sin().powi(2), 0.5 * phase * phase];
+                let along = mu * mu;
+                // In space the two directions across share 1 − μ².
+                let across = (1.0 - along) / (self.dimension.max(2) - 1) as f64;
+                for (sum, polarised) in sums.iter_mut().zip([along, across]) {
+                    sum[0] += weight * share * polarised * values[0];
+                    sum[1] += weight * share * polarised * values[1];
+                }
+            }
+        }
+        let ratio = |[wave, long]: &[f64; 2]| (wave / long).max(0.0).sqrt();
+        sums.iter().map(ratio).collect()
+    }
+
+    /// The largest wavenumber (rad/m, at most `end`) up to which all phase speeds are within a tolerance of those of long waves.
+    pub fn resolved(&self, tolerance: f64, end: f64) -> f64 {
+        const STEPS: usize = 200;
+        let off = |k: f64| {
+            let mut speeds = self.relative_speeds(k).into_iter();
+            speeds.any(|speed| (speed - 1.0).abs() > tolerance)
+        };
+        super::phase::last_before(end, STEPS, off)
+    }
+
+    /// Nodes and weights in μ, the cosine between bond and wave vector, over half of all directions; exact to round-off up to `phase` = k δ.
+    fn cosines(&self, phase: f64) -> Vec<(f64, f64)> {
+        let count = 16 + (0.75 * phase) as usize;
+        match self.dimension {
+            1 => vec![(1.0, 1.0)],
+            2 => {
+                // Midpoints of a periodic function.
+                let step = 0.5 * PI / count as f64;
+                let nodes = (0..count).map(|i| (((i as f64 + 0.5) * step).cos(), step));
+                nodes.collect()
+            }
+            _ => {
+                let rule =
+                    GaussLegendre::new(NonZeroUsize::new(count).unwrap_or(NonZeroUsize::MIN));
+                let pairs = rule.as_node_weight_pairs().iter();
+                pairs
+                    .map(|(node, weight)| (0.5 * (node + 1.0), 0.5 * weight))
+                    .collect()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pericles::kernel::ActsOn;
+
+    fn waves(dimension: usize, function: InfluenceFunction) -> KernelWaves {
+        let influence = Influence {
+            function,
+            acts_on: ActsOn::Stretch,
+        };
+        KernelWaves::new(dimension, &influence, 2.0, 30.0).unwrap()
+    }
+
+    #[test]
+    fn closed_forms_in_one_dimension() {
+        // α = r/δ: ω² ∝ ∫ (1 − cos kr) dr = δ − sin(kδ)/k, for long waves k²δ³/6.
+        let bar = waves(1, InfluenceFunction::Power { exponent: 1.0 });
+        for k in [0.1, 1.0, 7.0, 30.0] {
+            let exact = (2.0 - f64::sin(2.0 * k) / k) / (k * k * 8.0 / 6.0);
+            let found = bar.relative_speeds(k)[0];
+            assert!((found / exact.sqrt() - 1.0).abs() < 1e-11, "{k} {found}");
+        }
+    }
+
+    #[test]
+    fn plates_and_blocks() {
+        // Long waves keep their speed.
+        for dimension in [2, 3] {
+            let body = waves(dimension, InfluenceFunction::Constant);
+            let [pressure, shear] = body.relative_speeds(1e-3)[..] else {
+                panic!("two branches")
+            };
+            assert!((pressure - 1.0).abs() < 1e-6 && (shear - 1.0).abs() < 1e-6);
+        }
+        // The same integral as a lattice with many points within the horizon.
+        let fine = crate::BondLattice::new(&[0.02; 2], 2.0, |_, _, _| 1.0).unwrap();
+        let plate = waves(2, InfluenceFunction::Constant);
+        for k in [0.5, 2.0, 5.0] {
+            let speeds = |k: f64| {
+                let modes = fine.modes([k, 0.0, 0.0]);
+                [modes[1].omega() / k, modes[0].omega() / k]
+            };
+            let (at, long) = (speeds(k), speeds(1e-3));
+            let found = plate.relative_speeds(k);
+            for branch in 0..2 {
+                let expected = at[branch] / long[branch];
+                assert!(
+                    (found[branch] - expected).abs() < 2e-3,
+                    "{k} {found:?} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn tables_per_class_have_no_continuum() {
+        let table = pericles::kernel::ClassTable::new(1, 1.0, &[([1, 0, 0], 1.0)]).unwrap();
+        let influence = Influence {
+            function: InfluenceFunction::Classes(table),
+            acts_on: ActsOn::Stretch,
+        };
+        assert!(KernelWaves::new(1, &influence, 1.0, 3.0).is_none());
+    }
+}

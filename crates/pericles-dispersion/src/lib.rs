@@ -1,0 +1,53 @@
+//! What a lattice does to waves: dispersion, stability, tuned coefficients, measured spectra.
+//!
+//! In the interior of a grid, plane waves u = e exp(i(k·x − ωt)) solve the linearised equation of motion exactly if ω² and e are an eigenpair of
+//!
+//! M(k) = Σ_ξ (c α κ V/ρ) (1 − cos k·ξ)/|ξ|³ ξ⊗ξ,
+//!
+//! the sum over the bonds of one point. Everything follows from M (Alebrahim, Packo, Zaccariotto & Galvanetto 2022, in one and two
+//! dimensions; three are alike):
+//!
+//! * [`BondLattice`] – the bonds; M(k), its eigenpairs, the limit of long waves. Any spacings, influence function, correction and horizon.
+//! * [`Contour`], [`trace`] – branches along the border of the irreducible zone or along any ray, followed by symmetry or by likeness, with phase and group
+//!   velocities; [`verlet_frequency`] for the time-discrete curve.
+//! * [`stability`] – smallest ω²/|k|² and highest frequency over the whole zone, hence the stable step.
+//! * [`long_wave_speeds`], [`polar_speeds`] – anisotropy.
+//! * [`KernelWaves`] – dispersion of an influence function in the continuum, without a grid.
+//! * [`PhaseErrors`] – the shortest waves that keep the speed of long ones within a tolerance, or that of the continuum; what the kernel does and what the grid adds to it.
+//! * [`time_content`], [`space_content`] – the share of a load or an initial field in waves shorter than that.
+//! * [`tuning`] – coefficients per class of bonds that reduce dispersion.
+//! * [`spectrum`] – frequencies measured in a time-domain run.
+//!
+//! SI units; wave vectors in rad/m with missing components zero. An evaluation of M costs one sine for every pair ±ξ of bonds.
+//!
+//! ```
+//! use pericles_dispersion::{BondLattice, Contour, stability, trace};
+//!
+//! // A bar with nearest neighbours only, D = √(E/ρ) = 1: ω = 2 sin(k/2).
+//! let chain = BondLattice::new(&[1.0], 1.0, |_, _, _| 1.0)?;
+//! let curve = trace(&chain, &Contour::irreducible(&chain), 10);
+//! let middle = &curve[5];
+//! assert!((middle.branches[0].omega() - 2.0 * (0.5 * middle.k[0]).sin()).abs() < 1e-14);
+//! assert!((stability(&chain).dt_max() - 1.0).abs() < 1e-9);
+//! # Ok::<(), pericles::PericlesError>(())
+//! ```
+
+mod branches;
+mod content;
+mod continuum;
+mod contour;
+mod lattice;
+mod modes;
+mod phase;
+pub mod spectrum;
+pub mod tuning;
+mod zone;
+
+pub use branches::{BranchPoint, ContourPoint, PolarSpeeds, long_wave_speeds, polar_speeds, trace};
+pub use content::{space_content, time_content};
+pub use continuum::KernelWaves;
+pub use contour::{Contour, Segment};
+pub use lattice::{BondLattice, LatticeBond, Vector};
+pub use modes::{Mode, SquareMatrix, verlet_frequency};
+pub use phase::{PhaseErrors, Resolved};
+pub use zone::{Stability, stability};

@@ -1,0 +1,384 @@
+//! Least squares with linear equations and a lower bound.
+//!
+//! minimise ‖A α − b‖² subject to C α = d and α ≥ l. Equations are removed by a basis of their null space, the bound leads to a least-distance problem that
+//! non-negative least squares solves (Lawson & Hanson 1974, chapters 20 and 23): a finite method for this convex quadratic
+//! program. The bounds it finds active are then fixed and the rest is solved again by orthogonal
+//! factors, so that the result carries no more error than the equations themselves.
+
+use nalgebra::{DMatrix, DVector};
+
+use pericles::{PericlesError, Result};
+
+use super::bounded::bounded;
+
+/// A problem in n unknowns.
+#[derive(Debug, Clone)]
+pub(super) struct Problem {
+    /// A
+    pub rows: DMatrix<f64>,
+    /// b
+    pub values: DVector<f64>,
+    /// C
+    pub equations: DMatrix<f64>,
+    /// d
+    pub targets: DVector<f64>,
+    /// l
+    pub lower: Option<f64>,
+}
+
+/// Its solution.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    /// The unknowns.
+    pub alpha: DVector<f64>,
+    /// Unknowns at the bound.
+    pub active: Vec<usize>,
+    /// Condition number of the least-squares part, its columns scaled to one length; 1 if the equations leave no freedom.
+    pub condition: f64,
+    /// How far the optimality conditions are violated, relative to ‖b‖ (columns scaled to one length).
+    pub kkt: f64,
+}
+
+/// Why there is no solution.
+pub(super) enum Refusal {
+    /// The equations contradict each other by this relative amount.
+    Inconsistent(f64),
+    /// Fewer independent rows than unknowns.
+    Undetermined { rank: usize, unknowns: usize },
+    /// No point satisfies the bound.
+    Infeasible,
+}
+
+/// Relative residual beyond which equations count as contradictory.
+const INCONSISTENT: f64 = 1e-9;
+
+/// The set of solutions of the equations: `origin + basis · y`.
+struct Affine {
+    origin: DVector<f64>,
+    basis: DMatrix<f64>,
+}
+
+impl Affine {
+    fn new(equations: &DMatrix<f64>, targets: &DVector<f64>) -> std::result::Result<Self, Refusal> {
+        let n = equations.ncols();
+        let mut range: Vec<DVector<f64>> = Vec::new();
+        let norms: Vec<f64> = equations.row_iter().map(|row| row.norm()).collect();
+        let largest = norms.iter().copied().fold(0.0, f64::max);
+        for row in equations.row_iter() {
+            push_orthogonal(&mut range, row.transpose(), 1e-10 * largest);
+        }
+        let rank = range.len();
+        let mut all = range;
+        // The unit vectors complete the basis, those farthest from its span first.
+        while all.len() < n {
+            let left = (0..n).map(|c| {
+                let covered: f64 = all.iter().map(|q| q[c] * q[c]).sum();
+                1.0 - covered
+            });
+            let farthest = left
+                .enumerate()
+                .max_by(|a, b| a.1.total_cmp(&b.1))
+                .map_or(0, |(c, _)| c);
+            let unit = DVector::from_fn(n, |c, _| f64::from(u8::from(c == farthest)));
+            push_orthogonal(&mut all, unit, 0.0);
+        }
+        let columns = |part: &[DVector<f64>]| match part {
+            [] => DMatrix::zeros(n, 0),
+            _ => DMatrix::from_columns(part),
+        };
+        let (range, basis) = (columns(&all[..rank]), columns(&all[rank..]));
+        let origin = if rank == 0 {
+            DVector::zeros(n)
+        } else {
+            &range * least_squares(&(equations * &range), targets)?.0
+        };
+        let miss = (equations * &origin - targets).norm() / targets.norm().max(f64::MIN_POSITIVE);
+        if miss > INCONSISTENT {
+            return Err(Refusal::Inconsistent(miss));
+        }
+        Ok(Self { origin, basis })
+    }
+}
+
+/// Adds the part of `vector` orthogonal to the others, if it is longer than `shortest`. Twice is enough (Kahan).
+fn push_orthogonal(basis: &mut Vec<DVector<f64>>, mut vector: DVector<f64>, shortest: f64) {
+    for _ in 0..2 {
+        for q in basis.iter() {
+            let share = q.dot(&vector);
+            vector.axpy(-share, q, 1.0);
+        }
+    }
+    let norm = vector.norm();
+    if norm > shortest {
+        basis.push(vector / norm);
+    }
+}
+
+/// The least-squares solution of a system of full column rank, and the condition number.
+pub(super) fn least_squares(
+    rows: &DMatrix<f64>,
+    values: &DVector<f64>,
+) -> std::result::Result<(DVector<f64>, f64), Refusal> {
+    let unknowns = rows.ncols();
+    if unknowns == 0 {
+        return Ok((DVector::zeros(0), 1.0));
+    }
+    if rows.nrows() < unknowns {
+        return Err(Refusal::Undetermined {
+            rank: rows.nrows(),
+            unknowns,
+        });
+    }
+    let lengths: Vec<f64> = rows.column_iter().map(|column| column.norm()).collect();
+    let scale = DVector::from_iterator(
+        unknowns,
+        lengths.iter().map(|l| if *l > 0.0 { 1.0 / l } else { 1.0 }),
+    );
+    let scaled = rows * DMatrix::from_diagonal(&scale);
+    let factors = scaled.qr();
+    let mut right = values.clone();
+    factors.q_tr_mul(&mut right);
+    let triangle = factors.unpack_r();
+    let svd = triangle.svd(true, true);
+    let (high, low) = (svd.singular_values.max(), svd.singular_values.min());
+    let rank = svd
+        .singular_values
+        .iter()
+        .filter(|s| **s > 1e-13 * high)
+        .count();
+    if rank < unknowns {
+        return Err(Refusal::Undetermined { rank, unknowns });
+    }
+    // Both factors were computed and no singular value is cut off, so that this cannot fail.
+    let solved = svd.solve(&right.rows(0, unknowns).into_owned(), 0.0);
+    let Ok(mut solution) = solved else {
+        return Err(Refusal::Undetermined { rank: 0, unknowns });
+    };
+    solution.component_mul_assign(&scale);
+    Ok((solution, high / low))
+}
+
+impl Problem {
+    /// Solves it.
+    pub fn solve(&self) -> std::result::Result<Solution, Refusal> {
+        let affine = Affine::new(&self.equations, &self.targets)?;
+        let rows = &self.rows * &affine.basis;
+        let values = &self.values - &self.rows * &affine.origin;
+        let (y, condition) = least_squares(&rows, &values)?;
+        let alpha = &affine.origin + &affine.basis * &y;
+        let Some(lower) = self.lower else {
+            let kkt = self.kkt(&alpha, &[]);
+            return Ok(Solution {
+                alpha,
+                active: Vec::new(),
+                condition,
+                kkt,
+            });
+        };
+        if alpha.iter().all(|a| *a >= lower) {
+            let kkt = self.kkt(&alpha, &[]);
+            return Ok(Solution {
+                alpha,
+                active: Vec::new(),
+                condition,
+                kkt,
+            });
+        }
+        let margin = affine.origin.map(|a| lower - a);
+        let (y, active) = if affine.basis.ncols() == 0 {
+            return Err(Refusal::Infeasible);
+        } else {
+            bounded(&rows, &values, &affine.basis, &margin)?
+        };
+        let found = &affine.origin + &affine.basis * y;
+        let (alpha, condition) = self
+            .with_fixed(&active, lower)
+            .unwrap_or((found, condition));
+        let kkt = self.kkt(&alpha, &active);
+        Ok(Solution {
+            alpha,
+            active,
+            condition,
+            kkt,
+        })
+    }
+
+    /// The solution with some unknowns at the bound; none if it leaves the bound elsewhere.
+    fn with_fixed(&self, fixed: &[usize], lower: f64) -> Option<(DVector<f64>, f64)> {
+        let n = self.rows.ncols();
+        let free: Vec<usize> = (0..n).filter(|c| !fixed.contains(c)).collect();
+        let mut alpha = DVector::zeros(n);
+        for c in fixed {
+            alpha[*c] = lower;
+        }
+        let equations = self.equations.select_columns(&free);
+        let targets = &self.targets - &self.equations * &alpha;
+        let affine = Affine::new(&equations, &targets).ok()?;
+        let rows = self.rows.select_columns(&free);
+        let values = &self.values - &self.rows * &alpha - &rows * &affine.origin;
+        let (y, condition) = least_squares(&(&rows * &affine.basis), &values).ok()?;
+        let part = &affine.origin + &affine.basis * y;
+        for (k, c) in free.iter().enumerate() {
+            alpha[*c] = part[k];
+        }
+        let slack = 1e-10 * alpha.amax();
+        alpha
+            .iter()
+            .all(|a| *a >= lower - slack)
+            .then_some((alpha, condition))
+    }
+
+    /// The violation of Aᵀ(Aα − b) + Cᵀλ − μ = 0, μ ≥ 0 on active bounds and zero elsewhere, and of α ≥ l.
+    fn kkt(&self, alpha: &DVector<f64>, active: &[usize]) -> f64 {
+        let n = alpha.len();
+        let gradient = self.rows.transpose() * (&self.rows * alpha - &self.values);
+        // In unknowns for which every column of A has length one.
+        let scale = DVector::from_iterator(
+            n,
+            self.rows
+                .column_iter()
+                .map(|c| if c.norm() > 0.0 { 1.0 / c.norm() } else { 1.0 }),
+        );
+        let gradient = gradient.component_mul(&scale);
+        let equations = self.equations.nrows();
+        let mut normals = DMatrix::zeros(n, equations + active.len());
+        for e in 0..equations {
+            for c in 0..n {
+                normals[(c, e)] = self.equations[(e, c)] * scale[c];
+            }
+        }
+        for (k, c) in active.iter().enumerate() {
+            normals[(*c, equations + k)] = -1.0;
+        }
+        let reference = self.values.norm().max(f64::MIN_POSITIVE);
+        let right = -&gradient;
+        let Ok(multipliers) = normals.clone().svd(true, true).solve(&right, 1e-12) else {
+            return f64::NAN;
+        };
+        let stationary = (gradient + normals * &multipliers).amax() / reference;
+        let sign = (equations..equations + active.len())
+            .map(|k| -multipliers[k] / reference)
+            .fold(0.0, f64::max);
+        let below = self.lower.map_or(0.0, |lower| {
+            alpha.iter().map(|a| lower - a).fold(0.0, f64::max) / alpha.amax()
+        });
+        stationary.max(sign).max(below)
+    }
+
+    /// The largest bound for which there is a solution, by bisection.
+    fn largest_bound(&self) -> f64 {
+        let feasible = |lower: f64| {
+            let n = self.rows.ncols();
+            let nearest = Self {
+                rows: DMatrix::identity(n, n),
+                values: DVector::zeros(n),
+                lower: Some(lower),
+                ..self.clone()
+            };
+            nearest.solve().is_ok()
+        };
+        let (mut low, mut high) = (-1.0, 1.0);
+        while !feasible(low) && low > -1e12 {
+            (low, high) = (2.0 * low, low);
+        }
+        while feasible(high) && high < 1e12 {
+            (low, high) = (high, 2.0 * high);
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if feasible(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The error to show for a refusal.
+    pub fn refused(&self, refusal: Refusal, ratio: f64) -> PericlesError {
+        let classes = self.rows.ncols();
+        match refusal {
+            Refusal::Inconsistent(miss) => PericlesError::Anisotropic {
+                classes,
+                ratio,
+                miss,
+            },
+            Refusal::Undetermined { rank, unknowns } => {
+                PericlesError::Undetermined { rank, unknowns }
+            }
+            Refusal::Infeasible => PericlesError::InfeasibleBound {
+                bound: self.lower.unwrap_or(f64::NEG_INFINITY),
+                classes,
+                largest: self.largest_bound(),
+            },
+        }
+    }
+
+    /// Solves it, with the error to show.
+    pub fn solution(&self, ratio: f64) -> Result<Solution> {
+        self.solve().map_err(|refusal| self.refused(refusal, ratio))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn problem(seed: &[f64], n: usize, lower: f64) -> Problem {
+        let entry = |k: usize| seed[k % seed.len()] * (1.0 + (k as f64 * 0.7).sin());
+        Problem {
+            rows: DMatrix::from_fn(n + 3, n, |r, c| {
+                entry(r * n + c) + f64::from(u8::from(r == c))
+            }),
+            values: DVector::from_fn(n + 3, |r, _| entry(7 * r + 1)),
+            equations: DMatrix::from_fn(1, n, |_, c| 1.0 + 0.1 * c as f64),
+            targets: DVector::from_element(1, 3.0),
+            lower: Some(lower),
+        }
+    }
+
+    proptest! {
+        /// Against all active sets, one by one.
+        #[test]
+        fn bounded_problems(seed in prop::collection::vec(-2.0f64..2.0, 41), n in 2usize..6, lower in -0.5f64..0.3) {
+            let problem = problem(&seed, n, lower);
+            let Ok(found) = problem.solve() else { return Ok(()); };
+            let cost = |alpha: &DVector<f64>| (&problem.rows * alpha - &problem.values).norm();
+            let best = (0..1usize << n)
+                .filter_map(|set| {
+                    let fixed: Vec<usize> = (0..n).filter(|c| set >> c & 1 == 1).collect();
+                    let (alpha, _) = if fixed.len() < n { problem.with_fixed(&fixed, lower)? } else { return None };
+                    Some(cost(&alpha))
+                })
+                .fold(f64::INFINITY, f64::min);
+            prop_assert!(cost(&found.alpha) <= best * (1.0 + 1e-9), "{} {}", cost(&found.alpha), best);
+            prop_assert!(found.alpha.iter().all(|a| *a >= lower - 1e-9));
+            prop_assert!(found.kkt < 1e-9, "{}", found.kkt);
+            prop_assert!((&problem.equations * &found.alpha - &problem.targets).amax() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn bounds_without_solution_name_the_largest() {
+        // α₀ + 1.1 α₁ = 3 and both at least l: l ≤ 3/2.1.
+        let problem = problem(&[0.3, -0.7, 1.1], 2, 1.5);
+        let Err(refusal) = problem.solve() else {
+            panic!("1.5 is too large")
+        };
+        let error = problem.refused(refusal, 1.0);
+        let PericlesError::InfeasibleBound { largest, .. } = error else {
+            panic!("{error}")
+        };
+        assert!((largest - 3.0 / 2.1).abs() < 1e-8, "{largest}");
+    }
+
+    #[test]
+    fn contradictory_equations_are_found() {
+        let mut problem = problem(&[0.3, -0.7, 1.1], 3, 0.0);
+        problem.equations = DMatrix::from_row_slice(2, 3, &[1.0, 1.0, 0.0, 2.0, 2.0, 0.0]);
+        problem.targets = DVector::from_row_slice(&[1.0, 1.0]);
+        assert!(matches!(problem.solve(), Err(Refusal::Inconsistent(_))));
+    }
+}

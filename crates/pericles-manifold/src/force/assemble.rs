@@ -1,0 +1,111 @@
+//! The operator of a surface from its parts.
+
+use std::sync::Arc;
+
+use super::bonds::Extra;
+use super::{
+    AnyExponent, ChordBond, DisplacementBond, Exponent, HalfInteger, SurfaceBonds, SurfaceForce,
+    SurfaceLaw,
+};
+use crate::geodesic::GeodesicPairs;
+use crate::surface::Surface;
+use crate::{PowerMaterial, SurfaceBond};
+use pericles::Result;
+use pericles::operator::ForceOperator;
+use pericles::space::PointCloud;
+
+/// A surface of one material: all that its operator is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct SurfaceBody<'a> {
+    /// The surface.
+    pub surface: &'a Surface,
+    /// Its vertices as points, with their areas as volumes.
+    pub cloud: &'a Arc<PointCloud>,
+    /// The pairs of vertices that are bonds, with their distances.
+    pub pairs: &'a GeodesicPairs,
+    /// The material.
+    pub material: &'a PowerMaterial,
+    /// κ of each point over the material's; empty if all are the same. A bond has the mean of its ends.
+    pub stiffness: &'a [f64],
+    /// Points whose bonds never break.
+    pub no_fail: &'a [u32],
+}
+
+impl SurfaceBody<'_> {
+    /// The operator.
+    ///
+    /// # Errors
+    /// What [`PowerMaterial::check`] refuses.
+    pub fn operator(&self) -> Result<Box<dyn ForceOperator>> {
+        self.material.check()?;
+        Ok(match self.material.p {
+            2.0 => self.with_exponent(HalfInteger::<0, 0>),
+            2.5 => self.with_exponent(HalfInteger::<1, 0>),
+            3.0 => self.with_exponent(HalfInteger::<2, 0>),
+            3.5 => self.with_exponent(HalfInteger::<3, 0>),
+            4.0 => self.with_exponent(HalfInteger::<0, 1>),
+            4.5 => self.with_exponent(HalfInteger::<1, 1>),
+            5.0 => self.with_exponent(HalfInteger::<2, 1>),
+            5.5 => self.with_exponent(HalfInteger::<3, 1>),
+            p => self.with_exponent(AnyExponent(p)),
+        })
+    }
+
+    fn with_exponent<E: Exponent>(&self, exponent: E) -> Box<dyn ForceOperator> {
+        match self.material.bond {
+            SurfaceBond::Displacement => Box::new(self.force(DisplacementBond(exponent))),
+            SurfaceBond::Chord => Box::new(self.force(ChordBond(exponent))),
+        }
+    }
+
+    /// The operator of a given law: [`SurfaceBody::operator`] chooses the law that belongs to the material.
+    pub fn force<L: SurfaceLaw>(&self, law: L) -> SurfaceForce<L> {
+        let areas = self.cloud.volumes();
+        let mean = |i: usize, j: usize| match self.stiffness {
+            [] => 1.0,
+            stiffness => 0.5 * (stiffness[i] + stiffness[j]),
+        };
+        let factor = |i: usize, j: usize, d: f64| mean(i, j) * self.material.weight(d) * areas[j];
+        let bonds = SurfaceBonds::new(self.pairs, factor, self.self_cells(&mean));
+        let limits = self
+            .material
+            .critical_stretch
+            .is_finite()
+            .then(|| self.limits(&bonds));
+        SurfaceForce::new(law, Arc::clone(self.cloud), bonds, limits)
+    }
+
+    /// The self-cell term ½ (c_i + c_j) w_ij / A_i of every edge, w being the cotangent weights: its energy is that of Dirichlet's integral.
+    fn self_cells(&self, mean: &impl Fn(usize, usize) -> f64) -> Vec<Extra> {
+        if !self.material.self_cell {
+            return Vec::new();
+        }
+        let areas = self.cloud.volumes();
+        let c = |i: u32| self.material.self_cell_stiffness(areas[i as usize]);
+        let cotangents = self.surface.cotangents();
+        let mut extra = Vec::with_capacity(2 * cotangents.edges.len());
+        for (&[i, j], weight) in cotangents.edges.iter().zip(&cotangents.weights) {
+            let weight = mean(i as usize, j as usize) * 0.5 * (c(i) + c(j)) * weight;
+            extra.push((i, j, weight / areas[i as usize]));
+            extra.push((j, i, weight / areas[j as usize]));
+        }
+        extra
+    }
+
+    /// (s d)² of every entry; infinite where bonds never break.
+    fn limits(&self, bonds: &SurfaceBonds) -> Vec<f64> {
+        let mut held = vec![false; self.cloud.len()];
+        for &i in self.no_fail {
+            held[i as usize] = true;
+        }
+        let mut limits = vec![f64::INFINITY; bonds.weights().len()];
+        for i in (0..held.len()).filter(|&i| !held[i]) {
+            for (entry, j) in bonds.row(i).filter(|&(_, j)| !held[j]) {
+                if let Some(distance) = self.pairs.between(i, j) {
+                    limits[entry] = (self.material.critical_stretch * distance).powi(2);
+                }
+            }
+        }
+        limits
+    }
+}

@@ -1,0 +1,169 @@
+//! Breaking of bonds of a surface.
+
+use rayon::prelude::*;
+
+use super::bonds::SurfaceBonds;
+use super::law::SurfaceLaw;
+use pericles::operator::CoarseBreak;
+use pericles::operator::On;
+use pericles::operator::lanes::{F64x8, Real};
+use pericles::operator::records::Records;
+use pericles::parallel::BLOCK;
+use pericles::{Archive, Values};
+use pericles::{PericlesError, Result};
+
+/// What is broken, and what it takes to break the rest. A broken bond has weight zero.
+pub(super) struct Breaking {
+    /// (s d)² of every entry, m².
+    pub limits: Vec<f64>,
+    /// Broken entries, both of each bond, with the weights they had.
+    pub broken: Vec<(usize, f64)>,
+    /// J.
+    pub dissipated: f64,
+    /// Bonds broken by steps too coarse for them since they were taken last.
+    pub coarse: Vec<CoarseBreak>,
+}
+
+/// The end of a step as breaking sees it.
+pub(super) struct Step<'a> {
+    pub u: &'a [f64],
+    /// Mean velocity and length of the step, if the force acted for half of it only.
+    pub path: Option<(&'a [f64], f64)>,
+    pub areas: &'a [f64],
+    pub reference: &'a Records,
+    /// Marks of the points whose bonds are decided; all of them if none.
+    pub partners: Option<&'a [bool]>,
+}
+
+/// Values at j less those at i, of a component-major field on n points.
+fn difference(field: &[f64], n: usize, i: usize, j: usize) -> [f64; 3] {
+    std::array::from_fn(|c| field[c * n + j] - field[c * n + i])
+}
+
+/// Whether the bond of an entry is left and longer in |η|² than a limit.
+fn is_over(bonds: &SurfaceBonds, entry: usize, u: &[f64], [i, j]: [usize; 2], limit: f64) -> bool {
+    let eta = difference(u, bonds.len(), i, j);
+    eta.iter().map(|x| x * x).sum::<f64>() > limit && bonds.weights()[entry] != 0.0
+}
+
+impl Breaking {
+    /// Marks the points with a bond that is left and stretched beyond a fraction of what it stands.
+    pub fn mark_endangered(
+        &self,
+        bonds: &SurfaceBonds,
+        u: &[f64],
+        fraction: f64,
+        marks: &mut [bool],
+    ) {
+        let part = fraction * fraction;
+        let near = |i: usize| {
+            bonds
+                .row(i)
+                .any(|(entry, j)| is_over(bonds, entry, u, [i, j], part * self.limits[entry]))
+        };
+        marks
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(BLOCK)
+            .for_each(|(i, mark)| *mark |= near(i));
+    }
+
+    /// Breaks what is stretched too far among the bonds of the points named by `on`. Both ends of a bond see the same |η|, bit for bit.
+    pub fn decide<L: SurfaceLaw>(
+        &mut self,
+        law: L,
+        bonds: &mut SurfaceBonds,
+        step: &Step<'_>,
+        on: &On<'_>,
+    ) {
+        let n = bonds.len();
+        let over = |i: usize| {
+            let (bonds, limits) = (&*bonds, &self.limits);
+            let counts = |j: usize| step.partners.is_none_or(|marks| marks[j]);
+            let over = move |&(entry, j): &(usize, usize)| {
+                counts(j) && is_over(bonds, entry, step.u, [i, j], limits[entry])
+            };
+            let rows = bonds.row(i).filter(over);
+            rows.map(move |(entry, j)| (i, entry, j))
+        };
+        let found: Vec<(usize, usize, usize)> = match on {
+            On::All => (0..n)
+                .into_par_iter()
+                .with_min_len(BLOCK)
+                .flat_map_iter(over)
+                .collect(),
+            On::Range(range) => range.clone().flat_map(over).collect(),
+            On::Set(set) => set.iter().flat_map(|&i| over(i as usize)).collect(),
+        };
+        for (i, entry, j) in found {
+            let weight = bonds.weights()[entry];
+            if weight == 0.0 {
+                continue;
+            }
+            let lanes = |x: [f64; 3]| x.map(F64x8::splat);
+            let xi = if L::CHORD {
+                std::array::from_fn(|c| step.reference[j][c] - step.reference[i][c])
+            } else {
+                [0.0; 3]
+            };
+            let eta = difference(step.u, n, i, j);
+            let mut energy = law.energy(lanes(xi), lanes(eta)).0[0];
+            let force = law.force(lanes(xi), lanes(eta)).map(|force| force.0[0]);
+            if let Some((velocity, dt)) = step.path {
+                let rate = difference(velocity, n, i, j);
+                let power: f64 = (0..3).map(|c| force[c] * rate[c]).sum();
+                energy -= 0.5 * dt * power;
+            }
+            let factor = step.areas[i] * weight;
+            self.dissipated += factor * energy;
+            // A chord's elongation at the critical |η| depends on the direction of η: its energy there is not known.
+            if !L::CHORD {
+                let square: f64 = eta.iter().map(|x| x * x).sum();
+                let part = (self.limits[entry] / square).sqrt();
+                let critical = law.energy(lanes(xi), lanes(eta.map(|x| part * x))).0[0];
+                let coarse = CoarseBreak::of([i, j], force, factor * energy, factor * critical);
+                self.coarse.extend(coarse);
+            }
+            self.cut(bonds, entry);
+            let back = bonds.row(j).find(|&(_, other)| other == i);
+            if let Some((back, _)) = back {
+                self.cut(bonds, back);
+            }
+        }
+    }
+
+    fn cut(&mut self, bonds: &mut SurfaceBonds, entry: usize) {
+        let weight = std::mem::take(&mut bonds.weights_mut()[entry]);
+        self.broken.push((entry, weight));
+    }
+
+    pub fn save(&self, archive: &mut Archive) {
+        let entries = self.broken.iter().map(|&(entry, _)| entry as u64);
+        archive.put("operator/broken", Values::U64(entries.collect()));
+        archive.put("operator/dissipated", Values::F64(vec![self.dissipated]));
+    }
+
+    pub fn restore(&mut self, bonds: &mut SurfaceBonds, archive: &Archive) -> Result<()> {
+        let entries = archive.u64s("operator/broken")?;
+        archive.f64_into(
+            "operator/dissipated",
+            std::slice::from_mut(&mut self.dissipated),
+        )?;
+        // Backwards: of an entry that is named twice the first weight is its own.
+        for (entry, weight) in self.broken.drain(..).rev() {
+            bonds.weights_mut()[entry] = weight;
+        }
+        for &entry in entries {
+            if entry as usize >= self.limits.len() {
+                return Err(PericlesError::BadArchive {
+                    reason: format!(
+                        "it breaks bond {entry}, the model has {}",
+                        self.limits.len()
+                    ),
+                });
+            }
+            self.cut(bonds, entry as usize);
+        }
+        Ok(())
+    }
+}

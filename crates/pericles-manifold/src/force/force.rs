@@ -1,0 +1,343 @@
+//! The force operator of a surface.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::bonds::SurfaceBonds;
+use super::breaking::{Breaking, Step};
+use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
+use super::law::SurfaceLaw;
+use pericles::Result;
+use pericles::operator::lanes::Row;
+use pericles::operator::pool::{Lent, Pool};
+use pericles::operator::records::pack;
+use pericles::operator::rows::Rows;
+use pericles::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
+use pericles::operator::{CoarseBreak, each_once};
+use pericles::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
+use pericles::space::PointCloud;
+use pericles::{Archive, Saved};
+
+/// (K u)_i = Σ_j w_ij A_j f(η_ij) over the bonds of a surface: force per area, N/m².
+///
+/// A gather per point over [`SurfaceBonds`], in parallel blocks. Displacements are packed to rows of four once an evaluation, so that a bond reads one
+/// row; a broken bond has weight zero. Memory: 12 bytes a directed bond, 8 more where bonds can break, and 64 a point.
+pub struct SurfaceForce<L: SurfaceLaw> {
+    law: L,
+    cloud: Arc<PointCloud>,
+    bonds: SurfaceBonds,
+    /// Positions at rest, if the law needs chords.
+    reference: Vec<Row>,
+    breaking: Option<Breaking>,
+    records: Pool<Vec<Row>>,
+    instruction_set: InstructionSet,
+}
+
+impl<L: SurfaceLaw> SurfaceForce<L> {
+    /// The operator of a law on bonds; `limits` are the squares of the largest |η| of all entries (m²), none if bonds never break.
+    pub(super) fn new(
+        law: L,
+        cloud: Arc<PointCloud>,
+        bonds: SurfaceBonds,
+        limits: Option<Vec<f64>>,
+    ) -> Self {
+        let n = cloud.len();
+        let mut reference = Vec::new();
+        if L::CHORD {
+            reference = vec![Row::default(); n];
+            pack::<3>(cloud.positions(), &mut reference);
+        }
+        Self {
+            law,
+            bonds,
+            reference,
+            breaking: limits.map(|limits| Breaking {
+                limits,
+                broken: Vec::new(),
+                dissipated: 0.0,
+                coarse: Vec::new(),
+            }),
+            records: Pool::new(1, move || vec![Row::default(); n]),
+            cloud,
+            instruction_set: InstructionSet::detect(),
+        }
+    }
+
+    /// Runs the loops with another instruction set; for tests and benchmarks.
+    pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+        self
+    }
+
+    /// The bonds.
+    pub fn bonds(&self) -> &SurfaceBonds {
+        &self.bonds
+    }
+
+    fn packed(&self, field: &[f64]) -> Lent<'_, Vec<Row>> {
+        let mut records = self.records.take();
+        pack::<3>(field, &mut records);
+        records
+    }
+
+    fn sweep<const C: usize>(
+        &self,
+        on: &On<'_>,
+        out: &mut [f64],
+        rows: impl Fn(&Rows<'_>, &mut [&mut [f64]; C]) + Sync,
+    ) {
+        let n = self.points();
+        // A vector of nothing: no memory is taken.
+        let mut nothing = vec![(); n.div_ceil(BLOCK)];
+        for_each_block(
+            components_mut::<C>(out, n),
+            &mut nothing,
+            &|first, mut out, ()| {
+                if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
+                    rows(&wanted, &mut out);
+                }
+            },
+        );
+    }
+
+    fn add_force_of(&self, bonds: &Bonds<'_>, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+        let u = self.packed(u);
+        self.sweep::<3>(on, out, |rows, out| {
+            force_rows(self.instruction_set, self.law, bonds, &u, rows, out);
+        });
+    }
+
+    fn decide(
+        &mut self,
+        u: &[f64],
+        path: Option<(&[f64], f64)>,
+        on: &On<'_>,
+        partners: Option<&[bool]>,
+    ) {
+        let step = Step {
+            u,
+            path,
+            areas: self.cloud.volumes(),
+            reference: &self.reference,
+            partners,
+        };
+        if let Some(breaking) = &mut self.breaking {
+            breaking.decide(self.law, &mut self.bonds, &step, on);
+        }
+    }
+}
+
+impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
+    fn points(&self) -> usize {
+        self.cloud.len()
+    }
+
+    fn dimension(&self) -> usize {
+        3
+    }
+
+    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        self.add_force_of(&Bonds::new(&self.bonds, &self.reference), u, &on, out);
+    }
+
+    fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
+        let u = self.packed(u);
+        let bonds = Bonds::new(&self.bonds, &self.reference);
+        self.sweep::<1>(&On::All, out, |rows, out| {
+            energy_rows(self.instruction_set, self.law, &bonds, &u, rows, out);
+        });
+    }
+
+    fn energy(&self, t: f64, u: &[f64]) -> f64 {
+        let mut density = vec![0.0; self.points()];
+        self.add_energy_density(t, u, &mut density);
+        ordered_sum(self.points(), |i| density[i] * self.cloud.volumes()[i])
+    }
+
+    /// ω² ≤ max_i (2/ρ_i) Σ_j |w_ij| A_j for p = 2, by Gershgorin's discs; zero for p > 2, where nothing is stiff at rest.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let row = |i: usize| -> f64 {
+            self.bonds
+                .row(i)
+                .map(|(entry, _)| self.bonds.weights()[entry].abs())
+                .sum()
+        };
+        let largest =
+            (0..self.points()).fold(0.0_f64, |largest, i| largest.max(2.0 * row(i) / density(i)));
+        (largest * self.law.stiffness_at_rest()).sqrt()
+    }
+
+    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
+        let path = Some((accepted.mean_velocity, accepted.dt));
+        self.decide(accepted.u, path, &on, None);
+        self.add_force(accepted.t, accepted.u, on, out);
+    }
+
+    fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
+        self.decide(u, None, &on, None);
+    }
+
+    fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        if self.law.is_linear() {
+            return self.apply_into(direction, out);
+        }
+        let (u, direction) = (self.packed(u), self.packed(direction));
+        let bonds = Bonds::new(&self.bonds, &self.reference);
+        self.sweep::<3>(&On::All, out, |rows, out| {
+            tangent_rows(
+                self.instruction_set,
+                self.law,
+                &bonds,
+                &u,
+                &direction,
+                rows,
+                out,
+            );
+        });
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.breaking
+            .as_ref()
+            .map_or(0.0, |breaking| breaking.dissipated)
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        if let Some(breaking) = &mut self.breaking {
+            breaking.dissipated += energy;
+        }
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        let breaking = self.breaking.as_mut();
+        breaking.map_or(Vec::new(), |breaking| {
+            each_once(std::mem::take(&mut breaking.coarse))
+        })
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        self.breaking
+            .as_ref()
+            .map_or(0, |breaking| breaking.broken.len() as u64 / 2)
+    }
+
+    fn can_break(&self) -> bool {
+        self.breaking.is_some()
+    }
+
+    /// The part of the area within the horizon whose bonds are broken.
+    fn damage_into(&self, out: &mut [f64]) {
+        if self.breaking.is_none() {
+            return out.fill(0.0);
+        }
+        let areas = self.cloud.volumes();
+        out.par_iter_mut()
+            .enumerate()
+            .with_min_len(BLOCK)
+            .for_each(|(i, damage)| {
+                let (mut whole, mut left) = (0.0, 0.0);
+                for (entry, j) in self.bonds.row(i) {
+                    whole += areas[j];
+                    if self.bonds.weights()[entry] != 0.0 {
+                        left += areas[j];
+                    }
+                }
+                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
+            });
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        // A broken bond has lost its weight.
+        let weights = self.bonds.weights();
+        for i in 0..self.points() {
+            let row = self.bonds.row(i);
+            for (_, j) in row.filter(|&(entry, j)| j > i && weights[entry] != 0.0) {
+                visit(i, j);
+            }
+        }
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.bonds.directed()
+    }
+
+    fn bytes(&self) -> usize {
+        self.bonds.bytes()
+            + size_of_val(&self.reference[..])
+            + self
+                .breaking
+                .as_ref()
+                .map_or(0, |breaking| size_of_val(&breaking.limits[..]))
+            + self.points() * size_of::<Row>()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    fn as_linear(&self) -> Option<&dyn LinearOperator> {
+        self.law.is_linear().then_some(self as &dyn LinearOperator)
+    }
+
+    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
+        Some(self)
+    }
+
+    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+        Some(self)
+    }
+}
+
+impl<L: SurfaceLaw> ZonedForce for SurfaceForce<L> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.bonds.row(i).for_each(|(_, j)| visit(j));
+    }
+
+    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+        let bonds = Bonds::new(&self.bonds, &self.reference).to(partners);
+        self.add_force_of(&bonds, u, &on, out);
+    }
+
+    fn accept_and_force_from(
+        &mut self,
+        accepted: Accepted<'_>,
+        on: On<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
+        let path = Some((accepted.mean_velocity, accepted.dt));
+        self.decide(accepted.u, path, &on, Some(partners));
+        self.add_force_from(accepted.t, accepted.u, on, partners, out);
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if let Some(breaking) = &self.breaking {
+            breaking.mark_endangered(&self.bonds, u, fraction, marks);
+        }
+    }
+}
+
+impl<L: SurfaceLaw> LinearOperator for SurfaceForce<L> {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.add_force(0.0, u, On::All, out);
+    }
+}
+
+impl<L: SurfaceLaw> Saved for SurfaceForce<L> {
+    fn save(&self, archive: &mut Archive) {
+        if let Some(breaking) = &self.breaking {
+            breaking.save(archive);
+        }
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        match &mut self.breaking {
+            Some(breaking) => breaking.restore(&mut self.bonds, archive),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Nonlinear peridynamics on closed surfaces.
+//!
+//! * [`surface`] – closed triangulated surfaces: shapes, checks, areas, order along a curve.
+//! * [`geodesic`] – distances along surfaces up to a horizon.
+//! * [`PowerMaterial`] – the pair law and its constants.
+//! * [`force`] – the force operator: power-law bonds over geodesic or Euclidean balls.
+//! * [`SurfaceMeasure`], [`EnergyInequality`] – what is measured of such bodies.
+//!
+//! The crate uses only what the engine, [`pericles`], exports.
+
+mod energy_inequality;
+pub mod force;
+pub mod geodesic;
+mod measure;
+mod power;
+pub mod surface;
+
+pub use energy_inequality::EnergyInequality;
+pub use measure::{EnergyBound, EnergyZone, SurfaceMeasure, SurfaceReading};
+pub use power::{PowerMaterial, SurfaceBond};

@@ -1,0 +1,202 @@
+//! The end of a bar that lets waves leave, stepped by the implicit midpoint rule.
+
+use super::history::History;
+use super::{AbsorbingError, LatticeScheme, LatticeStep, OuterLayer};
+use pericles::Result;
+use pericles::boundary::{Boundary, Exchange, WithinStep};
+use pericles::operator::Accepted;
+use pericles::{Archive, Saved, Values};
+
+/// An absorbing end for the implicit midpoint rule and, its exterior being linear, the trapezoidal rule.
+///
+/// Both rules take the exterior's forces at the mean ū of the displacements at both ends of a step. Of a lattice at rest at the start these means obey, from the first step on,
+/// σ(w) ū = A ū with σ = (4/dt²)((1 − w)/(1 + w))² and nothing added for the start, so that
+///
+/// ```text
+/// ū_{−n}^j = Σ_m Σ_{α ≥ 0} F_n^m[α] ū_m^{j−α}
+/// ```
+///
+/// F\[0\] ≠ 0: the ghosts hang on the step that is to be found. What they owe to it is eliminated: with T the bonds between outer points and ghosts, the body feels
+/// T (past) − S ū, S = diag(Σ a) − T F\[0\], a symmetric K × K corner that is added to the matrix of the step ([`WithinStep`]).
+///
+/// The work of an end over a step is its force at the middle times the change of displacement; with it the energy account closes as that of the rule does.
+pub struct MidpointEnd {
+    layer: OuterLayer,
+    history: Box<dyn History>,
+    dt: f64,
+    /// S, row by row.
+    corner: Vec<f64>,
+    /// What the past alone pulls at the middle of the coming step.
+    past: Vec<f64>,
+    /// Displacements of the present state: of the outer points, and before the step; of the ghosts.
+    own: Vec<f64>,
+    before: Vec<f64>,
+    beyond: Vec<f64>,
+    /// What the ghosts pull in the present state.
+    pull: Vec<f64>,
+    /// Means over a step: of the outer points; of the ghosts.
+    middle: Vec<f64>,
+    ghosts: Vec<f64>,
+    started: bool,
+}
+
+impl MidpointEnd {
+    /// An end whose history gives the ghosts of the layer, with the kernels of [`LatticeScheme::Midpoint`].
+    ///
+    /// # Errors
+    /// A step that is not positive.
+    pub fn new(
+        layer: OuterLayer,
+        history: Box<dyn History>,
+        dt: f64,
+    ) -> std::result::Result<Self, AbsorbingError> {
+        LatticeStep::midpoint(dt).check(&layer.stencil)?;
+        let reach = layer.points.len();
+        let mut corner = vec![0.0; reach * reach];
+        let (mut unit, mut pull) = (vec![0.0; reach], vec![0.0; reach]);
+        for m in 0..reach {
+            let mut ghosts = vec![0.0; reach];
+            unit[m] = 1.0;
+            history.settle(&unit, &mut ghosts);
+            layer.pull_into(&unit, &ghosts, &mut pull);
+            for (p, pull) in pull.iter().enumerate() {
+                corner[p * reach + m] = -pull;
+            }
+            unit[m] = 0.0;
+        }
+        let array = || vec![0.0; reach];
+        Ok(Self {
+            layer,
+            history,
+            dt,
+            corner,
+            past: array(),
+            own: array(),
+            before: array(),
+            beyond: array(),
+            pull: array(),
+            middle: array(),
+            ghosts: array(),
+            started: false,
+        })
+    }
+
+    /// Ends the step that took the outer points from `before` to `own`: the work and impulse of the ghosts.
+    fn end_step(&mut self) -> Exchange {
+        let ends = self.before.iter().zip(&self.own);
+        for (middle, (before, now)) in self.middle.iter_mut().zip(ends) {
+            *middle = 0.5 * (before + now);
+        }
+        self.history.ghosts_into(&mut self.ghosts);
+        self.history.settle(&self.middle, &mut self.ghosts);
+        self.layer
+            .pull_into(&self.middle, &self.ghosts, &mut self.pull);
+        let mut exchange = Exchange::default();
+        for ((pull, before), now) in self.pull.iter().zip(&self.before).zip(&self.own) {
+            let force = self.layer.mass * pull;
+            exchange.work += force * (now - before);
+            exchange.impulse[0] += force * self.dt;
+        }
+        for (beyond, middle) in self.beyond.iter_mut().zip(&self.ghosts) {
+            *beyond = 2.0 * middle - *beyond;
+        }
+        self.history.push(&self.middle, &self.ghosts);
+        exchange
+    }
+
+    /// Finds what the past pulls in the coming step.
+    fn look_ahead(&mut self) {
+        self.middle.fill(0.0);
+        self.history.ghosts_into(&mut self.ghosts);
+        self.history.settle(&self.middle, &mut self.ghosts);
+        self.layer
+            .pull_into(&self.middle, &self.ghosts, &mut self.past);
+    }
+
+    /// S u of the outer points, with their places.
+    fn corner_product<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let points = &self.layer.points;
+        let rows = self.corner.chunks_exact(points.len());
+        points.iter().zip(rows).map(move |(&i, row)| {
+            let terms = row.iter().zip(points);
+            (i, terms.map(|(s, &j)| s * u[j]).sum())
+        })
+    }
+}
+
+impl Boundary for MidpointEnd {
+    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+        std::mem::swap(&mut self.own, &mut self.before);
+        for (own, &i) in self.own.iter_mut().zip(&self.layer.points) {
+            *own = accepted.u[i];
+        }
+        let exchange = match self.started {
+            true => self.end_step(),
+            false => Exchange::default(),
+        };
+        self.started = true;
+        self.layer
+            .pull_into(&self.own, &self.beyond, &mut self.pull);
+        self.look_ahead();
+        exchange
+    }
+
+    fn after_stage(&mut self, _t: f64, _u: &[f64], _v: &[f64], acceleration: &mut [f64]) {
+        self.add_present(acceleration);
+    }
+
+    fn schemes(&self) -> &'static [&'static str] {
+        LatticeScheme::Midpoint.names()
+    }
+
+    fn steps(&self) -> Option<u64> {
+        self.history.steps()
+    }
+
+    fn within_step(&self) -> Option<&dyn WithinStep> {
+        Some(self)
+    }
+}
+
+impl WithinStep for MidpointEnd {
+    fn add_present(&self, acceleration: &mut [f64]) {
+        for (pull, &i) in self.pull.iter().zip(&self.layer.points) {
+            acceleration[i] += pull;
+        }
+    }
+
+    fn add_middle(&self, u: &[f64], acceleration: &mut [f64]) {
+        for ((i, product), past) in self.corner_product(u).zip(&self.past) {
+            acceleration[i] += past - product;
+        }
+    }
+
+    fn add_stiffness(&self, u: &[f64], out: &mut [f64]) {
+        for (i, product) in self.corner_product(u) {
+            out[i] += product;
+        }
+    }
+}
+
+impl Saved for MidpointEnd {
+    fn save(&self, archive: &mut Archive) {
+        let name = self.layer.name();
+        let arrays = [("own", &self.own), ("beyond", &self.beyond)];
+        for (what, array) in arrays {
+            archive.put(format!("{name}/{what}"), Values::F64(array.clone()));
+        }
+        self.history.save(&name, archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let name = self.layer.name();
+        archive.f64_into(&format!("{name}/own"), &mut self.own)?;
+        archive.f64_into(&format!("{name}/beyond"), &mut self.beyond)?;
+        self.history.restore(&name, archive)?;
+        self.layer
+            .pull_into(&self.own, &self.beyond, &mut self.pull);
+        self.look_ahead();
+        self.started = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,217 @@
+//! The end of a strip that lets waves leave.
+
+use realfft::num_complex::Complex;
+
+use super::lattice::{Matrix, StripLattice};
+use crate::absorbing::history::{BlockedHistory, History};
+use crate::absorbing::{GhostKernels, LatticeScheme, Side};
+use crate::linear::LineTransform;
+use pericles::Result;
+use pericles::boundary::{Boundary, Exchange};
+use pericles::operator::Accepted;
+use pericles::{Archive, Saved, Values};
+
+/// Weight of the initial displacement in the history, as for bars.
+const FIRST: f64 = 0.5;
+
+/// An absorbing end of a strip: one history of 2K × 2K kernels for each Fourier mode along y, for real and imaginary parts.
+pub struct StripEnd {
+    side: Side,
+    lattice: StripLattice,
+    entries: usize,
+    modes: Vec<Mode>,
+    /// What a point of each outer column owes to its bonds to the ghosts.
+    beyond: Vec<[f64; 2]>,
+    transform: LineTransform,
+    line: Vec<f64>,
+    spectrum: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    /// Accelerations of the outer columns by the ghosts' bonds, by depth, component and row; and those of the step before.
+    pull: Vec<f64>,
+    pull_before: Vec<f64>,
+    started: bool,
+}
+
+/// A Fourier mode; parts are real and imaginary, entries 2 · place + component.
+struct Mode {
+    /// C_1 … C_K
+    couplings: Vec<Matrix>,
+    histories: [BlockedHistory; 2],
+    own: [Vec<f64>; 2],
+    ghosts: Vec<f64>,
+    pull: [Vec<f64>; 2],
+}
+
+impl StripEnd {
+    /// An end of a body at rest at the start in its K outermost columns, which must be free of loads and supports, for a number of steps of velocity Verlet; `entries` is the number of unknowns of the body.
+    pub fn new(
+        lattice: StripLattice,
+        side: Side,
+        entries: usize,
+        kernels: &[GhostKernels],
+    ) -> Self {
+        let (reach, rows) = (lattice.reach(), lattice.rows());
+        let transform = LineTransform::new(rows);
+        let mode = |(q, kernels): (usize, &GhostKernels)| {
+            let zeros = || vec![0.0; 2 * reach];
+            Mode {
+                couplings: lattice.couplings(q)[1..].to_vec(),
+                histories: [(); 2].map(|()| BlockedHistory::new(kernels.clone())),
+                own: [zeros(), zeros()],
+                ghosts: zeros(),
+                pull: [zeros(), zeros()],
+            }
+        };
+        Self {
+            side,
+            entries,
+            beyond: (1..=reach)
+                .map(|nearest| lattice.stiffness_beyond(nearest))
+                .collect(),
+            modes: kernels.iter().enumerate().map(mode).collect(),
+            line: vec![0.0; rows],
+            spectrum: vec![Complex::default(); transform.modes()],
+            scratch: transform.scratch(),
+            transform,
+            pull: vec![0.0; 2 * reach * rows],
+            pull_before: vec![0.0; 2 * reach * rows],
+            started: false,
+            lattice,
+        }
+    }
+
+    /// Memory of the histories, bytes.
+    pub fn bytes(&self) -> usize {
+        let histories = self.modes.iter().flat_map(|mode| &mode.histories);
+        histories.map(History::bytes).sum()
+    }
+
+    fn entry(&self, component: usize, point: usize) -> usize {
+        component * (self.entries / 2) + point
+    }
+
+    /// The displacements of the outer columns, by modes.
+    fn transform_in(&mut self, u: &[f64]) {
+        for depth in 0..self.lattice.reach() {
+            for component in 0..2 {
+                for row in 0..self.line.len() {
+                    let entry = self.entry(component, self.lattice.points[depth][row]);
+                    self.line[row] = u[entry];
+                }
+                self.transform
+                    .forward(&mut self.line, &mut self.spectrum, &mut self.scratch);
+                for (mode, u) in self.modes.iter_mut().zip(&self.spectrum) {
+                    // v = (û_x, i û_y)
+                    let v = [*u, Complex::<f64>::i() * *u][component];
+                    let place = 2 * depth + component;
+                    mode.own[0][place] = v.re;
+                    mode.own[1][place] = v.im;
+                }
+            }
+        }
+    }
+
+    /// The accelerations of the outer columns from those of the modes.
+    fn transform_out(&mut self) {
+        let rows = self.line.len();
+        for place in 0..2 * self.lattice.reach() {
+            for (u, mode) in self.spectrum.iter_mut().zip(&self.modes) {
+                let v = Complex::new(mode.pull[0][place], mode.pull[1][place]);
+                *u = [v, -Complex::<f64>::i() * v][place % 2] / rows as f64;
+            }
+            self.transform
+                .inverse(&mut self.spectrum, &mut self.line, &mut self.scratch);
+            self.pull[place * rows..(place + 1) * rows].copy_from_slice(&self.line);
+        }
+    }
+
+    fn name(&self, mode: usize, part: usize) -> String {
+        format!("strip/{}/{mode}/{part}", self.side.name())
+    }
+}
+
+impl Mode {
+    /// Takes the ghosts of the present from the histories, and the present, with a weight, into them.
+    fn advance(&mut self, beyond: &[[f64; 2]], weight: f64) {
+        for part in 0..2 {
+            let (own, pull) = (&mut self.own[part], &mut self.pull[part]);
+            let history = &mut self.histories[part];
+            history.ghosts_into(&mut self.ghosts);
+            for (p, stiffness) in beyond.iter().enumerate() {
+                for a in 0..2 {
+                    let bonds = self.couplings[p..].iter().zip(self.ghosts.chunks_exact(2));
+                    let towards: f64 = bonds.map(|(c, g)| c[a][0] * g[0] + c[a][1] * g[1]).sum();
+                    pull[2 * p + a] = towards - stiffness[a] * own[2 * p + a];
+                }
+            }
+            own.iter_mut().for_each(|u| *u *= weight);
+            history.push(own, &self.ghosts);
+        }
+    }
+}
+
+impl Boundary for StripEnd {
+    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+        self.transform_in(accepted.u);
+        std::mem::swap(&mut self.pull, &mut self.pull_before);
+        let weight = if self.started { 1.0 } else { FIRST };
+        self.started = true;
+        for mode in &mut self.modes {
+            mode.advance(&self.beyond, weight);
+        }
+        self.transform_out();
+        let mut exchange = Exchange::default();
+        let rows = self.line.len();
+        for (k, (now, before)) in self.pull.iter().zip(&self.pull_before).enumerate() {
+            let (depth, component, row) = (k / (2 * rows), k / rows % 2, k % rows);
+            let entry = self.entry(component, self.lattice.points[depth][row]);
+            let impulse = 0.5 * self.lattice.mass * (now + before) * accepted.dt;
+            exchange.work += impulse * accepted.mean_velocity[entry];
+            exchange.impulse[component] += impulse;
+        }
+        exchange
+    }
+
+    fn after_stage(&mut self, _t: f64, _u: &[f64], _v: &[f64], acceleration: &mut [f64]) {
+        let rows = self.line.len();
+        for (k, pull) in self.pull.iter().enumerate() {
+            let (depth, component, row) = (k / (2 * rows), k / rows % 2, k % rows);
+            acceleration[self.entry(component, self.lattice.points[depth][row])] += pull;
+        }
+    }
+
+    fn schemes(&self) -> &'static [&'static str] {
+        LatticeScheme::VelocityVerlet.names()
+    }
+
+    fn steps(&self) -> Option<u64> {
+        self.modes
+            .first()
+            .and_then(|mode| mode.histories[0].steps())
+    }
+}
+
+impl Saved for StripEnd {
+    fn save(&self, archive: &mut Archive) {
+        let name = format!("strip/{}/pull", self.side.name());
+        archive.put(name, Values::F64(self.pull.clone()));
+        for (q, mode) in self.modes.iter().enumerate() {
+            for (part, history) in mode.histories.iter().enumerate() {
+                history.save(&self.name(q, part), archive);
+            }
+        }
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let name = format!("strip/{}/pull", self.side.name());
+        archive.f64_into(&name, &mut self.pull)?;
+        for q in 0..self.modes.len() {
+            for part in 0..2 {
+                let name = self.name(q, part);
+                self.modes[q].histories[part].restore(&name, archive)?;
+            }
+        }
+        self.started = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,127 @@
+//! Functions of the stiffness operator applied to vectors: the exact flow of a linear body.
+//!
+//! With A = M⁻¹K (symmetric in the inner product of the masses, eigenvalues ω² ≥ 0) and W = A^½, free motion over a time τ is
+//! u′ = cos(τW) u + τ sinc(τW) v, v′ = −W sin(τW) u + cos(τW) v. All functions here are entire functions of A, so that no root of a matrix
+//! is ever taken and zero modes (rigid motion) are exact.
+//!
+//! | [`WaveFunction`] | of ω² | limit at ω = 0 |
+//! |---|---|---|
+//! | `Cosine` | cos τω | 1 |
+//! | `Sine` | sin(τω)/ω = τ sinc τω | τ |
+//! | `Slope` | −ω sin τω | 0 |
+//! | `Versine` | (1 − cos τω)/ω² | τ²/2 |
+//!
+//! | engine | needs | products with A for accuracy 1e-15 | use |
+//! |---|---|---|---|
+//! | [`Chebyshev`] | a bound of ω² | about τω/2 + 6 (τω)^⅓ + 12 | the default: any operator, any τ |
+//! | [`Diagonal`](pericles::operator::Diagonal) | a periodic homogeneous body | two transforms | the fastest where there is one ([`LinearOperator::as_diagonal`](pericles::operator::LinearOperator::as_diagonal)) |
+//! | [`Lanczos`] | an inner product | about the same degree, with m vectors kept and O(m² n) beside | where no bound is known |
+//! | [`Eigenvectors`] | O(n²) memory, O(n³) time once | n once | reference, n up to some thousand |
+//!
+//! Sources: N. J. Higham, Functions of Matrices (SIAM 2008), ch. 13; M. Hochbruck & A. Ostermann, Exponential integrators, Acta Numerica 19 (2010);
+//! the coefficients from cos(a cos φ) = J₀(a) + 2 Σ (−1)^k J_2k(a) cos 2kφ (DLMF 10.12.3).
+//!
+//! ```
+//! use pericles::Interrupt;
+//! use pericles_waves::function::{Chebyshev, MatrixFunction, Term, WaveFunction};
+//! // One oscillator, ω = 2: cos(2 · 1.5).
+//! let mut apply = |x: &[f64], out: &mut [f64]| out[0] = 4.0 * x[0];
+//! let mut u = [0.0];
+//! let terms = &mut [Term::new(WaveFunction::Cosine, 1.5, &mut u)];
+//! Chebyshev::new(5.0, 1).add(&mut apply, &[1.0], terms, Interrupt::never()).unwrap();
+//! assert!((u[0] - 3.0f64.cos()).abs() < 1e-15);
+//! ```
+
+mod bessel;
+mod chebyshev;
+mod eigenvectors;
+mod lanczos;
+
+pub use bessel::bessel_into;
+pub use chebyshev::Chebyshev;
+pub use eigenvectors::Eigenvectors;
+pub use lanczos::Lanczos;
+
+use pericles::{Interrupt, Result};
+
+/// An entire function of A = W², for a time τ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WaveFunction {
+    /// cos τW
+    Cosine,
+    /// τ sinc τW
+    Sine,
+    /// −W sin τW
+    Slope,
+    /// (1 − cos τW) W⁻²
+    Versine,
+}
+
+impl WaveFunction {
+    /// The value at an eigenvalue ω²; values below zero by round-off count as zero.
+    pub fn value(self, tau: f64, square: f64) -> f64 {
+        let omega = square.max(0.0).sqrt();
+        let angle = tau * omega;
+        match self {
+            Self::Cosine => angle.cos(),
+            Self::Sine if angle.abs() < 1e-4 => tau * (1.0 - angle * angle / 6.0),
+            Self::Sine => angle.sin() / omega,
+            Self::Slope => -omega * angle.sin(),
+            // 2 sin²(a/2)/ω² has no cancellation.
+            Self::Versine if angle.abs() < 1e-4 => 0.5 * tau * tau * (1.0 - angle * angle / 12.0),
+            Self::Versine => 2.0 * ((0.5 * angle).sin() / omega).powi(2),
+        }
+    }
+}
+
+/// `out` += factor · g(A) x, as asked of an engine.
+pub struct Term<'a> {
+    /// g.
+    pub function: WaveFunction,
+    /// τ, s; not negative.
+    pub tau: f64,
+    /// The factor.
+    pub factor: f64,
+    /// Where the result is added.
+    pub out: &'a mut [f64],
+}
+
+impl<'a> Term<'a> {
+    /// With factor 1.
+    pub fn new(function: WaveFunction, tau: f64, out: &'a mut [f64]) -> Self {
+        Self::times(1.0, function, tau, out)
+    }
+
+    /// With a factor.
+    pub fn times(factor: f64, function: WaveFunction, tau: f64, out: &'a mut [f64]) -> Self {
+        Self {
+            function,
+            tau,
+            factor,
+            out,
+        }
+    }
+
+    /// factor · g at an eigenvalue.
+    pub fn value(&self, square: f64) -> f64 {
+        self.factor * self.function.value(self.tau, square)
+    }
+}
+
+/// x ↦ A x.
+pub type Product<'a> = dyn FnMut(&[f64], &mut [f64]) + 'a;
+
+/// A way of computing functions of an operator given by its products.
+pub trait MatrixFunction: Send {
+    /// Adds g(A) x for every term.
+    ///
+    /// # Errors
+    /// Engines that iterate report when they do not converge, and poll `interrupt` before every product.
+    fn add(
+        &mut self,
+        apply: &mut Product<'_>,
+        x: &[f64],
+        terms: &mut [Term<'_>],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()>;
+}

@@ -1,0 +1,40 @@
+//! Energies of linear operators from the force: no loop over bonds is needed.
+
+use pericles::parallel::ordered_sum;
+
+/// The value that displacements are taken relative to: a rigid translation is then exactly zero.
+pub(super) fn origin<const D: usize>(u: &[f64]) -> [f64; D] {
+    let n = u.len() / D;
+    std::array::from_fn(|c| u[c * n + n / 2])
+}
+
+/// −½ Σ V f·u, J.
+pub(super) fn elastic_energy<const D: usize>(
+    volumes: &[f64],
+    u: &[f64],
+    force: &[f64],
+    origin: [f64; D],
+) -> f64 {
+    let n = volumes.len();
+    let work = ordered_sum(D * n, |k| {
+        volumes[k % n] * force[k] * (u[k] - origin[k / n])
+    });
+    -0.5 * work
+}
+
+/// Adds w = ¼ s − ½ f·u of every point to `out`, J/m³; s are the operator's sums over products u_a u_b.
+pub(super) fn add_density<const D: usize>(
+    u: &[f64],
+    force: &[f64],
+    origin: [f64; D],
+    squares: &[f64],
+    out: &mut [f64],
+) {
+    let n = squares.len();
+    for i in 0..n {
+        let work: f64 = (0..D)
+            .map(|c| force[c * n + i] * (u[c * n + i] - origin[c]))
+            .sum();
+        out[i] += 0.25 * squares[i] - 0.5 * work;
+    }
+}

@@ -1,0 +1,414 @@
+//! Trigonometric integrators: the exact flow of the linear part.
+
+use rayon::prelude::*;
+
+use crate::function::{Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction};
+use pericles::Interrupt;
+use pericles::Saved;
+use pericles::operator::{FunctionOf, On};
+use pericles::parallel::BLOCK;
+use pericles::time::{Integrator, State, refuse_changes_of_support};
+use pericles::{PericlesError, Result};
+use pericles::{PointScalar, System};
+
+/// How functions of the stiffness are computed (see [`crate::function`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FunctionMethod {
+    /// Fourier where the operator is diagonal in plane waves and nothing is held, else Chebyshev.
+    #[default]
+    Fastest,
+    /// Chebyshev series.
+    Chebyshev,
+    /// Plane waves.
+    Fourier,
+    /// Krylov spaces.
+    Lanczos,
+    /// All eigenvectors: a reference for small bodies.
+    Eigenvectors,
+}
+
+impl FunctionMethod {
+    /// All methods, the default first.
+    pub const ALL: [Self; 5] = [
+        Self::Fastest,
+        Self::Chebyshev,
+        Self::Fourier,
+        Self::Lanczos,
+        Self::Eigenvectors,
+    ];
+
+    /// As written in decks.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fastest => "fastest",
+            Self::Chebyshev => "chebyshev",
+            Self::Fourier => "fourier",
+            Self::Lanczos => "lanczos",
+            Self::Eigenvectors => "eigenvectors",
+        }
+    }
+}
+
+/// Where a load that changes in time is taken within a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LoadRule {
+    /// At the two Gauss nodes: order four.
+    #[default]
+    Gauss,
+    /// In the middle: order two.
+    Midpoint,
+}
+
+/// Choices of a [`Trigonometric`] integrator.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TrigonometricOptions {
+    /// Functions of the stiffness.
+    pub functions: FunctionMethod,
+    /// Loads.
+    pub load_rule: LoadRule,
+    /// Added to all eigenvalues ω², 1/s². Never needed, and an error of its own: for comparison with methods that divide by W.
+    pub regularisation: f64,
+}
+
+/// u′ = u + τ sinc(τW) v + (1 − cos τW) W⁻² a, v′ = cos(τW) v + τ sinc(τW) a, with W² = K/ρ and a = −W²u + b/ρ at the start of the step.
+///
+/// Exact for linear forces and constant loads, whatever the step: one step may reach any time. Loads and prescribed motions that change within the
+/// step enter by the difference from its start, r(s) = b(t+s) − b(t) over ρ, as
+/// Σ_k w_k [ sin((τ−s_k)W)/W r(s_k), cos((τ−s_k)W) r(s_k) ] with the Gauss nodes s_k (order 4) or the midpoint (order 2).
+///
+/// Nonlinear forces are split into K, the tangent at the reference, and a remainder g, which kicks the velocity by τg/(2ρ) before and after
+/// the step of the linear part: second order, symmetric and symplectic (Deuflhard 1979; Hairer, Lubich & Wanner, Geometric Numerical
+/// Integration, XIII.1), and stable as long as τ² times the remainder's stiffness over ρ is small, however stiff the linear part is. Prescribed motion of
+/// nonlinear bodies is then of second order, too.
+///
+/// Cost of a step: two applications of the functions (four where loads change), each some τω/2 products with K by Chebyshev series.
+///
+/// Source: the schemes of Coclite, Fanizzi, Lopez, Maddalena & Pellegrino, Appl. Numer. Math. 155 (2020) 119–139, in increments, so that loads that are constant
+/// and rigid motions are exact and nothing need be inverted; the second load node of their order-4 scheme is misprinted.
+pub struct Trigonometric {
+    options: TrigonometricOptions,
+    engine: Engine,
+    linear: bool,
+    /// The displacement about which forces are linearised: none.
+    reference: Vec<f64>,
+    push: Vec<f64>,
+    pull: Vec<f64>,
+    remainder: Vec<f64>,
+    change: Vec<f64>,
+    next: [Vec<f64>; 2],
+}
+
+enum Engine {
+    Fourier(f64),
+    Krylov(Box<dyn MatrixFunction>),
+}
+
+const NAME: &str = "trigonometric";
+
+impl Trigonometric {
+    /// The scheme for a body.
+    ///
+    /// # Errors
+    /// A body without stiffness or with boundaries that have a memory; a negative regularisation; [`FunctionMethod::Fourier`] where the operator is
+    /// not diagonal in plane waves.
+    pub fn new(options: TrigonometricOptions, system: &System) -> Result<Self> {
+        let regularisation = options.regularisation;
+        if !(regularisation.is_finite() && regularisation >= 0.0) {
+            return Err(PericlesError::SchemeParameter {
+                parameter: "the regularisation of the trigonometric scheme",
+                value: regularisation,
+                allowed: "zero (the default, and always right) or a positive number, 1/s²",
+            });
+        }
+        refuse_changes_of_support(
+            NAME,
+            "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
+            system,
+        )?;
+        let entries = system.dimension() * system.points();
+        let array = || vec![0.0; entries];
+        let reference = array();
+        let engine = engine(options, system, &reference)?;
+        let linear = system.operator().as_linear().is_some();
+        Ok(Self {
+            options,
+            engine,
+            linear,
+            reference,
+            push: array(),
+            pull: array(),
+            remainder: if linear { Vec::new() } else { array() },
+            change: array(),
+            next: [array(), array()],
+        })
+    }
+
+    /// Splits the held acceleration in `pull` into that of the linear part, which stays there, and the remainder.
+    fn split(&mut self, system: &System, t: f64, u: &[f64]) {
+        system.vibration_into(&self.reference, u, &mut self.remainder);
+        system.external_acceleration_into(t, &mut self.change);
+        system.hold(&mut self.change);
+        self.remainder
+            .par_chunks_mut(BLOCK)
+            .zip(self.pull.par_chunks_mut(BLOCK))
+            .zip(self.change.par_chunks(BLOCK))
+            .for_each(|((remainder, pull), external)| {
+                for ((remainder, pull), external) in remainder.iter_mut().zip(pull).zip(external) {
+                    let linear = external - *remainder;
+                    *remainder = *pull - linear;
+                    *pull = linear;
+                }
+            });
+    }
+
+    /// r at a time within the step: zero where nothing changes.
+    fn change_into(&mut self, system: &System, t: [f64; 2], u: &[f64]) -> bool {
+        let [push, change] = [&mut self.push, &mut self.change];
+        system.external_acceleration_into(t[1], change);
+        system.external_acceleration_into(t[0], push);
+        subtract(change, push);
+        if !system.motions().is_empty() {
+            push.copy_from_slice(u);
+            system.place_on(t[1], &On::All, push);
+            subtract(push, u);
+            system.vibration_into(&self.reference, push, &mut self.pull);
+            system.hold(change);
+            subtract(change, &self.pull);
+        }
+        change.iter().any(|x| *x != 0.0)
+    }
+
+    fn flow(&mut self, system: &System, tau: f64, interrupt: Interrupt<'_>) -> Result<()> {
+        let [u, v] = &mut self.next;
+        let by_velocity = [
+            Term::new(WaveFunction::Sine, tau, u),
+            Term::new(WaveFunction::Cosine, tau, v),
+        ];
+        apply(
+            &mut self.engine,
+            self.options,
+            system,
+            &self.reference,
+            (&self.push, by_velocity),
+            interrupt,
+        )?;
+        let by_force = [
+            Term::new(WaveFunction::Versine, tau, u),
+            Term::new(WaveFunction::Sine, tau, v),
+        ];
+        apply(
+            &mut self.engine,
+            self.options,
+            system,
+            &self.reference,
+            (&self.pull, by_force),
+            interrupt,
+        )
+    }
+
+    fn loads(
+        &mut self,
+        system: &System,
+        [t, tau]: [f64; 2],
+        u: &[f64],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        if system.loads().is_empty() && system.motions().is_empty() {
+            return Ok(());
+        }
+        let gauss = 0.5 / 3.0f64.sqrt();
+        let nodes: &[(f64, f64)] = match self.options.load_rule {
+            LoadRule::Gauss => &[(0.5 - gauss, 0.5), (0.5 + gauss, 0.5)],
+            LoadRule::Midpoint => &[(0.5, 1.0)],
+        };
+        for (node, weight) in nodes {
+            if self.change_into(system, [t, t + node * tau], u) {
+                let left = (1.0 - node) * tau;
+                let [u, v] = &mut self.next;
+                let terms = [
+                    Term::times(weight * tau, WaveFunction::Sine, left, u),
+                    Term::times(weight * tau, WaveFunction::Cosine, left, v),
+                ];
+                apply(
+                    &mut self.engine,
+                    self.options,
+                    system,
+                    &self.reference,
+                    (&self.change, terms),
+                    interrupt,
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> Result<Engine> {
+    let diagonal = system
+        .operator()
+        .as_linear()
+        .and_then(|linear| linear.as_diagonal());
+    let uniform = match system.density() {
+        PointScalar::Uniform(density) if diagonal.is_some() && system.motions().is_empty() => {
+            Some(*density)
+        }
+        _ => None,
+    };
+    let product = |x: &[f64], out: &mut [f64]| system.vibration_into(reference, x, out);
+    let bound = system
+        .operator()
+        .frequency_bound(&|i| system.density().at(i));
+    if uniform.is_none() && !(bound > 0.0 && bound.is_finite()) {
+        return Err(PericlesError::SchemeNotUsable {
+            scheme: NAME,
+            reason: "its forces have no linear part at rest (on a surface: p above 2), and the scheme is the exact flow of that part; \
+                     use scheme = \"rk4\", \"newmark\" or \"discrete-gradient\"",
+        });
+    }
+    Ok(match (options.functions, uniform) {
+        (FunctionMethod::Fastest | FunctionMethod::Fourier, Some(density)) => {
+            Engine::Fourier(density)
+        }
+        (FunctionMethod::Fourier, None) => {
+            return Err(PericlesError::SchemeNotUsable {
+                scheme: "trigonometric with Fourier functions",
+                reason: "it needs bonds = \"spectral\" and no prescribed motion; functions = \"chebyshev\" fits any body",
+            });
+        }
+        (FunctionMethod::Fastest | FunctionMethod::Chebyshev, _) => {
+            let square = bound * bound + options.regularisation;
+            Engine::Krylov(Box::new(Chebyshev::new(square, reference.len())))
+        }
+        (FunctionMethod::Lanczos, _) => Engine::Krylov(Box::new(Lanczos::new(system.masses()))),
+        (FunctionMethod::Eigenvectors, _) => {
+            let mut shifted = |x: &[f64], out: &mut [f64]| {
+                product(x, out);
+                add(out, options.regularisation, x);
+            };
+            Engine::Krylov(Box::new(Eigenvectors::new(&mut shifted, &system.masses())?))
+        }
+    })
+}
+
+/// Adds functions of the stiffness applied to `x`, whose held entries are zero.
+fn apply(
+    engine: &mut Engine,
+    options: TrigonometricOptions,
+    system: &System,
+    reference: &[f64],
+    (x, mut terms): (&[f64], [Term<'_>; 2]),
+    interrupt: Interrupt<'_>,
+) -> Result<()> {
+    match engine {
+        Engine::Fourier(density) => {
+            let linear = system.operator().as_linear();
+            if let Some(diagonal) = linear.and_then(|linear| linear.as_diagonal()) {
+                let values = terms.each_ref().map(|term| {
+                    let (function, tau, factor) = (term.function, term.tau, term.factor);
+                    move |square: f64| factor * function.value(tau, square)
+                });
+                let mut functions: Vec<_> = terms
+                    .iter_mut()
+                    .zip(&values)
+                    .map(|(term, value)| FunctionOf {
+                        value,
+                        out: &mut *term.out,
+                    })
+                    .collect();
+                diagonal.add_functions(*density, options.regularisation, x, &mut functions);
+            }
+            Ok(())
+        }
+        Engine::Krylov(engine) => {
+            let mut product = |x: &[f64], out: &mut [f64]| {
+                system.vibration_into(reference, x, out);
+                if options.regularisation > 0.0 {
+                    add(out, options.regularisation, x);
+                }
+            };
+            engine.add(&mut product, x, &mut terms, interrupt)
+        }
+    }
+}
+
+/// y += factor x
+fn add(y: &mut [f64], factor: f64, x: &[f64]) {
+    y.par_chunks_mut(BLOCK)
+        .zip(x.par_chunks(BLOCK))
+        .for_each(|(y, x)| y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x));
+}
+
+fn subtract(y: &mut [f64], x: &[f64]) {
+    add(y, -1.0, x);
+}
+
+impl Integrator for Trigonometric {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn order(&self) -> u32 {
+        match self.options.load_rule {
+            LoadRule::Gauss if self.linear => 4,
+            _ => 2,
+        }
+    }
+
+    fn stability_limit(&self) -> Option<f64> {
+        None
+    }
+
+    fn intended_drift(&self) -> Option<&'static str> {
+        (self.options.regularisation > 0.0).then_some(
+            "regularisation adds a stiffness to the ground, and the scheme conserves the energy with it, for any time step; regularisation = 0 conserves the energy of the body",
+        )
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        state.start(system);
+    }
+
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        let State { t, u, v, a, .. } = state;
+        let dt = t_next - *t;
+        self.push.copy_from_slice(v);
+        self.pull.copy_from_slice(a);
+        system.hold(&mut self.push);
+        system.hold(&mut self.pull);
+        if !self.linear {
+            self.split(system, *t, u);
+            add(&mut self.push, 0.5 * dt, &self.remainder);
+        }
+        if self.options.regularisation > 0.0 {
+            add(&mut self.pull, -self.options.regularisation, u);
+            system.hold(&mut self.pull);
+        }
+        self.next[0].copy_from_slice(u);
+        self.next[1].fill(0.0);
+        self.flow(system, dt, interrupt)?;
+        self.loads(system, [*t, dt], u, interrupt)?;
+        let [u_next, v_next] = &mut self.next;
+        system.constrain(t_next, u_next, v_next);
+        system.constrain_velocity(t_next, v_next);
+        if !self.linear {
+            let mut u_next = std::mem::take(&mut self.next[0]);
+            system.free_acceleration(t_next, &u_next, &On::All, &mut self.pull);
+            system.hold(&mut self.pull);
+            self.split(system, t_next, &u_next);
+            std::mem::swap(&mut self.next[0], &mut u_next);
+            add(&mut self.next[1], 0.5 * dt, &self.remainder);
+        }
+        state.complete(system, &mut self.next, t_next, dt);
+        state.step += 1;
+        Ok(())
+    }
+}
+
+/// The scheme carries nothing from step to step but the state.
+impl Saved for Trigonometric {}

@@ -1,0 +1,89 @@
+//! Work arrays lent to whoever computes, so that an application of an operator allocates nothing and needs `&self` only.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::{Mutex, PoisonError};
+
+/// Work arrays of one kind. The lock is held only while one is handed over, so that threads that compute never wait for each other; there are
+/// never more arrays than were in use at the same time.
+pub struct Pool<T> {
+    idle: Mutex<Vec<T>>,
+    make: Box<dyn Fn() -> T + Send + Sync>,
+}
+
+impl<T> Pool<T> {
+    /// A pool with `ready` arrays.
+    pub fn new(ready: usize, make: impl Fn() -> T + Send + Sync + 'static) -> Self {
+        Self {
+            idle: Mutex::new((0..ready).map(|_| make()).collect()),
+            make: Box::new(make),
+        }
+    }
+
+    /// Takes an array, the one used last; it goes back when dropped.
+    pub fn take(&self) -> Lent<'_, T> {
+        let item = self
+            .idle
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop();
+        Lent {
+            item: Some(item.unwrap_or_else(|| (self.make)())),
+            pool: self,
+        }
+    }
+}
+
+/// An array taken from a [`Pool`].
+pub struct Lent<'a, T> {
+    item: Option<T>,
+    pool: &'a Pool<T>,
+}
+
+impl<T> Deref for Lent<'_, T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        self.item.as_ref().expect("present until dropped")
+    }
+}
+
+impl<T> DerefMut for Lent<'_, T> {
+    fn deref_mut(&mut self) -> &mut T {
+        self.item.as_mut().expect("present until dropped")
+    }
+}
+
+impl<T> Drop for Lent<'_, T> {
+    fn drop(&mut self) {
+        if let Some(item) = self.item.take() {
+            self.pool
+                .idle
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .push(item);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn arrays_are_made_only_while_others_are_in_use() {
+        let made = Arc::new(AtomicUsize::new(0));
+        let count = made.clone();
+        let pool = Pool::new(1, move || {
+            count.fetch_add(1, Ordering::Relaxed);
+            vec![0.0; 4]
+        });
+        for _ in 0..3 {
+            let mut first = pool.take();
+            first[0] = 1.0;
+            let second = pool.take();
+            assert_eq!(second[0], 0.0);
+        }
+        assert_eq!(made.load(Ordering::Relaxed), 2);
+    }
+}
