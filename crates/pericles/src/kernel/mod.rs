@@ -7,6 +7,7 @@
 mod classes;
 mod influence;
 mod moments;
+mod quadrature;
 
 pub use classes::{ClassOffset, ClassTable, class_of, multiplicity};
 pub use influence::{ActsOn, Influence, InfluenceFunction};

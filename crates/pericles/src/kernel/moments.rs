@@ -1,7 +1,6 @@
 //! Moments of influence functions.
 
-use gauss_quad::GaussLegendre;
-
+use super::quadrature::integral;
 use super::{Influence, InfluenceFunction};
 
 impl Influence {
@@ -103,10 +102,8 @@ pub(super) fn interpolate(table: &[(f64, f64)], r: f64) -> f64 {
 
 /// Gauss–Legendre with 32 nodes on each piece.
 fn quadrature(breaks: &[f64], integrand: impl Fn(f64) -> f64) -> f64 {
-    const NODES: std::num::NonZeroUsize = std::num::NonZeroUsize::new(32).unwrap();
-    let rule = GaussLegendre::new(NODES);
     breaks
         .windows(2)
-        .map(|piece| rule.integrate(piece[0], piece[1], &integrand))
+        .map(|piece| integral(piece[0], piece[1], &integrand))
         .sum()
 }

@@ -1,12 +1,12 @@
 //! Corrections for the bonds that points near a surface lack.
 
-use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::BondMaterial;
 use super::lattice::Cells;
 use crate::family::BondList;
 use crate::parallel::BLOCK;
+use crate::solve::principal_axes;
 use crate::space::PointCloud;
 
 /// What is kept the same near surfaces as inside the body.
@@ -207,17 +207,22 @@ impl Body<'_> {
         /// Rounding of the sums, far below what bends an axis.
         const NOTHING: f64 = 1e-9;
         let (cloud, bonds) = (self.cloud, self.bonds);
-        let mut moment = Matrix3::<f64>::zeros();
+        let mut moment = [[0.0; 3]; 3];
         for (_, j) in bonds.family(i) {
             let (xi, r) = (bonds.vector(cloud, i, j), bonds.length(cloud, i, j));
             let weight = self.weight(xi, r) * bonds.volume_factor(cloud, i, j);
-            let n = Vector3::from(xi) / r;
-            moment += n * n.transpose() * (weight * cloud.volumes()[j]);
+            let weight = weight * cloud.volumes()[j];
+            for (row, a) in moment.iter_mut().zip(xi) {
+                for (entry, b) in row.iter_mut().zip(xi) {
+                    *entry += weight * (a / r) * (b / r);
+                }
+            }
         }
-        let (trace, across) = (moment.trace(), [moment.m12, moment.m23, moment.m13]);
+        let trace = moment[0][0] + moment[1][1] + moment[2][2];
+        let across = [moment[0][1], moment[1][2], moment[0][2]];
         let bent = across.iter().any(|x| x.abs() > NOTHING * trace);
         if bent && trace > 0.0 && trace.is_finite() {
-            moment.symmetric_eigen().eigenvectors.into()
+            principal_axes(moment)
         } else {
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
         }

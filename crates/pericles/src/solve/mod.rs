@@ -1,4 +1,4 @@
-//! Solvers for the systems of implicit schemes: conjugate gradients, Newton–Krylov, and Cholesky's factor of a band.
+//! Solvers for the systems of implicit schemes: conjugate gradients, Newton–Krylov, Cholesky's factor of a band, and principal axes of small matrices.
 //!
 //! A system is given by its products, a nonlinear one by its residual and the products with its derivative
 //! ([`Nonlinear`]). Both need the symmetric positive definite systems that implicit schemes have: M + β dt² K with a positive mass M and a stiffness K = −f′.
@@ -23,10 +23,12 @@
 //! assert!((x[0] - 25.0).abs() < 1e-10 && solved.iterations <= n);
 //! ```
 
+mod axes;
 mod cholesky;
 mod conjugate_gradient;
 mod newton;
 
+pub use axes::principal_axes;
 pub use cholesky::BandedCholesky;
 pub use conjugate_gradient::conjugate_gradient;
 pub use newton::{Nonlinear, newton_krylov};
