@@ -14,7 +14,7 @@ calls=$(objdump --disassemble --demangle --no-show-raw-insn "$program" | awk '
     /^[0-9a-f]+ <.*>:$/ {
         name = substr($0, index($0, "<") + 1)
         sub(/>:$/, "", name)
-        loop = name ~ /^pericles::.*::(avx2|avx512)$/
+        loop = name ~ /^pericles(_[a-z]+)?::.*::(avx2|avx512)$/
         loops += loop
     }
     loop && /call / && /</ {

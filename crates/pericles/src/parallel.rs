@@ -6,7 +6,60 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::operator::On;
+/// Which points an evaluation is wanted for. A point's result does not depend on this choice, bit for bit.
+#[derive(Debug, Clone)]
+pub enum On<'a> {
+    /// All points.
+    All,
+    /// A range of points.
+    Range(Range<usize>),
+    /// Points by number, ascending.
+    Set(&'a [u32]),
+}
+
+impl On<'_> {
+    /// Number of points, of a body of `points`.
+    pub fn count(&self, points: usize) -> usize {
+        match self {
+            Self::All => points,
+            Self::Range(range) => range.len(),
+            Self::Set(set) => set.len(),
+        }
+    }
+
+    /// Calls `visit(place in the list, point)` for every point of an ascending list that is wanted.
+    pub fn common(&self, list: &[u32], mut visit: impl FnMut(usize, usize)) {
+        match self {
+            Self::All => {
+                for (k, &i) in list.iter().enumerate() {
+                    visit(k, i as usize);
+                }
+            }
+            Self::Range(range) => {
+                let from = list.partition_point(|&i| (i as usize) < range.start);
+                let to = list.partition_point(|&i| (i as usize) < range.end);
+                for (k, &i) in list.iter().enumerate().take(to).skip(from) {
+                    visit(k, i as usize);
+                }
+            }
+            // The shorter of the two is walked through.
+            Self::Set(set) if set.len() < list.len() => {
+                for &i in *set {
+                    if let Ok(k) = list.binary_search(&i) {
+                        visit(k, i as usize);
+                    }
+                }
+            }
+            Self::Set(set) => {
+                for (k, &i) in list.iter().enumerate() {
+                    if set.binary_search(&i).is_ok() {
+                        visit(k, i as usize);
+                    }
+                }
+            }
+        }
+    }
+}
 
 /// Points in a block.
 pub const BLOCK: usize = 512;

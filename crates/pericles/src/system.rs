@@ -10,27 +10,8 @@ use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Accepted, ForceOperator, On};
 use crate::parallel::{BLOCK, for_each_entry, ordered_sum};
+use crate::scalar::PointScalar;
 use crate::space::PointCloud;
-
-/// A number per point, stored once where all are equal.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PointScalar {
-    /// The same everywhere.
-    Uniform(f64),
-    /// One number per point.
-    PerPoint(Vec<f64>),
-}
-
-impl PointScalar {
-    /// The number of point i.
-    #[inline]
-    pub fn at(&self, i: usize) -> f64 {
-        match self {
-            Self::Uniform(value) => *value,
-            Self::PerPoint(values) => values[i],
-        }
-    }
-}
 
 /// ρ u_tt = f(u) + b(t) with prescribed motions and boundaries.
 ///

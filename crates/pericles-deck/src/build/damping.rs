@@ -60,7 +60,14 @@ impl Deck {
         for (k, face, profile) in layers {
             let path = Path::from("boundary").index(k);
             let refuse = |error: PericlesError| self.at_path(&path, error.into());
-            let layer = DampingLayer::new(system, face, profile, steps.dt, frequency);
+            let layer = DampingLayer::new(
+                system.cloud(),
+                system.density(),
+                face,
+                profile,
+                steps.dt,
+                frequency,
+            );
             system.add_boundary(Box::new(layer.map_err(refuse)?));
         }
         Ok(())

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::geodesic::GeodesicPairs;
-use pericles::family::LANES;
+use pericles::lanes::LANES;
 use pericles::operator::prefetch::prefetch;
 
 /// Bonds in compressed rows of eight, each with the factor w_ij A_j of its force: 12 bytes a directed bond, and the padding.

@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
+use pericles::lanes::{F64x8, Real};
 use pericles::operator::CoarseBreak;
 use pericles::operator::On;
-use pericles::operator::lanes::{F64x8, Real};
 use pericles::operator::records::Records;
 use pericles::parallel::BLOCK;
 use pericles::{Archive, Values};

@@ -9,7 +9,7 @@ use super::breaking::{Breaking, Step};
 use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
 use super::law::SurfaceLaw;
 use pericles::Result;
-use pericles::operator::lanes::Row;
+use pericles::lanes::Row;
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;

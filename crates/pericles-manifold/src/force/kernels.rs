@@ -4,8 +4,8 @@
 
 use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
-use pericles::family::LANES;
-use pericles::operator::lanes::{F64x8, Lanes, for_each_instruction_set, vector};
+use pericles::lanes::LANES;
+use pericles::lanes::{F64x8, Lanes, for_each_instruction_set, vector};
 use pericles::operator::records::Records;
 use pericles::operator::rows::Rows;
 

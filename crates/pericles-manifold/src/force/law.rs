@@ -1,6 +1,6 @@
 //! Forces of bonds on a surface: powers of the relative displacement.
 
-use pericles::operator::lanes::{Lanes, dot, vector};
+use pericles::lanes::{Lanes, dot, vector};
 
 /// r ↦ r^(p−2), of the square of r.
 pub trait Exponent: Copy + Send + Sync + 'static {

@@ -1,7 +1,7 @@
 //! The banded loop: Σ_r t_r u_{i+r} with the results of 32 neighbouring points in registers.
 
-use pericles::family::LANES;
-use pericles::operator::lanes::{F64x8, for_each_instruction_set};
+use pericles::lanes::LANES;
+use pericles::lanes::{F64x8, for_each_instruction_set};
 
 /// Groups of eight outputs in registers: four AVX-512 or eight AVX2 registers, enough to hide the latency of an addition.
 const GROUPS: usize = 4;

@@ -17,7 +17,15 @@ fn layer(thickness: f64, reflection: f64) -> DampingProfile {
 fn damped(profile: DampingProfile) -> System {
     let mut system = bar(200, 1.0);
     let face = Face::named("+x").unwrap();
-    let layer = DampingLayer::new(&system, face, profile, DT, Some(8.0)).unwrap();
+    let layer = DampingLayer::new(
+        system.cloud(),
+        system.density(),
+        face,
+        profile,
+        DT,
+        Some(8.0),
+    )
+    .unwrap();
     system.add_boundary(Box::new(layer));
     system
 }
@@ -81,7 +89,14 @@ fn layers_that_cannot_be_are_refused() {
     let system = bar(50, 1.0);
     let refusal = |face: &str, profile, frequency| {
         let face = Face::named(face).unwrap();
-        let refused = DampingLayer::new(&system, face, profile, DT, Some(frequency));
+        let refused = DampingLayer::new(
+            system.cloud(),
+            system.density(),
+            face,
+            profile,
+            DT,
+            Some(frequency),
+        );
         refused
             .err()
             .map(|error| error.to_string())

@@ -10,8 +10,9 @@ use crate::material::{
     StressState,
 };
 use crate::operator::{BondBody, BondForm, DamageMeasure, InstructionSet};
+use crate::scalar::PointScalar;
 use crate::space::{Grid, PointCloud, Shape};
-use crate::system::{PointScalar, System};
+use crate::system::System;
 use crate::time::State;
 
 use super::StoredList;

@@ -23,8 +23,8 @@ mod scalar;
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::family::LANES;
 use crate::interrupt::Interrupt;
+use crate::lanes::LANES;
 use crate::operator::{BondForm, InstructionSet};
 use crate::time::{Integrator, VelocityVerlet};
 

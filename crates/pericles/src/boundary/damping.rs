@@ -4,8 +4,8 @@ use super::{Boundary, Exchange};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::operator::Accepted;
+use crate::scalar::PointScalar;
 use crate::space::{Face, PointCloud};
-use crate::system::System;
 
 /// How the damping of a layer grows inwards from its inner face to the side of the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,13 +67,13 @@ impl DampingLayer {
     /// # Errors
     /// [`PericlesError::BadDampingLayer`]: a side that the body does not have, a layer thinner than a cell or as thick as the body, a step that is unstable with the damping.
     pub fn new(
-        system: &System,
+        cloud: &PointCloud,
+        density: &PointScalar,
         face: Face,
         profile: DampingProfile,
         dt: f64,
         frequency: Option<f64>,
     ) -> Result<Self> {
-        let cloud = system.cloud();
         check(cloud, face, &profile, dt, frequency)
             .map_err(|reason| PericlesError::BadDampingLayer { reason })?;
         let depth = depths(cloud, face, profile.thickness);
@@ -83,7 +83,7 @@ impl DampingLayer {
             damping: points.iter().map(|&i| profile.at(depth[i])).collect(),
             mass: points
                 .iter()
-                .map(|&i| system.density().at(i) * cloud.volumes()[i])
+                .map(|&i| density.at(i) * cloud.volumes()[i])
                 .collect(),
             total: cloud.len(),
             dimension: cloud.dimension(),

@@ -7,10 +7,8 @@ use rayon::prelude::*;
 use super::search::{bond_vector, distance, pairs_where, pairs_within};
 use super::{Crack, EndRule, VolumeCorrection};
 use crate::error::{PericlesError, Result};
+use crate::lanes::LANES;
 use crate::space::{PointCloud, PointSet};
-
-/// Bonds are kept in groups of this many, one per SIMD lane; a byte tells which of them exist.
-pub const LANES: usize = 8;
 
 /// What a crack removed.
 #[derive(Debug, Clone, PartialEq)]

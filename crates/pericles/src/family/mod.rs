@@ -8,7 +8,7 @@ mod crack;
 mod search;
 mod volume;
 
-pub use bonds::{BondList, Cut, LANES};
+pub use bonds::{BondList, Cut};
 pub use crack::{Crack, Cutter, EndRule};
 pub use search::{pairs_where, pairs_within};
 pub use volume::VolumeCorrection;

@@ -1,7 +1,6 @@
 //! The functions and where they act.
 
 use super::ClassTable;
-use super::moments::{cosines, interpolate};
 use crate::error::{PericlesError, Result, positive};
 
 /// The shape g(r) of an influence function; δ is the horizon.
@@ -217,6 +216,23 @@ impl Influence {
             _ => 0.0,
         };
         (exponent + self.shift(), 1.0)
+    }
+}
+
+/// a₀ + Σ a_j cos(j angle)
+pub(super) fn cosines(coefficients: &[f64], angle: f64) -> f64 {
+    let terms = coefficients.iter().enumerate();
+    terms.map(|(j, a)| a * (j as f64 * angle).cos()).sum()
+}
+
+/// The polygon through the points of a table, constant outside.
+pub(super) fn interpolate(table: &[(f64, f64)], r: f64) -> f64 {
+    let after = table.partition_point(|(x, _)| *x <= r);
+    match (after.checked_sub(1).map(|k| table[k]), table.get(after)) {
+        (Some((x0, g0)), Some(&(x1, g1))) => g0 + (g1 - g0) * (r - x0) / (x1 - x0),
+        (Some((_, g)), None) => g,
+        (None, Some(&(_, g))) => g,
+        (None, None) => 0.0,
     }
 }
 

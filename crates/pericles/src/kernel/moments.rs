@@ -1,5 +1,6 @@
 //! Moments of influence functions.
 
+use super::influence::{cosines, interpolate};
 use super::quadrature::integral;
 use super::{Influence, InfluenceFunction};
 
@@ -77,27 +78,10 @@ fn polygon(table: &[(f64, f64)], q: f64, horizon: f64) -> f64 {
     quadrature(&breaks, |r| interpolate(table, r) * r.powf(q))
 }
 
-/// a₀ + Σ a_j cos(j angle)
-pub(super) fn cosines(coefficients: &[f64], angle: f64) -> f64 {
-    let terms = coefficients.iter().enumerate();
-    terms.map(|(j, a)| a * (j as f64 * angle).cos()).sum()
-}
-
 fn equal_pieces(end: f64, pieces: usize) -> Vec<f64> {
     (0..=pieces)
         .map(|k| end * k as f64 / pieces as f64)
         .collect()
-}
-
-/// The polygon through the points of a table, constant outside.
-pub(super) fn interpolate(table: &[(f64, f64)], r: f64) -> f64 {
-    let after = table.partition_point(|(x, _)| *x <= r);
-    match (after.checked_sub(1).map(|k| table[k]), table.get(after)) {
-        (Some((x0, g0)), Some(&(x1, g1))) => g0 + (g1 - g0) * (r - x0) / (x1 - x0),
-        (Some((_, g)), None) => g,
-        (None, Some(&(_, g))) => g,
-        (None, None) => 0.0,
-    }
 }
 
 /// Gauss–Legendre with 32 nodes on each piece.

@@ -3,28 +3,13 @@
 use std::f64::consts::PI;
 
 use crate::error::{PericlesError, Result, positive};
-use crate::family::VolumeCorrection;
 use crate::kernel::{ActsOn, Influence};
 use crate::space::PointCloud;
 
-use super::PairLaw;
-use super::crack_planes::{CrackPlane, FractureCalibration};
+use super::bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration};
+use super::crack_planes::CrackPlane;
 use super::lattice::{Cells, LatticeSums};
-use super::modulus::{ElasticModulus, StressState};
-
-/// From which moments the constant c follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Calibration {
-    /// The integrals, as in the continuum; the grid's own error remains.
-    #[default]
-    Continuum,
-    /// The sums over the lattice's bonds, so that the bulk modulus of the grid is exact. A table per class is always taken so: it has no
-    /// integrals.
-    Lattice,
-    /// The integrals of the constant function, g ≡ 1, whatever g is: for functions made to carry the modulus themselves. What the function acts
-    /// on counts: α ≡ 1 for the stretch, α = r for the relative displacement.
-    Unmodified,
-}
+use super::modulus::StressState;
 
 impl Calibration {
     /// The moment that E is divided by, for a body without a table per class; `lattice` is the lattice's.
@@ -40,50 +25,6 @@ impl Calibration {
             }
         }
     }
-}
-
-/// The modulus with the way it enters.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Modulus {
-    /// The constant given.
-    pub value: ElasticModulus,
-    /// How c follows from it.
-    pub calibration: Calibration,
-}
-
-/// When bonds break.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fracture {
-    /// Never.
-    Unbreakable,
-    /// Beyond this stretch.
-    CriticalStretch(f64),
-    /// Beyond the stretch for which a unit area of crack costs a given energy.
-    Energy {
-        /// The fracture energy G, J/m².
-        energy: f64,
-        /// How the critical stretch follows from it.
-        calibration: FractureCalibration,
-    },
-}
-
-/// A bond-based material as a user describes it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BondMaterial {
-    /// Linear in the displacement, or in the stretch of the deformed bond.
-    pub law: PairLaw,
-    /// Mass density ρ, kg/m³.
-    pub density: f64,
-    /// Elastic modulus.
-    pub modulus: Modulus,
-    /// Horizon δ, m.
-    pub horizon: f64,
-    /// Influence function.
-    pub influence: Influence,
-    /// Partial volumes at the horizon.
-    pub volume_correction: VolumeCorrection,
-    /// Breaking.
-    pub fracture: Fracture,
 }
 
 /// The constants of a material's bonds on a given body.
@@ -258,7 +199,9 @@ impl BondMaterial {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::family::VolumeCorrection;
     use crate::kernel::{ActsOn, InfluenceFunction};
+    use crate::material::{ElasticModulus, Modulus, PairLaw};
     use crate::space::{Grid, Shape};
 
     fn body(dimension: usize, section: f64) -> PointCloud {

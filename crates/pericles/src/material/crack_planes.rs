@@ -2,41 +2,8 @@
 
 use std::fmt::{self, Display};
 
+use super::BondMaterial;
 use super::lattice::Cells;
-use super::{BondMaterial, Fracture};
-
-/// How the critical stretch follows from the fracture energy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FractureCalibration {
-    /// The mean over the crack planes of the lattice costs the energy asked for ([`CrackPlane::mean`]).
-    #[default]
-    Lattice,
-    /// The integrals of the continuum; on a grid a crack costs several per cent more or less.
-    Continuum,
-}
-
-impl FractureCalibration {
-    /// The word for it in decks and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Lattice => "lattice",
-            Self::Continuum => "continuum",
-        }
-    }
-}
-
-impl Fracture {
-    /// The same for a body without a lattice: only the continuum has integrals there.
-    pub(super) fn of_the_continuum(self) -> Self {
-        match self {
-            Self::Energy { energy, .. } => Self::Energy {
-                energy,
-                calibration: FractureCalibration::Continuum,
-            },
-            other => other,
-        }
-    }
-}
 
 /// A plane of the lattice with the energy that a crack along it takes.
 ///

@@ -1,7 +1,8 @@
 //! Pair forces of bonds.
 
+use super::pair_force::PairForce;
 use super::treatment::Treatment;
-use crate::operator::lanes::{Real, dot, vector};
+use crate::lanes::{Real, dot, vector};
 
 /// Which pair force a material uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,29 +26,6 @@ pub enum CubicLaw {
     GreenStrain,
     /// [`LiteralBond`](super::LiteralBond).
     Literal57,
-}
-
-/// The pair force of a bond with reference vector ξ, relative displacement η and unit stiffness k = c α(|ξ|).
-///
-/// Written once for one bond or eight side by side (see [`Real`]); inlined into the operators' loops.
-pub trait PairForce: Copy + Default + Send + Sync + 'static {
-    /// Whether the force is linear in η.
-    const LINEAR: bool;
-
-    /// The force on the point the bond starts from: s n.
-    fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D];
-
-    /// The energy ½ s² |ξ|, whose gradient in η is the force.
-    fn energy<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T;
-
-    /// The derivative of the force in the direction d.
-    fn tangent<T: Real, const D: usize>(xi: [T; D], eta: [T; D], d: [T; D]) -> [T; D];
-
-    /// A pair (m, r²) such that the bond is stretched beyond s if m > threshold(s) r². No root, and the same bits seen from either end.
-    fn stretch_measure<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T);
-
-    /// See [`PairForce::stretch_measure`].
-    fn threshold(stretch: f64) -> f64;
 }
 
 /// s = (|ξ+η| − |ξ|)/|ξ|, n = (ξ+η)/|ξ+η|: the prototype microelastic brittle material (Silling & Askari 2005).

@@ -15,22 +15,26 @@
 //!
 //! Units: E, K in Pa; c in N/m⁶ for a dimensionless α; G₀ in J/m².
 
+mod bond_material;
 mod composite;
 mod constants;
 mod crack_planes;
 mod lattice;
 mod law;
 mod modulus;
+mod pair_force;
 mod polynomial;
 mod surface_correction;
 mod treatment;
 mod waves;
 
+pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration, Modulus};
 pub use composite::{InterfaceRule, PairClasses};
-pub use constants::{BondConstants, BondMaterial, Calibration, Fracture, Modulus};
-pub use crack_planes::{CrackPlane, FractureCalibration};
-pub use law::{BondStretch, CubicLaw, LinearBond, PairForce, PairLaw};
+pub use constants::BondConstants;
+pub use crack_planes::CrackPlane;
+pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};
+pub use pair_force::PairForce;
 pub use polynomial::{GreenBond, LiteralBond};
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

@@ -1,7 +1,7 @@
 //! Pair forces that are polynomials of the relative displacement.
 
-use super::PairForce;
-use crate::operator::lanes::{Real, dot, vector};
+use super::pair_force::PairForce;
+use crate::lanes::{Real, dot, vector};
 
 /// (|ζ|² − |ξ|²)/(2|ξ|³) ζ with ζ = ξ+η: proportional to the bond's Green strain and indifferent to rigid motions; its linearisation is
 /// [`LinearBond`](super::LinearBond)'s. In one dimension a cubic, (2ξ²η + 3ξη² + η³)/(2|ξ|³).

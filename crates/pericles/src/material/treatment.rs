@@ -2,9 +2,9 @@
 
 use std::marker::PhantomData;
 
-use super::PairForce;
+use super::pair_force::PairForce;
 use super::polynomial::{GreenBond, LiteralBond};
-use crate::operator::lanes::{Real, dot, vector};
+use crate::lanes::{Real, dot, vector};
 
 /// How a force f = f₁ + f₂ + f₃, the terms of first to third order in the relative displacement η, is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

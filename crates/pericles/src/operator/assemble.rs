@@ -2,40 +2,15 @@
 
 use std::sync::Arc;
 
-use super::{BondForce, Breaking, DamageMeasure, FastLaw, ForceOperator, GridForce};
+use super::{BondForce, BondForm, Breaking, DamageMeasure, FastLaw, ForceOperator, GridForce};
 use crate::error::{PericlesError, Result};
-use crate::family::{BondList, Crack, Cut, EndRule, LANES};
+use crate::family::{BondList, Crack, Cut, EndRule};
+use crate::lanes::LANES;
 use crate::material::{
     BondConstants, BondMaterial, BondStretch, CubicLaw, GreenBond, LinearBond, LiteralBond,
     PairLaw, SecondOrder, Trapezoidal, Treated, Treatment,
 };
 use crate::space::PointCloud;
-
-/// How bonds are kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum BondForm {
-    /// The grid where the points fill a lattice well enough, else the list.
-    #[default]
-    Fastest,
-    /// One stencil for all nodes of a lattice ([`GridForce`]).
-    Grid,
-    /// The same with forces and breaking computed in floats ([`GridForce::in_floats`]).
-    FloatGrid,
-    /// A list of every point's bonds ([`BondForce`]).
-    List,
-}
-
-impl BondForm {
-    /// As written in decks.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fastest => "fastest",
-            Self::Grid => "grid",
-            Self::FloatGrid => "grid-f32",
-            Self::List => "list",
-        }
-    }
-}
 
 /// A body of one bond-based material: all that its operator is made of.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! Pair laws in the operators' loops: the same forces as [`PairForce`], without roots and divisions where that is possible.
 
-use super::lanes::Vector;
+use crate::lanes::Vector;
 use crate::material::{
     BondStretch, CubicBond, CubicFactor, GreenBond, LinearBond, LiteralBond, PairForce, Treated,
 };

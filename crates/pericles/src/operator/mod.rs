@@ -15,15 +15,9 @@ mod assemble;
 mod composite;
 mod damage;
 mod fast_law;
-mod floats;
-#[cfg(target_arch = "x86_64")]
-mod floats_x86;
+mod form;
 mod graded;
 mod grid;
-pub mod lanes;
-#[cfg(target_arch = "x86_64")]
-#[doc(hidden)]
-pub mod lanes_x86;
 mod linearisation;
 mod list;
 pub mod pool;
@@ -34,77 +28,23 @@ mod springs;
 mod view;
 mod zoned;
 
-use std::ops::Range;
-
-pub use assemble::{AssembledBonds, BondBody, BondForm};
+pub use assemble::{AssembledBonds, BondBody};
 pub use composite::CompositeBody;
 pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
 pub use fast_law::{FastLaw, FixedBond};
+pub use form::BondForm;
 pub use graded::{EndLaw, GradedBody};
 pub use grid::GridForce;
-pub use lanes::InstructionSet;
 pub use linearisation::Linearisation;
 pub use list::BondForce;
 pub use springs::{LatticeSpring, LatticeSprings};
 pub use view::{BondAt, BondView};
 pub use zoned::ZonedForce;
 
+pub use crate::lanes::InstructionSet;
+pub use crate::parallel::On;
+
 use crate::archive::Saved;
-
-/// Which points an evaluation is wanted for. A point's result does not depend on this choice, bit for bit.
-#[derive(Debug, Clone)]
-pub enum On<'a> {
-    /// All points.
-    All,
-    /// A range of points.
-    Range(Range<usize>),
-    /// Points by number, ascending.
-    Set(&'a [u32]),
-}
-
-impl On<'_> {
-    /// Number of points, of a body of `points`.
-    pub fn count(&self, points: usize) -> usize {
-        match self {
-            Self::All => points,
-            Self::Range(range) => range.len(),
-            Self::Set(set) => set.len(),
-        }
-    }
-
-    /// Calls `visit(place in the list, point)` for every point of an ascending list that is wanted.
-    pub fn common(&self, list: &[u32], mut visit: impl FnMut(usize, usize)) {
-        match self {
-            Self::All => {
-                for (k, &i) in list.iter().enumerate() {
-                    visit(k, i as usize);
-                }
-            }
-            Self::Range(range) => {
-                let from = list.partition_point(|&i| (i as usize) < range.start);
-                let to = list.partition_point(|&i| (i as usize) < range.end);
-                for (k, &i) in list.iter().enumerate().take(to).skip(from) {
-                    visit(k, i as usize);
-                }
-            }
-            // The shorter of the two is walked through.
-            Self::Set(set) if set.len() < list.len() => {
-                for &i in *set {
-                    if let Ok(k) = list.binary_search(&i) {
-                        visit(k, i as usize);
-                    }
-                }
-            }
-            Self::Set(set) => {
-                for (k, &i) in list.iter().enumerate() {
-                    if set.binary_search(&i).is_ok() {
-                        visit(k, i as usize);
-                    }
-                }
-            }
-        }
-    }
-}
 
 /// A state at the end of an accepted step.
 #[derive(Debug, Clone, Copy)]

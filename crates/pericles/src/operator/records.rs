@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::lanes::Row;
+use crate::lanes::Row;
 use crate::parallel::BLOCK;
 
 /// One row for each point; what a row holds behind the components is its owner's.

@@ -1,7 +1,7 @@
 //! Blocks of chunks and those of their points that are wanted.
 
 use super::layout::Chunk;
-use crate::family::LANES;
+use crate::lanes::LANES;
 
 /// A block of chunks.
 pub(super) struct ChunkBlock<'a> {

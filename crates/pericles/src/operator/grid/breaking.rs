@@ -1,13 +1,13 @@
 //! Breaking of a chunk's bonds, decided where the force sweep has seen a large strain.
 
-use super::kernels::Grid;
+use super::arrays::Grid;
 use super::layout::Chunk;
 use super::numbers::GridNumber;
 use super::stencil::Offset;
-use crate::family::LANES;
+use crate::lanes::LANES;
+use crate::lanes::Lanes;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::lanes::Lanes;
 
 /// Breaking as the loops see it.
 pub(super) struct GridBreaking<'a, const D: usize> {

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use super::layout::GridLayout;
 use super::stencil::Stencil;
 use crate::error::{PericlesError, Result};
-use crate::family::{Crack, Cut, EndRule, LANES};
+use crate::family::{Crack, Cut, EndRule};
+use crate::lanes::LANES;
 use crate::operator::damage::BlockDamage;
 use crate::space::PointCloud;
 

@@ -2,18 +2,19 @@
 
 use std::sync::{Arc, Mutex};
 
+use super::arrays::Grid;
 use super::block::ChunkBlock;
 use super::breaking::GridBreaking;
 use super::build::{bits_of_set, cut, geometric_blocks, precut_bonds};
-use super::kernels::{Grid, accept_chunks, accept_chunks_in_floats};
-use super::layout::{Chunk, GridLayout};
+use super::kernels::{accept_chunks, accept_chunks_in_floats};
+use super::layout::{Chunk, GridLayout, Partners};
 use super::numbers::GridNumber;
 use super::padded::Padded;
 use super::stencil::{BondRule, Stencil};
 use super::working::Working;
-use super::zoned::Partners;
 use crate::error::{PericlesError, Result};
-use crate::family::{Crack, Cut, EndRule, LANES};
+use crate::family::{Crack, Cut, EndRule};
+use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;

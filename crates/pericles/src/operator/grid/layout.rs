@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::family::LANES;
+use crate::lanes::LANES;
 use crate::space::Lattice;
 
 /// Eight nodes in a row, at least one of which is a point.
@@ -441,3 +441,6 @@ impl GridLayout {
             + self.columns.as_deref().map_or(0, size_of_val)
     }
 }
+
+/// Which points exert a force, one byte per chunk.
+pub(super) struct Partners(pub(super) Vec<u8>);

@@ -1,5 +1,6 @@
 //! The force of a lattice body by one stencil for all nodes.
 
+mod arrays;
 mod block;
 mod breaking;
 mod build;

@@ -3,11 +3,11 @@
 //! Floats are displacements in spacings, relative to one point's: bond vectors are then small integers, which floats hold exactly, and
 //! neither a far flight nor a tiny body costs digits or range.
 
-use crate::family::LANES;
-use crate::operator::floats::{F32x16, FloatLanes};
+use crate::lanes::LANES;
 #[cfg(target_arch = "x86_64")]
-use crate::operator::floats_x86::{Avx2x16, Avx512x16};
-use crate::operator::lanes::{Lanes, Vector};
+use crate::lanes::floats_x86::{Avx2x16, Avx512x16};
+use crate::lanes::{F32x16, FloatLanes};
+use crate::lanes::{Lanes, Vector};
 
 /// What memory holds.
 pub(super) trait GridNumber: Copy + Default + Send + Sync + Into<f64> {
@@ -212,8 +212,8 @@ macro_rules! two_chunks {
         }
     };
 }
-two_chunks!(F32x16, crate::operator::lanes::F64x8);
+two_chunks!(F32x16, crate::lanes::F64x8);
 #[cfg(target_arch = "x86_64")]
-two_chunks!(Avx2x16, crate::operator::lanes_x86::Avx2x8);
+two_chunks!(Avx2x16, crate::lanes::doubles_x86::Avx2x8);
 #[cfg(target_arch = "x86_64")]
-two_chunks!(Avx512x16, crate::operator::lanes_x86::Avx512x8);
+two_chunks!(Avx512x16, crate::lanes::doubles_x86::Avx512x8);

@@ -7,7 +7,7 @@ use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangen
 use super::padded::Frame;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
-use crate::family::LANES;
+use crate::lanes::LANES;
 use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{

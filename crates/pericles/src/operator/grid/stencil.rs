@@ -1,8 +1,8 @@
 //! The family of a lattice's node, once for all nodes.
 
 use super::numbers::{ChunkLanes, GridNumber};
+use crate::lanes::vector;
 use crate::operator::fast_law::FixedBond;
-use crate::operator::lanes::vector;
 use crate::space::Lattice;
 
 /// One bond of the stencil, with everything the loops need of it.

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError, TryLockError};
 
-use super::kernels::Grid;
+use super::arrays::Grid;
 use super::layout::GridLayout;
 use super::numbers::GridNumber;
 use super::padded::{Frame, Padded};

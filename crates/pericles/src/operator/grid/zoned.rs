@@ -1,16 +1,14 @@
 //! [`ZonedForce`] for lattice bodies.
 
+use super::arrays::Grid;
 use super::block::{ChunkBlock, scatter};
 use super::force::GridForce;
-use super::kernels::{Grid, force_chunks};
-use super::layout::Chunk;
-use crate::family::LANES;
+use super::kernels::force_chunks;
+use super::layout::{Chunk, Partners};
+use crate::lanes::LANES;
+use crate::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
-
-/// Which points exert a force, one byte per chunk.
-pub(super) struct Partners(Vec<u8>);
 
 impl<L: FastLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {

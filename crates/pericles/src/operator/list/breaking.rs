@@ -1,7 +1,7 @@
 //! Breaking of a point's bonds, decided where the force sweep has seen a large strain.
 
-use super::kernels::Bonds;
-use crate::family::LANES;
+use super::arrays::Bonds;
+use crate::lanes::LANES;
 use crate::material::{PairClasses, PairForce};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;

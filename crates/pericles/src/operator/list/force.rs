@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
+use super::arrays::Bonds;
 use super::breaking::{BreakRule, PairThresholds};
-use super::kernels::{Bonds, accept_rows};
+use super::kernels::accept_rows;
 use super::packed::{Packed, Reach};
 use super::stiffness::{Formula, Stiffness};
-use crate::family::{BondList, LANES};
+use crate::family::BondList;
+use crate::lanes::LANES;
+use crate::lanes::Row;
 use crate::material::{BondConstants, BondMaterial, PairClasses};
 use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::lanes::Row;
 use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;

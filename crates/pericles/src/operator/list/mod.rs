@@ -1,5 +1,6 @@
 //! The force of any body by a list of every point's bonds.
 
+mod arrays;
 mod breaking;
 mod force;
 mod kernels;

@@ -6,7 +6,7 @@ use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
-use crate::family::LANES;
+use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
     Accepted, BondAt, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSprings,

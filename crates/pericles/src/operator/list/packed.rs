@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::family::BondList;
+use crate::lanes::Row;
 use crate::operator::On;
-use crate::operator::lanes::Row;
 use crate::operator::records::{Records, pack, pack_part};
 use crate::operator::rows::Rows;
 use crate::parallel::BLOCK;

@@ -4,9 +4,10 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use crate::family::{BondList, LANES, VolumeCorrection};
+use crate::family::{BondList, VolumeCorrection};
 use crate::kernel::{ActsOn, Influence, InfluenceFunction};
-use crate::operator::lanes::{F64x8, Lanes, Real};
+use crate::lanes::LANES;
+use crate::lanes::{F64x8, Lanes, Real};
 use crate::space::PointCloud;
 
 /// c α κ V of the neighbour, for every entry of a list.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::force::BondForce;
 use super::kernels::force_rows;
-use crate::family::LANES;
+use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
 use crate::parallel::{BLOCK, components};

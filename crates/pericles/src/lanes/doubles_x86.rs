@@ -9,8 +9,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::lanes::{Lanes, Real, Row, Vector};
-use crate::family::LANES;
+use super::numbers::{LANES, Lanes, Real, Row, Vector};
 
 /// Eight numbers in one 512-bit register.
 #[derive(Clone, Copy)]

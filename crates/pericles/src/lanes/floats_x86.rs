@@ -1,11 +1,10 @@
-//! Sixteen floats in registers of x86-64's vector extensions. What is said in [`super::lanes_x86`] holds here too.
+//! Sixteen floats in registers of x86-64's vector extensions. What is said in [`super::doubles_x86`] holds here too.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::floats::{FLOATS, FloatLanes};
-use super::lanes::{Real, Vector};
-use crate::family::LANES;
+use super::numbers::{LANES, Real, Vector};
 
 /// Sixteen floats in one 512-bit register.
 #[derive(Clone, Copy)]

@@ -4,8 +4,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::lanes::{Real, Vector};
-use crate::family::LANES;
+use super::numbers::{LANES, Real, Vector};
 
 /// Numbers of two chunks.
 pub const FLOATS: usize = 2 * LANES;

@@ -1,0 +1,136 @@
+//! A bond list as the loops see it.
+
+use super::stiffness::Stiffness;
+use crate::family::BondList;
+use crate::lanes::LANES;
+use crate::lanes::{Lanes, dot, vector};
+use crate::operator::fast_law::FixedBond;
+use crate::operator::records::Records;
+
+/// A bond list as the loops see it.
+pub(super) struct Bonds<'a> {
+    pub(super) list: &'a BondList,
+    /// Reference coordinates in units of `unit`; behind them the volume of the point, m³.
+    reference: &'a Records,
+    /// Length of one coordinate unit, m.
+    unit: f64,
+    stiffness: &'a Stiffness,
+    /// Marks of the points whose bonds count; all of them if none.
+    pub(super) partners: Option<&'a [bool]>,
+}
+
+/// What all bonds of a point share.
+pub(super) struct Here<T, const D: usize> {
+    reference: [T; D],
+    u: [T; D],
+    cell: T,
+}
+
+impl<'a> Bonds<'a> {
+    /// # Panics
+    /// If there are not as many rows as points.
+    pub fn new(
+        list: &'a BondList,
+        reference: &'a Records,
+        unit: f64,
+        stiffness: &'a Stiffness,
+    ) -> Self {
+        assert_eq!(reference.len(), list.len(), "a row for every point");
+        Self {
+            list,
+            reference,
+            unit,
+            stiffness,
+            partners: None,
+        }
+    }
+
+    /// The same bonds, as far as they lead to marked points.
+    pub fn leading_to(self, partners: Option<&'a [bool]>) -> Self {
+        Self { partners, ..self }
+    }
+
+    pub fn list(&self) -> &BondList {
+        self.list
+    }
+
+    /// ξ of one bond, m.
+    pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
+        std::array::from_fn(|c| (self.reference[j][c] - self.reference[i][c]) * self.unit)
+    }
+
+    #[inline(always)]
+    pub(super) fn here<T: Lanes, const D: usize>(&self, i: usize, u: &Records) -> Here<T, D> {
+        Here {
+            reference: vector(|c| T::splat(self.reference[i][c])),
+            u: vector(|c| T::splat(u[i][c])),
+            cell: T::splat(u[i][3]),
+        }
+    }
+
+    /// The rows of the neighbours of a group.
+    #[inline(always)]
+    pub(super) fn there<T: Lanes>(&self, group: usize, field: &Records) -> [T; 4] {
+        assert!(field.len() == self.list.len(), "a row for every point");
+        let indices = self.list.group(group);
+        // SAFETY: neighbours are below the number of points, which `BondList` guarantees, and the field has as many rows.
+        unsafe { T::gather(field, indices) }
+    }
+
+    /// The eight bonds of a group, and their η.
+    #[inline(always)]
+    pub(super) fn group<T: Lanes, const D: usize>(
+        &self,
+        group: usize,
+        here: &Here<T, D>,
+        u: &Records,
+    ) -> (FixedBond<T, D>, [T; D]) {
+        let reference = self.there::<T>(group, self.reference);
+        let there = self.there::<T>(group, u);
+        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * T::splat(self.unit));
+        let eta = vector(|c| there[c] - here.u[c]);
+        let mut square = xi[0] * xi[0];
+        for c in 1..D {
+            square = xi[c].mul_add(xi[c], square);
+        }
+        let inverse = square.inverse_root();
+        let cells = [here.cell, there[3]];
+        let stiffness = self
+            .stiffness
+            .of_group(group, square * inverse, reference[3], cells);
+        let bond = FixedBond {
+            xi,
+            inverse_square: inverse * inverse,
+            stiffness,
+            factor: stiffness * inverse,
+        };
+        (bond, eta)
+    }
+
+    /// Stiffness c α κ V of an entry that leads from i to j, whose cells have the sizes given, m.
+    pub fn stiffness_of<const D: usize>(
+        &self,
+        entry: usize,
+        [i, j]: [usize; 2],
+        cells: [f64; 2],
+    ) -> f64 {
+        let xi: [f64; D] = self.vector(i, j);
+        let volume = self.reference[j][3];
+        self.stiffness
+            .of_entry(entry, dot(xi, xi).sqrt(), volume, cells)
+    }
+
+    /// Bits of the bonds of a group that count.
+    #[inline(always)]
+    pub fn wanted(&self, group: usize) -> u8 {
+        let Some(marks) = self.partners else {
+            return 0xFF;
+        };
+        let neighbours = self.list.group(group);
+        let mut bits = 0;
+        for k in 0..LANES {
+            bits |= u8::from(marks[neighbours[k]]) << k;
+        }
+        bits
+    }
+}
