@@ -28,7 +28,7 @@
 //! (bold: chosen). Lattice bodies take some 15 ns per point in 2D and 50 to 100 ns in 3D, about what the bond list takes for 3 to 20 neighbours.
 //!
 //! **Accuracy.** All routes agree with the sums to some 1e-15 of Σ|K| max|u|. Displacements are taken relative to a point's, so that rigid translations
-//! give exactly zero. Results have the same bits for any number of threads and any [`On`](super::On); transforms use the machine's best instructions,
+//! give exactly zero. Results have the same bits for any number of threads and any [`On`](pericles::parallel::On); transforms use the machine's best instructions,
 //! so the last bits may differ between machines. A mirror-symmetric body stays symmetric to round-off only.
 //!
 //! **Memory and threads.** Work arrays are lent by a pool ([`Toeplitz`] and [`ConvolutionForce`] work by `&self`, from any number of threads at once); once it has

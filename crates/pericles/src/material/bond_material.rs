@@ -66,7 +66,7 @@ pub enum Calibration {
 /// How the critical stretch follows from the fracture energy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FractureCalibration {
-    /// The mean over the crack planes of the lattice costs the energy asked for ([`CrackPlane::mean`]).
+    /// The mean over the crack planes of the lattice costs the energy asked for ([`CrackPlane::mean`](super::CrackPlane::mean)).
     #[default]
     Lattice,
     /// The integrals of the continuum; on a grid a crack costs several per cent more or less.

@@ -6,7 +6,7 @@
 //! | form | bodies | bonds | ns per directed bond, 3D |
 //! |---|---|---|---|
 //! | [`BondForce`] | any | listed, 3 bytes each | 3 |
-//! | [`surface::SurfaceForce`] | surfaces | listed, 12 bytes each | 1.1 (p = 2), 1.2 (p = 3): see `benches/surface.rs` |
+//! | `SurfaceForce` (`pericles-manifold`) | surfaces | listed, 12 bytes each | 1.1 (p = 2), 1.2 (p = 3) |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline); in floats half of that |
 //!
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)

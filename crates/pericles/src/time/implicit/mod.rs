@@ -35,7 +35,7 @@ pub enum ImplicitRule {
 /// The unknown is w, half the increment of the displacement: (ρ + τ²/4 K) w = ρ [τ/2 v + τ²/4 (a + Δb/ρ)], symmetric and positive definite. Linear systems are solved by
 /// Cholesky's factor, kept from step to step, or by conjugate gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent, to a residual of 1e-14 of
 /// the equation's terms (velocity, acceleration, the step's loads and prescribed motions), or what rounding allows: 1e-12 of these terms, or a few units in the last place of the
-/// displacement times the highest stiffness. Absorbing ends ([`MidpointEnd`](crate::boundary::absorbing::MidpointEnd)) add a corner to the matrix and what they remember to the right-hand side. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
+/// displacement times the highest stiffness. Boundaries with a memory ([`WithinStep`](crate::boundary::WithinStep)) add a corner to the matrix and what they remember to the right-hand side. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
 pub struct Implicit {
     rule: ImplicitRule,
     /// Of linear bodies.
