@@ -8,6 +8,9 @@ use crate::syntax::Import;
 
 type Path = Vec<String>;
 
+/// Re-exports of re-exports that are followed at most.
+const LONGEST_CHAIN: usize = 16;
+
 /// Sibling modules that use one another, directly or by way of others.
 pub struct Cycle {
     /// The crate and the parent module, such as `pericles::operator`.
@@ -144,26 +147,20 @@ impl<'a> Modules<'a> {
 
     /// The modules that an import in `source` uses.
     fn used(&self, source: &Source, import: &Import) -> Vec<Path> {
-        let (first, is_single) = (&import.path[0], import.path.len() == 1);
+        let follow = |path: &[String]| self.follow(&source.module, path, LONGEST_CHAIN);
+        let first = Some(&import.path[0]);
         let declared = source
             .imports
             .iter()
-            .find(|other| other.name.as_ref() == Some(first));
-        if import.name.is_none() {
-            let of_module = declared
-                .and_then(|other| self.follow(&source.module, &other.path, 16))
-                .and_then(|walk| walk.module);
-            // A path from an item that a `use` declaration names adds nothing to the declaration; a single name may come by a glob.
-            let adds_nothing = match declared {
-                Some(_) => is_single || of_module.is_none(),
-                None => is_single && !source.imports.iter().any(Import::is_glob),
-            };
-            if adds_nothing {
-                return Vec::new();
-            }
+            .find(|other| other.name.as_ref() == first);
+        // A path that begins with an item of a `use` declaration adds nothing to the declaration; one that begins with a module does.
+        if let (None, Some(declared)) = (&import.name, declared)
+            && (import.path.len() == 1
+                || follow(&declared.path).is_none_or(|walk| walk.module.is_none()))
+        {
+            return Vec::new();
         }
-        self.follow(&source.module, &import.path, 16)
-            .map_or_else(Vec::new, |walk| walk.through)
+        follow(&import.path).map_or_else(Vec::new, |walk| walk.through)
     }
 }
 

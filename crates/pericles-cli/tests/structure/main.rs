@@ -10,6 +10,7 @@ mod syntax;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use graph::Cycle;
 use source::Source;
@@ -103,6 +104,15 @@ fn crates() -> Vec<String> {
     names
 }
 
+/// The crates with their source files.
+static SOURCES: LazyLock<Vec<(String, Vec<Source>)>> = LazyLock::new(|| {
+    let read = |name: String| {
+        let sources = Source::of_crate(&crates_folder().join(&name).join("src"));
+        (name, sources)
+    };
+    crates().into_iter().map(read).collect()
+});
+
 fn fail_on(problems: &[String]) {
     assert!(problems.is_empty(), "\n{}\n", problems.join("\n"));
 }
@@ -163,11 +173,8 @@ fn modules_have_no_cycles_among_siblings() {
         })
         .collect();
     let mut problems = Vec::new();
-    for name in crates() {
-        for cycle in graph::cycles(
-            &name,
-            &Source::of_crate(&crates_folder().join(&name).join("src")),
-        ) {
+    for (name, sources) in SOURCES.iter() {
+        for cycle in graph::cycles(name, sources) {
             let Cycle {
                 parent, modules, ..
             } = &cycle;
@@ -190,8 +197,8 @@ fn modules_have_no_cycles_among_siblings() {
 fn source_files_are_short() {
     let mut known: BTreeMap<&str, usize> = known::LONG_FILES.iter().copied().collect();
     let mut problems = Vec::new();
-    for name in crates() {
-        for source in Source::of_crate(&crates_folder().join(&name).join("src")) {
+    for (name, sources) in SOURCES.iter() {
+        for source in sources {
             let file = format!("crates/{name}/src/{}", source.file);
             match known.remove(file.as_str()) {
                 Some(bound) if source.lines > bound => {

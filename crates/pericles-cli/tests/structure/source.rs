@@ -32,11 +32,16 @@ impl Source {
             module.pop();
         }
         let tokens = syntax::tokens(text);
+        let mut imports = syntax::imports(&tokens);
+        // A single name is known by a `use` declaration, which counts by itself, or by a glob.
+        if !imports.iter().any(Import::is_glob) {
+            imports.retain(|import| import.name.is_some() || import.path.len() > 1);
+        }
         Self {
             file: file.to_owned(),
             module,
             declares: syntax::declared_modules(&tokens),
-            imports: syntax::imports(&tokens),
+            imports,
             lines: text.lines().count(),
         }
     }

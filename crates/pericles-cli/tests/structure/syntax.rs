@@ -33,7 +33,7 @@ impl Import {
     }
 }
 
-/// The tokens of `text` without comments, attributes, visibilities, string and character literals, lifetimes, and without the items
+/// The tokens of `text` without comments, visibilities, string and character literals, lifetimes, and without the items
 /// behind `#[cfg(test)]`.
 pub fn tokens(text: &str) -> Vec<Token> {
     without_tests(&raw_tokens(text))
@@ -164,19 +164,9 @@ fn without_tests(tokens: &[Token]) -> Vec<Token> {
     while i < tokens.len() {
         let next = |k: usize| tokens.get(i + k).map_or("", |token| token.text.as_str());
         match (next(0), next(1), next(2)) {
-            ("#", "[", _) => {
-                let end = behind_bracket(tokens, i + 1);
-                let words: Vec<&str> = tokens[i..end]
-                    .iter()
-                    .map(|token| token.text.as_str())
-                    .collect();
-                i = if words == ["#", "[", "cfg", "(", "test", ")", "]"] {
-                    behind_item(tokens, end)
-                } else {
-                    end
-                };
+            ("#", "[", "cfg") if is_cfg_test(&tokens[i..]) => {
+                i = behind_item(tokens, behind_bracket(tokens, i + 1));
             }
-            ("#", "!", "[") => i = behind_bracket(tokens, i + 2),
             ("pub", "(", "crate" | "super" | "self" | "in") => i = behind_bracket(tokens, i + 1),
             _ => {
                 kept.push(tokens[i].clone());
@@ -185,6 +175,11 @@ fn without_tests(tokens: &[Token]) -> Vec<Token> {
         }
     }
     kept
+}
+
+fn is_cfg_test(tokens: &[Token]) -> bool {
+    let words = ["#", "[", "cfg", "(", "test", ")", "]"];
+    words.len() <= tokens.len() && words.iter().zip(tokens).all(|(word, token)| token.is(word))
 }
 
 /// The index behind the item, field or statement that starts at `i`.
@@ -317,18 +312,18 @@ mod tests {
     }
 
     #[test]
-    fn comments_strings_and_attributes_are_ignored() {
+    fn comments_strings_and_visibilities_are_ignored() {
         let text = r##"
             // use crate::a::A;
             /* use crate::b::B; /* crate::c::C */ crate::d::D */
-            #[error("crate::e::E")]
+            #[error("crate::e::E", crate::l::L(0))]
             pub(in crate::f) const TEXT: &str = "crate::g::G \" crate::h::H";
             const RAW: &str = r#"crate::i::I" crate::j::J"#;
             const MARK: char = '"'; // "
             fn of<'a>(x: &'a str) -> char { '\'' }
             const LAST: u8 = crate::k::K;
         "##;
-        assert_eq!(paths(text), ["crate::k::K"]);
+        assert_eq!(paths(text), ["crate::l::L", "crate::k::K"]);
     }
 
     #[test]
