@@ -4,7 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
-use crate::body::{self, Body, SurfaceRead};
+use crate::body::{self, Body, SurfaceRead, SurfaceShape};
 use crate::boundary::{self, BoundaryCondition};
 use crate::conditions::{self, Initial, Load, Prescribe, Probe};
 use crate::crack::{self, PreCrack};
@@ -18,7 +18,7 @@ use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
 use crate::set::{self, NamedSet, SetNames};
 use crate::source::Sources;
-use crate::surface::{self, SurfaceDeck, SurfaceShape};
+use crate::surface::{self, SurfaceDeck};
 use crate::time::{self, Time};
 
 /// Everything a deck says, in SI units.
@@ -58,29 +58,6 @@ pub struct Deck {
 }
 
 impl Deck {
-    /// Reads a deck from a file and applies overrides `key=value` to it, in their order.
-    ///
-    /// # Errors
-    /// A file that cannot be read; everything that is wrong in it.
-    pub fn read(path: impl AsRef<FilePath>, overrides: &[String]) -> Result<Self, DeckError> {
-        let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|reason| DeckError::Unreadable {
-            path: path.into(),
-            reason,
-        })?;
-        Self::parse(&text, &path.display().to_string(), overrides)
-    }
-
-    /// Reads a deck from a text; `file_name` is what messages call it.
-    ///
-    /// # Errors
-    /// Everything that is wrong in it.
-    pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
-        let (root, sources) = document(text, file_name, overrides)?;
-        let (deck, _) = Self::read_with(Ledger::new(sources), &root)?;
-        Ok(deck)
-    }
-
     /// Adds what the reader asks of a deck to a survey.
     pub(crate) fn survey(
         text: &str,
@@ -92,15 +69,14 @@ impl Deck {
         Ok(survey)
     }
 
-    fn read_with(ledger: Ledger, root: &Node) -> Result<(Self, Survey), DeckError> {
+    /// Reads all tables of a document.
+    pub(crate) fn read_with(ledger: Ledger, root: &Node) -> Result<(Self, Survey), DeckError> {
         let deck = ledger.root(root).and_then(Self::from_tables);
         let closed = ledger.close();
         match deck {
             Some(deck) if closed.problems.is_empty() => {
                 let record = closed.record;
-                let deck = Self { record, ..deck };
-                deck.refuse_unstable_table()?;
-                Ok((deck, closed.survey))
+                Ok((Self { record, ..deck }, closed.survey))
             }
             _ => Err(DeckError::refused(closed.problems)),
         }
@@ -221,7 +197,7 @@ impl Deck {
 }
 
 /// The document of a deck with its overrides.
-fn document(
+pub(crate) fn document(
     text: &str,
     file_name: &str,
     overrides: &[String],

@@ -8,24 +8,13 @@ use miette::{Diagnostic, LabeledSpan, Severity, SourceCode};
 use crate::caution::Caution;
 use crate::fault::Fault;
 use crate::source::Location;
+use crate::subject::Subject;
 
 /// Something wrong, for which the deck is refused.
 pub type Problem = Finding<Fault>;
 
 /// Something odd, with which a run may still be meant.
 pub type Warning = Finding<Caution>;
-
-/// What a finding can be about.
-pub trait Subject: Error + 'static {
-    /// How bad it is.
-    const SEVERITY: Severity;
-
-    /// What is allowed instead or can be done, if the text of the subject does not say so itself.
-    fn advice(&self) -> Option<String>;
-
-    /// A few words beside the marked text.
-    fn label(&self) -> &'static str;
-}
 
 /// Something found at one place of a deck. Its text says what; its help says what is allowed.
 #[derive(Debug)]

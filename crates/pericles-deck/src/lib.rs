@@ -97,8 +97,8 @@ mod nearest;
 mod newmark;
 mod output;
 mod overrides;
+mod parse;
 mod part;
-mod points;
 mod quantity;
 mod reader;
 mod region;
@@ -108,18 +108,20 @@ mod scheme;
 mod set;
 mod source;
 mod stop;
+mod subject;
 mod surface;
 mod time;
 mod units;
 mod vocabulary;
+mod wording;
 
-pub use body::{Body, Quadrature};
+pub use body::{Body, PointsFile, Quadrature, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use boundary::BoundaryCondition;
 pub use build::{
-    AreaDoubt, ExactReference, FileError, KernelQuality, LoadReport, Model, PlaneWaves,
-    PointsReader, Resources, Sets, SurfaceReader, TableReader,
+    ExactReference, FileError, KernelQuality, LoadReport, Model, PlaneWaves, PointsReader,
+    Resources, Sets, SurfaceReader, TableReader,
 };
-pub use caution::Caution;
+pub use caution::{AreaDoubt, Caution};
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
 pub use crack::PreCrack;
@@ -128,16 +130,16 @@ pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
 pub use expression::{Condition, Expression};
 pub use fault::Fault;
-pub use finding::{Finding, Problem, Subject, Warning};
+pub use finding::{Finding, Problem, Warning};
 pub use material::{Inclusion, Material};
 pub use output::{Checkpoint, CrackOutput, FragmentOutput, Output, Picture, Precision};
 pub use part::{MaterialInterface, Part, PartPlace};
-pub use points::PointsFile;
 pub use quantity::{metres, seconds};
 pub use schema::{json_schema, reference};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
 pub use stop::{StopCondition, StopWhen};
-pub use surface::{SurfaceDeck, SurfaceFormula, SurfaceShape, VertexAreas};
+pub use subject::Subject;
+pub use surface::SurfaceDeck;
 pub use time::{Time, TimeStep};

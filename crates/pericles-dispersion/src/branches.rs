@@ -1,7 +1,8 @@
 //! Branches along a contour: frequencies, phase and group velocities.
 
 use super::contour::{Contour, Segment};
-use super::lattice::{BondLattice, Vector, dot, unit};
+use super::lattice::BondLattice;
+use super::vector::{Vector, dot, unit};
 
 /// One branch at one wave vector.
 #[derive(Debug, Clone, Copy, PartialEq)]

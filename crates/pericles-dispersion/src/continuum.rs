@@ -5,6 +5,7 @@ use std::num::NonZeroUsize;
 
 use gauss_quad::GaussLegendre;
 
+use super::bisection::last_before;
 use pericles::kernel::{Influence, InfluenceFunction};
 
 /// Plane waves of the nonlocal continuum: what an influence function and a horizon do to waves before any grid does.
@@ -88,7 +89,7 @@ impl KernelWaves {
             let mut speeds = self.relative_speeds(k).into_iter();
             speeds.any(|speed| (speed - 1.0).abs() > tolerance)
         };
-        super::phase::last_before(end, STEPS, off)
+        last_before(end, STEPS, off)
     }
 
     /// Nodes and weights in μ, the cosine between bond and wave vector, over half of all directions; exact to round-off up to `phase` = k δ.

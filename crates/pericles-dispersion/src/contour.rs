@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::lattice::{BondLattice, Vector, dot, unit};
+use super::lattice::BondLattice;
+use super::vector::{Vector, dot, unit};
 
 /// A straight piece of a contour.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,10 +5,8 @@ use pericles::material::{BondConstants, BondMaterial};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result, positive};
 
-use super::modes::{Mode, SquareMatrix, modes_of};
-
-/// A vector of a lattice; components beyond its dimension are zero.
-pub type Vector = [f64; 3];
+use super::modes::{Mode, modes_of};
+use super::vector::{SquareMatrix, Vector, dot, unit};
 
 /// A bond of a lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -269,15 +267,6 @@ impl BondLattice {
         }
         lattice
     }
-}
-
-pub(super) fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn unit(a: Vector) -> Vector {
-    let norm = dot(a, a).sqrt();
-    a.map(|x| x / norm)
 }
 
 #[cfg(test)]

@@ -32,6 +32,7 @@
 //! # Ok::<(), pericles::PericlesError>(())
 //! ```
 
+mod bisection;
 mod branches;
 mod content;
 mod continuum;
@@ -41,13 +42,15 @@ mod modes;
 mod phase;
 pub mod spectrum;
 pub mod tuning;
+mod vector;
 mod zone;
 
 pub use branches::{BranchPoint, ContourPoint, PolarSpeeds, long_wave_speeds, polar_speeds, trace};
 pub use content::{space_content, time_content};
 pub use continuum::KernelWaves;
 pub use contour::{Contour, Segment};
-pub use lattice::{BondLattice, LatticeBond, Vector};
-pub use modes::{Mode, SquareMatrix, verlet_frequency};
+pub use lattice::{BondLattice, LatticeBond};
+pub use modes::{Mode, verlet_frequency};
 pub use phase::{PhaseErrors, Resolved};
+pub use vector::{SquareMatrix, Vector};
 pub use zone::{Stability, stability};

@@ -1,9 +1,6 @@
 //! Frequencies and polarisations.
 
-use super::lattice::{Vector, dot};
-
-/// A symmetric matrix; rows and columns beyond the dimension are zero.
-pub type SquareMatrix = [[f64; 3]; 3];
+use super::vector::{SquareMatrix, Vector, dot};
 
 /// A plane wave's frequency and polarisation.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use super::bisection::last_before;
 use super::continuum::KernelWaves;
-use super::lattice::{BondLattice, Vector, unit};
+use super::lattice::BondLattice;
 use super::modes::modes_of;
+use super::vector::{Vector, unit};
 
 /// Phase speeds of the plane waves of a lattice, of all branches and over directions of the whole octant, against a reference: the speed of long waves along the same direction, or
 /// the nonlocal continuum that the lattice stands for.
@@ -113,25 +115,6 @@ impl<'a> PhaseErrors<'a> {
             frequency: squares.fold(f64::INFINITY, f64::min).sqrt(),
         }
     }
-}
-
-/// Where a condition first holds between 0 and `end`, found in steps and by bisection; `end` if it never does.
-pub(super) fn last_before(end: f64, steps: usize, holds: impl Fn(f64) -> bool) -> f64 {
-    let at = |step: usize| end * step as f64 / steps as f64;
-    let Some(first) = (1..=steps).find(|&step| holds(at(step))) else {
-        return end;
-    };
-    let (mut low, mut high) = (at(first - 1), at(first));
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    // Never zero, and at the condition but for round-off.
-    high
 }
 
 /// Unit vectors over the octant; of square and cubic lattices those between an axis and a diagonal.

@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::lattice::{BondLattice, Vector, dot};
+use super::lattice::BondLattice;
 use super::modes::modes_of;
+use super::vector::{Vector, dot};
 
 /// What a scan of the zone found.
 #[derive(Debug, Clone, Copy, PartialEq)]

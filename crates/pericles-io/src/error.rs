@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::picture::quantity;
+use pericles::units::quantity;
 
 /// Errors of reading and writing the files of a run. Every variant names the path.
 #[derive(Debug, thiserror::Error)]

@@ -53,6 +53,7 @@ mod points;
 mod rows;
 mod vtk;
 mod whole;
+mod xml;
 
 pub use atomic::write_atomically;
 pub use cache::DiskCache;
@@ -69,4 +70,5 @@ pub use picture::{
 };
 pub use points::{PointsError, parse_points, read_points};
 pub use rows::{RowsError, parse_rows, read_rows};
-pub use vtk::{PvdSeries, VtkField, VtuFile, escaped};
+pub use vtk::{PvdSeries, VtkField, VtuFile};
+pub use xml::escaped;

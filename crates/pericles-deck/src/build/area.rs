@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pericles::space::{PointCloud, Region};
 
+use crate::caution::AreaDoubt;
+
 /// The axis normal to the loaded face: that of a layer's face, else that of the load.
 pub(crate) fn normal_axis(
     region: Option<&Region>,
@@ -25,30 +27,6 @@ pub(crate) fn normal_axis(
 /// Whether a set is a layer of a face.
 pub(crate) fn is_layer(region: Option<&Region>) -> bool {
     matches!(region, Some(Region::Layer { .. }))
-}
-
-/// Why the area that is seen along an axis may not be that of the face meant.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum AreaDoubt {
-    /// The set is thinner along another axis.
-    Thinner {
-        /// The axis along which the area is seen.
-        axis: usize,
-        /// That area, m².
-        area: f64,
-        /// The axis along which the set is thinner.
-        other: usize,
-        /// The area seen along that one, m².
-        face: f64,
-    },
-    /// The set has parts that hide each other, or reaches much deeper in some places than in most.
-    Parts {
-        /// The axis along which the area is seen.
-        axis: usize,
-        /// That area, m².
-        area: f64,
-    },
 }
 
 /// What is doubtful about the area of a set that is no layer by its definition, seen along `axis`: a set that is one layer on one face has none.

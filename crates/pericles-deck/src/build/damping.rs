@@ -72,24 +72,6 @@ impl Deck {
         }
         Ok(())
     }
-
-    /// Refuses a given step that is stable without damping layers only.
-    pub(super) fn check_damped(
-        &self,
-        dt: f64,
-        undamped: f64,
-        damping: f64,
-    ) -> Result<(), DeckError> {
-        let stable = stable_step(undamped, damping);
-        if dt <= stable || dt > undamped {
-            return Ok(());
-        }
-        let reason = format!(
-            "with damping of up to {damping:.4e} 1/s the step {dt:e} s is unstable, with less than {stable:.4e} s it is stable; make dt smaller or \"auto\", the layers thicker, or what they \
-             reflect larger"
-        );
-        Err(self.at("boundary", PericlesError::BadDampingLayer { reason }))
-    }
 }
 
 /// The strongest damping that points may have, 1/s: in corners that of several layers adds up, and of opposite ones where both reach across the middle.
@@ -116,10 +98,4 @@ pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointC
         if low + high > length { a + b } else { a.max(b) }
     };
     (0..cloud.dimension()).map(along).sum()
-}
-
-/// The largest stable step of velocity Verlet with a damping σ (1/s) of the step before, from the one without, 2/ω: (ω dt)² = 4 − 2 σ dt.
-pub(super) fn stable_step(undamped: f64, damping: f64) -> f64 {
-    let damped = 0.25 * damping * undamped;
-    undamped / (damped + damped.hypot(1.0))
 }

@@ -233,12 +233,3 @@ impl Deck {
             || self.body.listed.is_some()
     }
 }
-
-/// A number of bytes in words.
-pub(crate) fn bytes(count: f64) -> String {
-    let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
-    match units.into_iter().find(|(size, _)| count >= *size) {
-        Some((size, unit)) => format!("{:.1} {unit}", count / size),
-        None => format!("{count:.0} bytes"),
-    }
-}

@@ -22,12 +22,9 @@ mod step;
 mod stop;
 mod surface;
 
-pub use area::AreaDoubt;
 pub use content::{KernelQuality, PlaneWaves};
 pub use exact::ExactReference;
 pub use loads::LoadReport;
-
-pub(crate) use memory::bytes;
 pub use resources::{FileError, PointsReader, Resources, SurfaceReader, TableReader};
 
 use std::sync::Arc;
@@ -45,8 +42,9 @@ use self::assemble::Assembled;
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
-use crate::finding::{Finding, Subject, Warning};
+use crate::finding::{Finding, Warning};
 use crate::reader::Path;
+use crate::subject::Subject;
 
 /// Sets of points by name.
 pub type Sets = Vec<(String, PointSet)>;
@@ -106,7 +104,7 @@ impl Model {
     pub fn stable_step(&self) -> Option<f64> {
         let limit = self.integrator.stability_limit()?;
         let undamped = self.frequency?.stable_step(limit, 1.0);
-        Some(damping::stable_step(undamped, self.damping))
+        Some(step::damped_step(undamped, self.damping))
     }
 
     /// The run; observers are still to be added.

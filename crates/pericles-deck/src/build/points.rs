@@ -8,13 +8,12 @@ use pericles::space::{
 };
 
 use super::Resources;
-use crate::body::Quadrature;
+use crate::body::{PointsFile, Quadrature};
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
 use crate::finding::Warning;
-use crate::points::PointsFile;
 use crate::reader::Path;
 
 impl Deck {

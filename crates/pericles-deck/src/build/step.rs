@@ -5,7 +5,6 @@ use pericles::System;
 use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
 use pericles::units::quantity;
 
-use super::damping;
 use crate::caution::Caution;
 use crate::deck::Deck;
 use crate::error::DeckError;
@@ -68,8 +67,7 @@ impl Deck {
                         reason: "it has no stable step of its own; give dt",
                     })
                     .map_err(refuse)?;
-                let stable =
-                    safety * damping::stable_step(frequency.stable_step(limit, 1.0), damped);
+                let stable = safety * damped_step(frequency.stable_step(limit, 1.0), damped);
                 let count = self.count(end, stable)?;
                 Ok(Steps {
                     dt: end / count as f64,
@@ -164,6 +162,19 @@ impl Deck {
         Ok(())
     }
 
+    /// Refuses a given step that is stable without damping layers only.
+    fn check_damped(&self, dt: f64, undamped: f64, damping: f64) -> Result<(), DeckError> {
+        let stable = damped_step(undamped, damping);
+        if dt <= stable || dt > undamped {
+            return Ok(());
+        }
+        let reason = format!(
+            "with damping of up to {damping:.4e} 1/s the step {dt:e} s is unstable, with less than {stable:.4e} s it is stable; make dt smaller or \"auto\", the layers thicker, or what they \
+             reflect larger"
+        );
+        Err(self.at("boundary", PericlesError::BadDampingLayer { reason }))
+    }
+
     /// The number of steps of length `dt` to `end`.
     fn count(&self, end: f64, dt: f64) -> Result<u64, DeckError> {
         /// Numbers of steps beyond it are no longer exact in a double.
@@ -179,4 +190,10 @@ impl Deck {
         // A whole number up to round-off is that number.
         Ok((ratio * (1.0 - WHOLE)).ceil().max(1.0) as u64)
     }
+}
+
+/// The largest stable step of velocity Verlet with a damping σ (1/s) of the step before, from the one without, 2/ω: (ω dt)² = 4 − 2 σ dt.
+pub(super) fn damped_step(undamped: f64, damping: f64) -> f64 {
+    let damped = 0.25 * damping * undamped;
+    undamped / (damped + damped.hypot(1.0))
 }

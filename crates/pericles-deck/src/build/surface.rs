@@ -11,10 +11,11 @@ use pericles_manifold::force::SurfaceBody;
 use pericles_manifold::surface::{Surface, SurfaceChecks};
 
 use super::{FileError, Resources, Sets};
+use crate::body::{SurfaceShape, VertexAreas};
 use crate::deck::Deck;
 use crate::error::DeckError;
 use crate::fault::Fault;
-use crate::surface::{SurfaceDeck, SurfaceShape, VertexAreas};
+use crate::surface::SurfaceDeck;
 
 impl Deck {
     pub(super) fn surface_points(

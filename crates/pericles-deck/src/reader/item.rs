@@ -2,13 +2,14 @@
 
 use serde_json::Value as Json;
 
-use super::{Form, Ledger, Path, Table};
-use crate::document::{Node, Value};
-use crate::fault::{Fault, shortened};
+use super::{Form, Ledger, Path};
+use crate::document::{Entry, Node, Value};
+use crate::fault::Fault;
 use crate::nearest::nearest;
 use crate::quantity::Quantity;
 use crate::source::Place;
 use crate::units::{self, UnitError};
+use crate::wording::shortened;
 
 /// A range in words.
 pub(crate) const POSITIVE: &str = "a positive number";
@@ -385,27 +386,22 @@ impl<'a> Item<'a> {
         vector
     }
 
-    pub(crate) fn table(&self) -> Option<Table<'a>> {
+    /// The entries of a table.
+    pub(super) fn table_entries(&self) -> Option<&'a [Entry]> {
         self.note(|| Form::Table);
         let Value::Table(entries) = &self.node.value else {
             self.wrong_kind("a table");
             return None;
         };
-        Some(Table::new(
-            self.ledger,
-            self.path.clone(),
-            self.node.place,
-            entries,
-        ))
+        Some(entries)
     }
 
-    /// The tables of a list of tables.
-    pub(crate) fn tables(&self) -> Vec<Table<'a>> {
-        self.list("a list of tables, written [[…]]")
-            .unwrap_or_default()
-            .iter()
-            .filter_map(Item::table)
-            .collect()
+    pub(super) fn ledger(&self) -> &'a Ledger {
+        self.ledger
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Passes on what the library accepts and reports what it refuses.

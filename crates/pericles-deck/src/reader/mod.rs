@@ -20,13 +20,19 @@ pub(crate) use survey::{Form, Survey, TableSurvey, below};
 pub(crate) use table::Table;
 
 use crate::document::Node;
-use crate::fault::{Fault, shortened};
+use crate::fault::Fault;
 use crate::finding::Problem;
 use crate::source::{Place, Sources};
+use crate::wording::shortened;
+
+/// Finds the table that a key belongs to.
+pub(crate) type HomeOf = fn(&str) -> Option<&'static str>;
 
 /// What is noted while a deck is read.
 pub(crate) struct Ledger {
     sources: Sources,
+    /// None for a survey: the homes of keys follow from it.
+    home_of: Option<HomeOf>,
     problems: RefCell<Vec<Problem>>,
     /// Keys that are there, misspelt, with their tables: they are not missing.
     misspelt: RefCell<BTreeSet<(String, String)>>,
@@ -36,9 +42,18 @@ pub(crate) struct Ledger {
 }
 
 impl Ledger {
-    pub(crate) fn new(sources: Sources) -> Self {
+    /// A ledger whose messages about unknown keys name their tables by `home_of`.
+    pub(crate) fn new(sources: Sources, home_of: HomeOf) -> Self {
+        Self {
+            home_of: Some(home_of),
+            ..Self::without_homes(sources)
+        }
+    }
+
+    fn without_homes(sources: Sources) -> Self {
         Self {
             sources,
+            home_of: None,
             problems: RefCell::default(),
             misspelt: RefCell::default(),
             places: RefCell::default(),
@@ -47,12 +62,12 @@ impl Ledger {
         }
     }
 
-    /// The same with a survey that listens.
+    /// A ledger with a survey, which notes what the reader asks for.
     pub(crate) fn surveyed(sources: Sources, mut survey: Survey) -> Self {
         survey.begin();
         Self {
             survey: Some(RefCell::new(survey)),
-            ..Self::new(sources)
+            ..Self::without_homes(sources)
         }
     }
 
@@ -62,12 +77,9 @@ impl Ledger {
         }
     }
 
-    /// The table that a key belongs to. Nobody asks while the answer is being found out: then every key is at home.
+    /// The table that a key belongs to.
     fn home_of(&self, key: &str) -> Option<&'static str> {
-        match self.survey {
-            None => crate::schema::home_of(key),
-            Some(_) => None,
-        }
+        self.home_of.and_then(|home_of| home_of(key))
     }
 
     /// The root table.

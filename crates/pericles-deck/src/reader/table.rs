@@ -309,6 +309,28 @@ impl<'a> Table<'a> {
     }
 }
 
+impl<'a> Item<'a> {
+    /// The value as a table.
+    pub(crate) fn table(&self) -> Option<Table<'a>> {
+        let entries = self.table_entries()?;
+        Some(Table::new(
+            self.ledger(),
+            self.path().clone(),
+            self.place(),
+            entries,
+        ))
+    }
+
+    /// The tables of a list of tables.
+    pub(crate) fn tables(&self) -> Vec<Table<'a>> {
+        self.list("a list of tables, written [[…]]")
+            .unwrap_or_default()
+            .iter()
+            .filter_map(Item::table)
+            .collect()
+    }
+}
+
 fn owned(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }

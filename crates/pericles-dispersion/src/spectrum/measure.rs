@@ -8,8 +8,9 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
 use super::super::contour::Contour;
-use super::super::lattice::{BondLattice, Vector};
+use super::super::lattice::BondLattice;
 use super::super::modes::verlet_frequency;
+use super::super::vector::Vector;
 use super::super::zone::stability;
 use super::{CubeTransform, PeriodicForce};
 use pericles::noise::noise;

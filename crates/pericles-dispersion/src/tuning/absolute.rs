@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use pericles::Result;
 
-use super::samples::Functionals;
+use super::functionals::Functionals;
 use super::solve::{Problem, Solution};
 
 /// Shrinking of ε from stage to stage, its start and its end over the largest residual. At the end a kink is narrower than the distance of

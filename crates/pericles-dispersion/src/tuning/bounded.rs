@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::solve::{Refusal, least_squares};
+use super::least_squares::{Refusal, least_squares};
 
 /// minimise ‖E y − f‖ subject to G y ≥ h: y and the constraints that hold with equality.
 pub(super) fn bounded(

@@ -27,7 +27,9 @@
 
 mod absolute;
 mod bounded;
+mod functionals;
 mod functions;
+mod least_squares;
 mod method;
 mod model;
 mod samples;

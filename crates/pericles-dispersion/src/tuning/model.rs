@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use crate::contour::Contour;
-use crate::lattice::{BondLattice, Vector};
+use crate::lattice::BondLattice;
+use crate::vector::{Vector, dot};
 use crate::zone::{Stability, stability};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ClassOffset, class_of, multiplicity};
@@ -234,7 +235,7 @@ impl ScalingModel {
         for place in panels(&self.contour, PANELS, 4) {
             for (branch, e) in self.polarisations(place.segment).iter().enumerate() {
                 let k = place.k;
-                let wanted = speeds[branch] * crate::lattice::dot(k, k);
+                let wanted = speeds[branch] * dot(k, k);
                 let residual = lattice.omega_squared(k, *e) - wanted;
                 absolute += place.weight * residual.abs();
                 square += place.weight * residual * residual;
@@ -245,7 +246,7 @@ impl ScalingModel {
 
     /// Residuals of the branches at a place, as functions of the coefficients: R = row · α − value.
     pub(super) fn sample(&self, k: Vector, segment: usize) -> Sample {
-        let square = crate::lattice::dot(k, k);
+        let square = dot(k, k);
         let speeds = self.squared_speeds();
         let branches = self.polarisations(segment).iter().zip(&speeds);
         Sample {

@@ -2,14 +2,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::lattice::{Vector, dot};
+use crate::vector::{Vector, dot};
 use pericles::kernel::{ActsOn, ClassTable, Influence, InfluenceFunction};
 use pericles::{PericlesError, Result, positive};
 
 use super::absolute::Absolute;
+use super::functionals::{Functionals, Quadrature};
 use super::method::{Combination, Method, Tuning};
 use super::model::{Assessment, BondClass, ScalingModel};
-use super::samples::{Functionals, Quadrature, Sample};
+use super::samples::Sample;
 use super::solve::Problem;
 
 /// A tuned set of coefficients.

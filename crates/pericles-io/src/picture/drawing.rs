@@ -1,13 +1,8 @@
 //! A picture as shapes on a page, from which pixels or SVG are made.
 
-use std::io::Write;
-use std::path::Path;
-
 use super::bitmap::{Bitmap, Rgb};
 use super::raster::Raster;
-use super::svg;
 use super::text::{self, Style};
-use crate::{IoError, write_atomically};
 
 /// A place on the page: pixels from the left and from the top.
 pub(super) type Spot = (f64, f64);
@@ -164,14 +159,5 @@ impl Drawing {
             }
         }
         bitmap
-    }
-
-    /// Writes the picture, whole or not at all: as SVG into a file that ends so, as PNG into any other.
-    pub(super) fn write(&self, path: &Path) -> Result<(), IoError> {
-        if path.extension().is_some_and(|ending| ending == "svg") {
-            let text = svg::document(self).map_err(|error| IoError::writing(path, error))?;
-            return write_atomically(path, |out| out.write_all(text.as_bytes()));
-        }
-        self.to_bitmap().write_png(path)
     }
 }

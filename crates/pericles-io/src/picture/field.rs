@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
-use super::bitmap::{Rgb, SIZES};
+use super::bitmap::SIZES;
 use super::colour::ColourMap;
 use super::curve::{Axis, Curve};
 use super::drawing::Drawing;
 use super::frame::{ColourBar, Header, finite_range, widened};
 use super::line_chart::LineChart;
+use super::scene::{Drawn, Facet, Scene};
+use super::write::write;
 use super::{plane, solid};
 use crate::IoError;
 use pericles::units::{Shown, quantity};
@@ -55,23 +57,6 @@ pub struct FieldPicture<'a> {
     width: u32,
 }
 
-/// Where a cell is drawn, its half edges, and its colour.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Drawn {
-    pub(super) middle: [f64; 3],
-    pub(super) half: [f64; 3],
-    pub(super) colour: Rgb,
-}
-
-/// A triangle of a surface as it is drawn.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Facet {
-    pub(super) corners: [[f64; 3]; 3],
-    /// Sums of the normals of the triangles that meet in each corner.
-    pub(super) normals: [[f64; 3]; 3],
-    pub(super) values: [f64; 3],
-}
-
 /// Across a triangle, as long as twice its area.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
@@ -81,25 +66,6 @@ fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
         u[2] * v[0] - u[0] * v[2],
         u[0] * v[1] - u[1] * v[0],
     ]
-}
-
-/// What the plane and the solid picture have in common.
-#[derive(Debug)]
-pub(super) struct Scene {
-    pub(super) width: usize,
-    pub(super) cells: Vec<Drawn>,
-    /// Triangles in place of cells.
-    pub(super) facets: Vec<Facet>,
-    /// Opposite corners of the part that is shown.
-    pub(super) low: [f64; 3],
-    pub(super) high: [f64; 3],
-    /// Whether these corners were asked for: they then are not drawn together to what is there.
-    pub(super) window: bool,
-    pub(super) bar: ColourBar,
-    pub(super) header: Header,
-    /// The unit of lengths; empty for pure numbers.
-    pub(super) length_unit: &'static str,
-    pub(super) view: [f64; 3],
 }
 
 impl<'a> FieldPicture<'a> {
@@ -204,7 +170,7 @@ impl<'a> FieldPicture<'a> {
     /// Draws the picture and writes it, whole or not at all: as SVG, the cells as an image in it, into a file that ends so, as PNG into any other.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
-        self.draw(path)?.write(path)
+        write(&self.draw(path)?, path)
     }
 
     fn draw(&self, path: &Path) -> Result<Drawing, IoError> {

@@ -9,6 +9,7 @@ use super::curve::{Axis, Curve, Pen};
 use super::drawing::Drawing;
 use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
 use super::text::{self, Align, Style};
+use super::write::write;
 use crate::IoError;
 use pericles::units::quantity;
 
@@ -101,7 +102,7 @@ impl LineChart {
     /// Draws the chart and writes it, whole or not at all: as SVG into a file that ends so, as PNG into any other.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
-        self.draw(path)?.write(path)
+        write(&self.draw(path)?, path)
     }
 
     /// Draws the chart as PNG into memory; `name` stands for it in messages.

@@ -40,10 +40,12 @@ mod frame;
 mod line_chart;
 mod plane;
 mod raster;
+mod scene;
 mod solid;
 mod svg;
 mod text;
 mod ticks;
+mod write;
 
 pub use animation::write_animation;
 pub use backdrop::Backdrop;

@@ -1,9 +1,9 @@
 //! A plane body with its axes.
 
 use super::drawing::Drawing;
-use super::field::Scene;
 use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
 use super::raster::Raster;
+use super::scene::Scene;
 use super::ticks::Ticks;
 use pericles::units::Shown;
 

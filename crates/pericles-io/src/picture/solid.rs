@@ -3,9 +3,9 @@
 use super::bitmap::{INK, Rgb};
 use super::colour::shaded;
 use super::drawing::Drawing;
-use super::field::Scene;
 use super::frame::{Area, ColourBar, Sizes};
 use super::raster::{Face, Raster};
+use super::scene::Scene;
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
 use pericles::units::quantity;

@@ -9,7 +9,7 @@ use super::bitmap::{Bitmap, Rgb};
 use super::drawing::{Drawing, Shape, Spot};
 use super::raster::Raster;
 use super::text::{self, Align, Direction, Style};
-use crate::escaped;
+use crate::xml::escaped;
 
 /// Fonts that have the signs of pictures, the one in which PNG files are set first.
 const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";

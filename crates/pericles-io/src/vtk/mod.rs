@@ -32,29 +32,3 @@ mod vtu;
 
 pub use pvd::PvdSeries;
 pub use vtu::{VtkField, VtuFile};
-
-/// Text as it stands in an attribute or between the tags of XML and HTML. Control characters, which XML cannot hold, are replaced.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' | '\t' => out.push(character),
-            _ if character.is_control() => out.push(char::REPLACEMENT_CHARACTER),
-            _ => out.push(character),
-        }
-    }
-    out
-}
-
-/// The text of an attribute that [`escaped`] made.
-fn unescaped(text: &str) -> String {
-    // The ampersand last: what it stands before must not be taken for another mark.
-    text.replace("&quot;", "\"")
-        .replace("&gt;", ">")
-        .replace("&lt;", "<")
-        .replace("&amp;", "&")
-}

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{escaped, unescaped};
+use crate::xml::{escaped, unescaped};
 use crate::{IoError, write_atomically};
 
 const START: &str = "<?xml version=\"1.0\"?>\n\

@@ -4,7 +4,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::blocks::write_array;
-use super::escaped;
+use crate::xml::escaped;
 use crate::{IoError, write_atomically};
 
 /// The cell type of a single point in VTK.

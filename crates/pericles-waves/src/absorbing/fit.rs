@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
-use super::loewner::{Growing, Loewner};
+use super::loewner::{Exponential, Growing, Loewner};
 use super::roots::{expanded, factor_at};
 use super::{AbsorbingError, LatticeStencil, LatticeStep};
 
@@ -20,16 +20,6 @@ pub struct ExponentialKernels {
     pub(super) present: Vec<f64>,
     /// Largest error of a kernel's generating function on the samples: of a ghost's displacement by unit displacements of all outer points.
     pub residual: f64,
-}
-
-/// An exponential with a residue of rank one.
-#[derive(Debug, Clone)]
-pub(super) struct Exponential {
-    pub(super) decay: C,
-    /// a_n, K numbers.
-    pub(super) give: Vec<C>,
-    /// b_m, K numbers.
-    pub(super) take: Vec<C>,
 }
 
 /// Directions per sample point that are tried: kernels with many branch points need more.

@@ -4,7 +4,6 @@ use std::f64::consts::SQRT_2;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::fit::Exponential;
 use super::schur::{complex_schur, triangular_eigenvectors};
 
 type C = Complex<f64>;
@@ -30,6 +29,16 @@ pub(super) struct Loewner {
     entering: [DMatrix<f64>; 2],
     /// W Bᵀ: K rows.
     leaving: DMatrix<f64>,
+}
+
+/// An exponential with a residue of rank one.
+#[derive(Debug, Clone)]
+pub(super) struct Exponential {
+    pub(super) decay: C,
+    /// a_n, K numbers.
+    pub(super) give: Vec<C>,
+    /// b_m, K numbers.
+    pub(super) take: Vec<C>,
 }
 
 /// What is done with eigenvalues λ outside the unit circle.

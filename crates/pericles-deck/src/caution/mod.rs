@@ -1,11 +1,16 @@
 //! What is odd about a deck though a run may be meant.
 
-use miette::Severity;
+mod advice;
+mod area;
+
 use pericles::units::{quantity, significant};
 use pericles_manifold::surface::SurfaceCaution;
 
-use crate::build::AreaDoubt;
-use crate::finding::Subject;
+pub use area::AreaDoubt;
+
+use area::doubtful_area;
+
+use crate::wording::{percent, prefixed, reach, short, spot};
 
 /// Kinds of odd.
 #[derive(Debug, thiserror::Error)]
@@ -335,213 +340,6 @@ pub enum Caution {
         /// Below this the growth does not show.
         quiet: f64,
     },
-}
-
-impl Subject for Caution {
-    const SEVERITY: Severity = Severity::Warning;
-
-    fn advice(&self) -> Option<String> {
-        let advice = match self {
-            Self::CrackCutsNothing => {
-                "it must pass between points of the body that lie within a horizon of each other"
-            }
-            Self::LargeStretch { .. } => {
-                "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
-            }
-            Self::CrackOutside { .. } => {
-                "places are in m unless they carry a unit; `origin` moves a body"
-            }
-            Self::SoftSolid { .. } => "is the modulus in Pa? \"70 GPa\" carries its unit",
-            Self::HeavySolid { .. } => "is it in kg/m³? \"7.85 g/cm3\" carries its unit",
-            Self::TinySpacing { .. } => "is it in m? \"1 mm\" carries its unit",
-            Self::ClosePoints { .. } => {
-                "remove one of them if it is a duplicate: the bond between them limits the time step"
-            }
-            Self::UnusedCoordinate { .. } => {
-                "set the coordinate to 0, or give `dimension` so that all coordinates are used"
-            }
-            Self::IdleHole => {
-                "check its place and its size, which must exceed the spacing; lengths without a unit are in m"
-            }
-            Self::NothingBreaks { .. } => {
-                "give `fracture_energy` or `critical_stretch`, or leave the key out"
-            }
-            Self::NothingActs => "add [[load]], [[prescribe]] or [[initial]]",
-            Self::StiffnessError { .. } => {
-                "modulus = \"lattice\" makes the bulk stiffness exact on a grid (\"continuum\" for spectral forces and Gauss nodes); a longer horizon brings it nearer"
-            }
-            Self::ShearStiffness { .. } => {
-                "a horizon of one spacing joins a point to few neighbours off the axes; take three spacings"
-            }
-            Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
-            Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
-            Self::LoadedArea(_) => {
-                "give `area`, or use a layer of one face, such as layer = { side = \"+x\", cells = 3 }, and one [[load]] for each face"
-            }
-            Self::LoadOnHeld { .. } => "take other points, or leave the load out",
-            Self::Pieces { points: 1, .. } => {
-                "a crack that passes through points takes all their bonds: shift it by half a cell; else look at holes and the horizon, unless loose points are meant"
-            }
-            Self::Pieces { .. } => {
-                "look at cracks, holes and the horizon, unless loose pieces are meant"
-            }
-            Self::NoSupport { .. } => {
-                "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
-            }
-            Self::ProbeOutside { .. } => "the nearest point is read instead",
-            Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
-            Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
-            Self::ShortenedStep { .. } => {
-                "give a dt that divides end, or an end that is a multiple of dt, to choose both"
-            }
-            Self::Surface(_) => "usual: 3 to 6 median edges",
-            Self::ShortPeriod { .. } => {
-                "a longer body, a shorter run or a smaller exact.window brings it down"
-            }
-            Self::ShortWaves { .. } => {
-                "use a finer grid, a smoother time function or field, or a tuned influence function; `pericles dispersion` shows the speeds of all waves"
-            }
-            Self::GrowingWaves { .. } => {
-                "a run of such a body gains energy without limit; use positive coefficients"
-            }
-            Self::PoorTuning { .. } => {
-                "decay = 1 (the default) and method = \"least-squares\" do best; lower_bound limits what tuning can do"
-            }
-            Self::FastMotion { .. } => "check the value and its unit (m/s); use a lower speed",
-            Self::TornAtOnce { .. } => {
-                "check speeds, displacements and the critical stretch; use a ramp or a lower speed, or no_fail for the points near supports"
-            }
-            Self::EmptyClasses { .. } => {
-                "use a positive lower_bound such as 0.5, or a shorter horizon"
-            }
-            Self::HistoricalKernels { .. } => {
-                "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
-            }
-            Self::ExactHistory { .. } => {
-                "it costs memory that grows with the number of steps; history = \"blocked\" avoids the attempt, a larger tolerance may be met"
-            }
-            Self::FieldAtEnd { .. } => {
-                "`exterior_data` continues the field beyond the end; or move the end outwards"
-            }
-            Self::EqualSteps => "a plain scheme does the same with less",
-            Self::GrowingPredictor { .. } => {
-                "predictor = \"structured\" is stable; or make dt smaller, or the run short"
-            }
-        };
-        Some(advice.into())
-    }
-
-    fn label(&self) -> &'static str {
-        match self {
-            Self::CrackCutsNothing => "no effect",
-            Self::CrackOutside { .. } => "outside the body",
-            Self::Pieces { .. } => "in pieces",
-            Self::LargeStretch { .. } => "very strong",
-            Self::SoftSolid { .. } => "very soft",
-            Self::HeavySolid { .. } => "very heavy",
-            Self::TinySpacing { .. } => "very small",
-            Self::ClosePoints { .. } => "very close points",
-            Self::UnusedCoordinate { .. } => "not used",
-            Self::IdleHole | Self::NothingBreaks { .. } => "no effect",
-            Self::NothingActs => "at rest",
-            Self::StiffnessError { .. } => "another stiffness",
-            Self::ShearStiffness { .. } => "little shear stiffness",
-            Self::FastWaves { .. } => "very light",
-            Self::IdleClasses { .. } => "no stiffness",
-            Self::LoadedArea(_) => "which area?",
-            Self::LoadOnHeld { .. } => "held",
-            Self::NoSupport { .. } => "loose parts",
-            Self::Surface(_) => "unusual horizon",
-            Self::ProbeOutside { .. } => "outside the body",
-            Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
-            Self::ShortenedStep { .. } => "shortened",
-            Self::ShortPeriod { .. } => "short period",
-            Self::ShortWaves { .. } => "short waves",
-            Self::GrowingWaves { .. } => "unstable",
-            Self::PoorTuning { .. } => "poorly tuned",
-            Self::EmptyClasses { .. } => "no stiffness",
-            Self::FastMotion { .. } | Self::TornAtOnce { .. } => "breaks at once",
-            Self::HistoricalKernels { .. } => "historical",
-            Self::ExactHistory { .. } => "exact history",
-            Self::FieldAtEnd { .. } => "field at the end",
-            Self::EqualSteps => "no effect",
-            Self::GrowingPredictor { .. } => "growing waves",
-        }
-    }
-}
-
-/// 12.3 %
-fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    let rounded: f64 = format!("{percent:.2e}").parse().unwrap_or(percent);
-    format!("{rounded} %")
-}
-
-/// An area with four digits.
-fn square_millimetres(area: f64) -> String {
-    format!("{} mm²", short(1e6 * area))
-}
-
-fn doubtful_area(doubt: &AreaDoubt) -> String {
-    let name = |axis: &usize| ['x', 'y', 'z'][*axis];
-    match doubt {
-        AreaDoubt::Thinner {
-            axis,
-            area,
-            other,
-            face,
-        } => format!(
-            "this traction acts on {}, the set as seen along {}; the set is a layer normal to {}, whose face has {}",
-            square_millimetres(*area),
-            name(axis),
-            name(other),
-            square_millimetres(*face)
-        ),
-        AreaDoubt::Parts { axis, area } => format!(
-            "the set of this traction is not one layer on one face: the force on {}, the set as seen along {}, is spread over all its points",
-            square_millimetres(*area),
-            name(axis)
-        ),
-    }
-}
-
-/// `4.21 mm`, `0.812 µs`: three digits with the prefix that keeps the number between 1 and 1000.
-fn prefixed(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 7] = [
-        (1.0, ""),
-        (1e-3, "m"),
-        (1e-6, "µ"),
-        (1e-9, "n"),
-        (1e-12, "p"),
-        (1e3, "k"),
-        (1e6, "M"),
-    ];
-    let fits = |(scale, _): &&(f64, &str)| (1.0..999.5).contains(&(value / scale));
-    match PREFIXES.iter().find(fits) {
-        Some((scale, prefix)) => {
-            let number = value / scale;
-            let decimals = 2 - number.log10().floor().clamp(0.0, 2.0) as usize;
-            format!("{number:.decimals$} {prefix}{unit}")
-        }
-        None => format!("{value:.3e} {unit}"),
-    }
-}
-
-/// (1e-3, 2e-3)
-fn spot(place: &[f64]) -> String {
-    let numbers: Vec<String> = place.iter().map(|x| short(*x)).collect();
-    format!("({})", numbers.join(", "))
-}
-
-/// from (0, 0) to (0.1, 0.04) m
-fn reach(low: &[f64], high: &[f64]) -> String {
-    format!("from {} to {} m", spot(low), spot(high))
-}
-
-/// Four digits are enough to find a place.
-fn short(x: f64) -> String {
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    format!("{rounded}")
 }
 
 /// all 40 points of this load are, 3 of the 40 points of this load are

@@ -1,24 +1,14 @@
 //! Bodies whose points are listed in a file.
 
-use std::path::PathBuf;
-
 use pericles::space::{Grid, Shape};
 
-use crate::body::{self, Body, BodyRead, Quadrature};
+use super::plane::{section, state};
+use super::types::{Body, BodyRead, PointsFile, Quadrature};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// The file that lists a body's points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointsFile {
-    /// The file; a relative path starts at the folder of the deck.
-    pub path: PathBuf,
-    /// Dimension of the body.
-    pub dimension: usize,
-}
-
 /// What `[body]` says besides the shape, where that is "points".
-pub(crate) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
+pub(super) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
     const DIMENSIONS: [(f64, usize); 3] = [(1.0, 1), (2.0, 2), (3.0, 3)];
     let path = table.required("file").and_then(|item| item.text());
     read.frame.spacing = table
@@ -36,8 +26,8 @@ pub(crate) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
         return read;
     };
     read.frame.dimension = Some(dimension);
-    let section = body::section(&table, dimension);
-    read.state = body::state(&table, dimension);
+    let section = section(&table, dimension);
+    read.state = state(&table, dimension);
     table.finish();
     read.body = body(&read, section, path, dimension);
     read
@@ -63,7 +53,7 @@ fn body(
     })
 }
 
-/// What stands in the place of a grid: only its spacing and section are used.
+/// The grid of listed points: only its spacing and section are used.
 fn no_grid(dimension: usize, spacing: f64, section: f64) -> Grid {
     Grid {
         shape: Shape::Box {

@@ -1,0 +1,45 @@
+//! The words of `body.shape`.
+
+use super::surface::SurfaceKind;
+
+/// A word of `body.shape`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Bar,
+    Plate,
+    Disc,
+    Block,
+    Cylinder,
+    Ball,
+    Points,
+    Surface(SurfaceKind),
+}
+
+/// The words.
+pub(super) const KINDS: [(&str, Kind); 13] = [
+    ("bar", Kind::Bar),
+    ("plate", Kind::Plate),
+    ("disc", Kind::Disc),
+    ("block", Kind::Block),
+    ("cylinder", Kind::Cylinder),
+    ("ball", Kind::Ball),
+    ("icosphere", Kind::Surface(SurfaceKind::Icosphere)),
+    ("uv-sphere", Kind::Surface(SurfaceKind::UvSphere)),
+    ("ellipsoid", Kind::Surface(SurfaceKind::Ellipsoid)),
+    ("torus", Kind::Surface(SurfaceKind::Torus)),
+    ("capsule", Kind::Surface(SurfaceKind::Capsule)),
+    ("surface", Kind::Surface(SurfaceKind::File)),
+    ("points", Kind::Points),
+];
+
+impl Kind {
+    pub(super) fn dimension(self) -> usize {
+        match self {
+            Self::Bar => 1,
+            Self::Plate | Self::Disc => 2,
+            Self::Block | Self::Cylinder | Self::Ball => 3,
+            // Points say it themselves.
+            Self::Points | Self::Surface(_) => 3,
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! `[body]`: the shape, its grid and its state of stress.
+
+mod kind;
+mod outline;
+mod plane;
+mod points;
+mod surface;
+mod types;
+
+pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
+pub use types::{Body, PointsFile, Quadrature};
+
+pub(crate) use types::{BodyRead, SurfaceRead};
+
+use pericles::material::StressState;
+use pericles::space::{Finer, Grid, Region};
+
+use self::kind::{KINDS, Kind};
+use self::outline::{Outline, shape};
+use self::plane::{section, state};
+use self::surface::SurfaceKind;
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::region::{self, Frame};
+
+/// `[body]`.
+pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
+    let mut read = BodyRead {
+        body: None,
+        frame: Frame {
+            dimension: None,
+            spacing: None,
+            cells: true,
+        },
+        state: None,
+        surface: None,
+    };
+    let Some(table) = table else { return read };
+    let kind = table
+        .required("shape")
+        .and_then(|item| item.choice("shape", &KINDS));
+    if let Some(Kind::Surface(kind)) = kind {
+        return surface(table, kind, read);
+    }
+    if kind == Some(Kind::Points) {
+        return points::read(table, read);
+    }
+    let spacings = table
+        .required("spacing")
+        .and_then(|item| spacings(&item, kind));
+    read.frame.spacing = spacings
+        .as_ref()
+        .map(|all| all.iter().copied().fold(0.0, f64::max));
+    let rectangular = spacings.filter(|all| all.iter().any(|dx| *dx != all[0]));
+    read.frame.cells = rectangular.is_none();
+    let Some(kind) = kind else {
+        // Without the shape nobody knows which other keys belong here.
+        return read;
+    };
+    read.frame.dimension = Some(kind.dimension());
+    let outline = shape(&table, kind);
+    let section = section(&table, kind.dimension());
+    read.state = state(&table, kind.dimension());
+    let holes: Vec<Option<Region>> = table
+        .tables("hole")
+        .into_iter()
+        .map(|hole| region::read(hole, read.frame))
+        .collect();
+    let finer: Vec<Option<Finer>> = table
+        .tables("refine")
+        .into_iter()
+        .map(|part| finer(part, read.frame))
+        .collect();
+    let plain = rectangular.is_none();
+    if !plain && !finer.is_empty() {
+        table.forbid("refine", "only cells of one size can be divided");
+    }
+    let rules = rules(&table, kind, plain && holes.is_empty() && finer.is_empty());
+    table.finish();
+    let body = assemble(&read, outline, section, holes, finer, rules);
+    read.body = body.map(|body| Body {
+        rectangular,
+        ..body
+    });
+    read
+}
+
+fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead {
+    let shape = surface::shape(&table, kind);
+    let areas = surface::areas(&table);
+    table.finish();
+    let (shape, spacing) = shape.unzip();
+    read.frame = Frame {
+        dimension: Some(3),
+        spacing: spacing.flatten(),
+        cells: false,
+    };
+    read.state = Some(StressState::Spatial);
+    read.body = Some(types::no_grid());
+    read.surface = Some(SurfaceRead { shape, areas });
+    read
+}
+
+/// One spacing, or one for each axis of a box.
+fn spacings(item: &Item<'_>, kind: Option<Kind>) -> Option<Vec<f64>> {
+    if !item.is_list() {
+        return item.positive(Quantity::Length).map(|dx| vec![dx]);
+    }
+    let kind = kind?;
+    if !matches!(kind, Kind::Plate | Kind::Block) {
+        item.out_of_range("one length: only plates and blocks have a spacing for each axis");
+        return None;
+    }
+    let entries = item.exactly(kind.dimension(), "a length, or one for each axis")?;
+    let lengths: Vec<Option<f64>> = entries
+        .iter()
+        .map(|entry| entry.positive(Quantity::Length))
+        .collect();
+    lengths.into_iter().collect()
+}
+
+fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
+    /// More would make steps that differ as much.
+    const MOST: u64 = 16;
+    let ratio = table.required("ratio").and_then(|item| {
+        let ratio = item.count()?;
+        if (2..=MOST).contains(&ratio) {
+            return Some(ratio as u32);
+        }
+        item.out_of_range(
+            "a whole number from 2 to 16: cells are divided into so many along each axis",
+        );
+        None
+    });
+    let region = region::read_among_others(table, frame);
+    Some(Finer {
+        region: region?,
+        ratio: ratio?,
+    })
+}
+
+fn assemble(
+    read: &BodyRead,
+    outline: Option<Outline>,
+    section: Option<f64>,
+    holes: Vec<Option<Region>>,
+    finer: Vec<Option<Finer>>,
+    rules: Option<(bool, Quadrature)>,
+) -> Option<Body> {
+    let (periodic, quadrature) = rules?;
+    let outline = outline?;
+    let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
+    holes.extend(outline.bore);
+    Some(Body {
+        grid: Grid {
+            shape: outline.shape,
+            spacing: read.frame.spacing?,
+            section: section?,
+            holes,
+        },
+        listed: None,
+        finer: finer.into_iter().collect::<Option<_>>()?,
+        state: read.state?,
+        periodic,
+        quadrature,
+        rectangular: None,
+    })
+}
+
+/// Periodicity and the place of points in their cells.
+fn rules(table: &Table<'_>, kind: Kind, whole: bool) -> Option<(bool, Quadrature)> {
+    const BOX: &str = "only a bar, plate or block of equal cells without holes has opposite faces that can be one";
+    const BAR: &str = "only the cells of a bar without holes, and with two ends, have Gauss nodes";
+    let periodic = if matches!(kind, Kind::Bar | Kind::Plate | Kind::Block) && whole {
+        table.or("periodic", false, |item| item.boolean())
+    } else {
+        table.forbid("periodic", BOX);
+        Some(false)
+    };
+    let quadrature = if kind == Kind::Bar && whole && periodic != Some(true) {
+        let rules = [
+            ("midpoint", Quadrature::Midpoint),
+            ("gauss", Quadrature::Gauss),
+        ];
+        table.choice_or_first("quadrature", "quadrature", &rules)
+    } else {
+        table.forbid("quadrature", BAR);
+        Some(Quadrature::Midpoint)
+    };
+    Some((periodic?, quadrature?))
+}

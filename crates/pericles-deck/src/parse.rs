@@ -1,0 +1,34 @@
+//! From the text of a deck to its data.
+
+use std::path::Path;
+
+use crate::deck::{Deck, document};
+use crate::error::DeckError;
+use crate::reader::Ledger;
+use crate::schema::home_of;
+
+impl Deck {
+    /// Reads a deck from a file and applies overrides `key=value` to it, in their order.
+    ///
+    /// # Errors
+    /// A file that cannot be read; everything that is wrong in it.
+    pub fn read(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, DeckError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|reason| DeckError::Unreadable {
+            path: path.into(),
+            reason,
+        })?;
+        Self::parse(&text, &path.display().to_string(), overrides)
+    }
+
+    /// Reads a deck from a text; `file_name` is what messages call it.
+    ///
+    /// # Errors
+    /// Everything that is wrong in it.
+    pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
+        let (root, sources) = document(text, file_name, overrides)?;
+        let (deck, _) = Self::read_with(Ledger::new(sources, home_of), &root)?;
+        deck.refuse_unstable_table()?;
+        Ok(deck)
+    }
+}

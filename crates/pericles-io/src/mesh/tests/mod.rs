@@ -1,0 +1,229 @@
+//! The same tetrahedron in every format; files cut short, changed and with huge counts.
+
+use super::*;
+use crate::{VtkField, VtuFile};
+use proptest::prelude::*;
+
+mod files;
+
+use files::{T, X, files, stl};
+
+fn read(ending: &str, content: &[u8]) -> Result<Surface, MeshError> {
+    let path = Path::new("surface").with_extension(ending);
+    Format::of(&path)?.surface(&path, content, u64::MAX)
+}
+
+#[test]
+fn the_same_surface_in_every_format() {
+    let sorted = |surface: &Surface| {
+        let mut triangles: Vec<_> = surface
+            .triangles()
+            .iter()
+            .map(|t| t.map(|v| surface.positions()[v as usize].map(f64::to_bits)))
+            .collect();
+        triangles.sort_unstable();
+        triangles
+    };
+    let given = Surface::new(X.to_vec(), T.to_vec()).unwrap();
+    for (number, (ending, content)) in files().iter().enumerate() {
+        let surface =
+            read(ending, content).unwrap_or_else(|error| panic!("{ending} {number}: {error}"));
+        assert_eq!(surface.len(), 4, "{ending} {number}");
+        assert_eq!(sorted(&surface), sorted(&given), "{ending} {number}");
+        surface.checked(Default::default()).unwrap();
+    }
+}
+
+#[test]
+fn polygons_become_fans() {
+    let cube = "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4 255 0 0\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+    let (cube, report) = read("off", cube.as_bytes())
+        .unwrap()
+        .checked(Default::default())
+        .unwrap();
+    assert_eq!((cube.triangles().len(), report.volume), (12, 1.0));
+}
+
+#[test]
+fn a_file_that_ends_early_is_refused() {
+    for (number, (ending, content)) in files().iter().enumerate() {
+        for length in 0..content.len() {
+            match read(ending, &content[..length]) {
+                // Formats without counts end at any line: then triangles are missing, and the surface is open.
+                Ok(surface) => {
+                    let whole = surface.triangles().len() == 4 && surface.positions().len() == 4;
+                    let rest = content.len() - length;
+                    assert!(
+                        !whole || rest < 60 || surface.checked(Default::default()).is_err(),
+                        "{ending} {number}: {length}"
+                    );
+                }
+                Err(error) => assert!(!error.to_string().is_empty()),
+            }
+        }
+    }
+}
+
+#[test]
+fn huge_counts_and_wrong_words_are_refused_with_their_place() {
+    let text =
+        |ending: &str, content: &str| read(ending, content.as_bytes()).unwrap_err().to_string();
+    for (ending, content, parts) in [
+        (
+            "off",
+            "OFF\n4000000000 4 6\n0 0 0\n",
+            vec![":2: 4000000000 vertices are announced", "hold"],
+        ),
+        (
+            "off",
+            "OFF\n1 18446744073709551615 0\n0 0 0\n",
+            vec![":2: ", "faces are announced"],
+        ),
+        (
+            "off",
+            "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000 0 1 2\n",
+            vec![":6: 2000 corners"],
+        ),
+        (
+            "off",
+            "OFF\n3 1 0\n0 0 0\n1 x 0\n",
+            vec![":4: \"x\" is not a coordinate"],
+        ),
+        ("off", "FOO", vec![":1: ", "\"FOO\""]),
+        (
+            "obj",
+            "v 0 0 0\nf 1 2 0\n",
+            vec![":2: \"0\" is no corner", "from 1 on"],
+        ),
+        (
+            "obj",
+            "v 0 0 0\nv 1 0 0\nf 1 2\n",
+            vec![":3: a face of 2 corner(s)", "at least 3"],
+        ),
+        (
+            "obj",
+            "v 0 0 0\nf 1 2 3\n",
+            vec!["triangle 0 has the corner 1", "vertices 0 to 0 only"],
+        ),
+        ("obj", "hello", vec!["no triangles"]),
+        (
+            "ply",
+            "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n",
+            vec!["99999999999 elements \"vertex\""],
+        ),
+        (
+            "ply",
+            "ply\nformat binary 1.0\n",
+            vec![":2: the format \"binary\"; allowed: ascii"],
+        ),
+        (
+            "ply",
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n",
+            vec![":4: the type \"half\"; allowed: char"],
+        ),
+        (
+            "stl",
+            "solid a\nfacet\n",
+            vec!["where endsolid should follow"],
+        ),
+        (
+            "stl",
+            "short",
+            vec!["byte 0", "80 more byte(s) are needed, 5 are left"],
+        ),
+        (
+            "msh",
+            "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n",
+            vec![":2: version 3.0; allowed: 2.2 and 4.1"],
+        ),
+        ("msh", "$Nodes\n1\n", vec![":1: $Nodes before $MeshFormat"]),
+        (
+            "msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n777777777\n",
+            vec![":5: 777777777 nodes are announced"],
+        ),
+        (
+            "msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n1\n1 2 0 1 2 3\n$EndElements",
+            vec![":6: an element has the node 1"],
+        ),
+        (
+            "vtu",
+            "<VTKFile><UnstructuredGrid></UnstructuredGrid></VTKFile>",
+            vec!["there is no array Points"],
+        ),
+        ("vtp", "</VTKFile>", vec!["no element VTKFile"]),
+        ("vtp", "nothing", vec!["where </VTKFile> should follow"]),
+        ("stp", "", vec!["files that end in .obj, .ply"]),
+    ] {
+        let message = text(ending, content);
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+    let mut many = stl(true);
+    many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    let message = read("stl", &many).unwrap_err().to_string();
+    assert!(
+        message.contains("4294967295 triangles are announced")
+            && message.contains("hold 4 at most"),
+        "{message}"
+    );
+    assert!(matches!(
+        read_surface("no/such/file.obj", u64::MAX),
+        Err(MeshError::Io(crate::IoError::NotFound { .. }))
+    ));
+}
+
+#[test]
+fn points_written_by_our_own_writer_are_read_back() {
+    // More than one packed block, 64-bit headers; the cells are single points, so that no triangle is found.
+    let n = 3000;
+    let x: Vec<f64> = (0..3 * n).map(|k| (0.37 * k as f64).sin()).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.vtu");
+    let field: Vec<f64> = x[..n].to_vec();
+    VtuFile::new(3, &x)
+        .field(VtkField::scalar("Points", &field))
+        .write(&path)
+        .unwrap();
+    let mesh = vtk::parse(&std::fs::read(path).unwrap(), u64::MAX).unwrap();
+    assert!(mesh.triangles.is_empty());
+    let expected: Vec<[f64; 3]> = (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
+    assert_eq!(mesh.positions, expected);
+}
+
+#[test]
+fn a_surface_written_by_our_own_writer_is_read_back() {
+    let sphere = Surface::icosphere(3, 0.7).unwrap();
+    let x = sphere.positions();
+    let positions: Vec<f64> = (0..3).flat_map(|c| x.iter().map(move |x| x[c])).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sphere.vtu");
+    VtuFile::new(3, &positions)
+        .triangles(sphere.triangles())
+        .field(VtkField::scalar("Height", &positions[2 * x.len()..]))
+        .write(&path)
+        .unwrap();
+    let read = read_surface(&path, u64::MAX).unwrap();
+    assert_eq!(read.positions(), x);
+    assert_eq!(read.triangles(), sphere.triangles());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn changed_bytes_never_panic(file in 0usize..20, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+                                 cut in any::<prop::sample::Index>()) {
+        let files = files();
+        let (ending, content) = &files[file % files.len()];
+        let mut content = content.clone();
+        for (place, byte) in changes {
+            let place = place.index(content.len());
+            content[place] = byte;
+        }
+        for length in [content.len(), cut.index(content.len() + 1)] {
+            if let Ok(surface) = read(ending, &content[..length]) {
+                let _ = surface.checked(Default::default());
+            }
+        }
+    }
+}
