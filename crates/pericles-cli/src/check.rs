@@ -9,6 +9,9 @@ use pericles_deck::{Deck, KernelQuality, Model, Scheme, SurfaceDeck, VertexAreas
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
+use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
+use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
+use pericles_run::{Facts, Means, Modelled};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -18,9 +21,8 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::given;
 use crate::line::{self, Line};
-use crate::prepare::{self, Facts, Means};
-use crate::refinement::{self, Comparison};
-use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
+use crate::refinement;
+use crate::screen::Screen;
 
 /// Checks a deck.
 ///
@@ -29,14 +31,12 @@ use crate::units::{bytes, count, duration, percent, quantity, significant, threa
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let model = prepare::model(
-        &deck,
-        &Means {
-            caching: &args.caching,
-            memory: args.memory.bytes(),
-        },
-    )?;
-    let facts = Facts::of(&deck, &model);
+    let means = Means {
+        caching: args.caching.wanted(),
+        memory: args.memory.bytes(),
+    };
+    let mut screen = Screen::new(false);
+    let Modelled { model, facts } = Modelled::of(&deck, &means, &mut |event| screen.show(event))?;
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
     }
@@ -125,14 +125,14 @@ fn run_time(
     }
     let step = match comparison {
         Some(comparison) => comparison.seconds,
-        None => refinement::seconds_per_step(
+        None => seconds_per_step(
             &mut model.system,
             &mut model.state,
             &mut *model.integrator,
             facts.dt,
             // Not one more than the run has: histories of absorbing ends are no longer.
             facts.steps,
-            refinement::LONGEST,
+            LONGEST,
         )?,
     };
     let seconds = step * facts.steps as f64;

@@ -20,13 +20,15 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use pericles_io::OutputFolder;
+use pericles_run::RunError;
+use pericles_run::units::duration;
 use serde::Serialize;
 
 use crate::args::ReproduceArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::units::duration;
+use crate::progress::Progress;
 use row::Row;
 
 /// A study of a paper.
@@ -38,7 +40,7 @@ pub(crate) struct Study {
     /// What it shows.
     pub(crate) title: &'static str,
     /// Computes the rows and draws the figures.
-    pub(crate) run: fn(&Context<'_>) -> Result<Vec<Row>, CliError>,
+    pub(crate) run: fn(&Context<'_>) -> Result<Vec<Row>, RunError>,
 }
 
 /// All studies, by topic.
@@ -74,6 +76,11 @@ impl Context<'_> {
             quiet: true,
             figures: None,
         }
+    }
+
+    /// A bar for a run of so many steps, unless the study is quiet.
+    pub(crate) fn progress(&self, steps: u64) -> Option<Progress> {
+        (!self.quiet).then(|| Progress::new(0, steps))
     }
 
     /// The file of a figure; none if no figures are wanted.
@@ -171,10 +178,10 @@ fn list() -> Result<Exit, CliError> {
     Ok(Exit::Done)
 }
 
-fn find(id: &str) -> Result<&'static Study, CliError> {
+fn find(id: &str) -> Result<&'static Study, RunError> {
     studies().find(|study| study.id == id).ok_or_else(|| {
         let all = "`pericles reproduce --list` shows all studies";
-        CliError::unknown("study", id, studies().map(|study| study.id), all)
+        RunError::unknown("study", id, studies().map(|study| study.id), all)
     })
 }
 
@@ -191,11 +198,11 @@ mod tests {
         for study in studies() {
             assert_eq!(find(study.id).ok().map(|s| s.id), Some(study.id));
         }
-        let Err(CliError::Unknown { hint, .. }) = find("fracture/branch") else {
+        let Err(RunError::Unknown { hint, .. }) = find("fracture/branch") else {
             panic!("found");
         };
         assert!(hint.contains("fracture/branching"), "{hint}");
-        let Err(CliError::Unknown { hint, .. }) = find("zzz") else {
+        let Err(RunError::Unknown { hint, .. }) = find("zzz") else {
             panic!("found");
         };
         assert!(!hint.contains("did you mean"), "{hint}");

@@ -1,7 +1,7 @@
 //! The rows of a study as a table for people.
 
 use super::row::Row;
-use crate::units::{percent, quantity, significant};
+use pericles_run::units::{percent, quantity, significant};
 
 const HEADER: [&str; 6] = [
     "case",

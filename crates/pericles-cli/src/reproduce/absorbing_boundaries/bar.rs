@@ -18,7 +18,7 @@ use pericles_waves::absorbing::{
     semi_discrete_kernels,
 };
 
-use crate::error::CliError;
+use pericles_run::RunError;
 
 pub(super) const SPACING: f64 = 0.1;
 /// Nodes from the middle to an end.
@@ -82,7 +82,7 @@ fn micromodulus(xi: f64) -> f64 {
 }
 
 /// The lattice of the hard material.
-pub(super) fn stencil() -> Result<LatticeStencil, CliError> {
+pub(super) fn stencil() -> Result<LatticeStencil, RunError> {
     let weights: Vec<f64> = (1..=REACH)
         .map(|k| micromodulus(k as f64 * SPACING) * SPACING)
         .collect();
@@ -121,7 +121,7 @@ pub(super) enum Kind {
     Discrete,
 }
 
-pub(super) fn kernels(kind: Kind, dt: f64, steps: usize) -> Result<GhostKernels, CliError> {
+pub(super) fn kernels(kind: Kind, dt: f64, steps: usize) -> Result<GhostKernels, RunError> {
     let stencil = stencil()?;
     Ok(match kind {
         Kind::SemiDiscrete => semi_discrete_kernels(&stencil, dt, steps),
@@ -143,7 +143,7 @@ impl Bar {
     }
 
     /// The equation of motion without absorbing ends, and the start.
-    pub(super) fn system(&self) -> Result<(System, State), CliError> {
+    pub(super) fn system(&self) -> Result<(System, State), RunError> {
         let half = HALF + self.margin;
         let grid = Grid {
             shape: Shape::Box {
@@ -207,7 +207,7 @@ impl Bar {
         kernels: &GhostKernels,
         dt: f64,
         steps: u64,
-    ) -> Result<Simulation, CliError> {
+    ) -> Result<Simulation, RunError> {
         let (mut system, state) = self.system()?;
         for &side in self.sides {
             let end = OuterLayer::of(&system, side, &state, &[])
@@ -234,13 +234,13 @@ impl Bar {
         dt: f64,
         steps: u64,
         mut visit: impl FnMut(&State),
-    ) -> Result<(), CliError> {
+    ) -> Result<(), RunError> {
         let release = match self.source {
             Source::Wavelet => (RELEASE / dt).round() as u64,
             Source::Bell | Source::Rest => steps,
         };
         let mut simulation = self.simulation(kernels, dt, steps)?;
-        let mut run = |simulation: &mut Simulation, until: u64| -> Result<(), CliError> {
+        let mut run = |simulation: &mut Simulation, until: u64| -> Result<(), RunError> {
             let outcome = simulation.run(|now| {
                 visit(now.state());
                 match now.state().step == until {
@@ -248,7 +248,7 @@ impl Bar {
                     false => Control::Continue,
                 }
             });
-            let outcome = outcome.map_err(|error| CliError::of_run(error, String::new))?;
+            let outcome = outcome.map_err(|error| RunError::of_run(error, String::new))?;
             // The last state of a run is not asked about.
             if outcome == Outcome::Finished {
                 visit(simulation.state());
@@ -270,7 +270,7 @@ impl Bar {
         kernels: &GhostKernels,
         dt: f64,
         steps: u64,
-    ) -> Result<Simulation, CliError> {
+    ) -> Result<Simulation, RunError> {
         let rest = Self {
             source: Source::Rest,
             ..*self
@@ -294,7 +294,7 @@ impl Bar {
         kind: Kind,
         dt: f64,
         times: &[f64],
-    ) -> Result<Vec<State>, CliError> {
+    ) -> Result<Vec<State>, RunError> {
         let number = |t: &f64| (t / dt).round() as u64;
         let steps: Vec<u64> = times.iter().map(number).collect();
         let last = steps.last().copied().unwrap_or_default();
@@ -309,7 +309,7 @@ impl Bar {
     }
 
     /// The solution in continuous time at the given times: Richardson's extrapolation of two runs with exact ends, whose errors are the scheme's alone.
-    pub(super) fn reference(&self, times: &[f64]) -> Result<Vec<State>, CliError> {
+    pub(super) fn reference(&self, times: &[f64]) -> Result<Vec<State>, RunError> {
         /// Errors of fourth order remain: some 1e-12.
         const DT: f64 = 0.002;
         let coarse = self.states(Kind::Discrete, DT, times)?;

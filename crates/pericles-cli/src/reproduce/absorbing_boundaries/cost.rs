@@ -19,9 +19,9 @@ use pericles_waves::absorbing::{
 };
 
 use super::PAPER;
-use crate::error::CliError;
 use crate::reproduce::row::Row;
 use crate::reproduce::{Context, Study};
+use pericles_run::RunError;
 
 pub(super) const COST: Study = Study {
     id: "absorbing-boundaries/cost",
@@ -101,14 +101,14 @@ const MOST_DIRECT_LONG: usize = 8192;
 const ENDLESS: usize = 1_000_000;
 
 impl Case {
-    fn stencil(&self) -> Result<LatticeStencil, CliError> {
+    fn stencil(&self) -> Result<LatticeStencil, RunError> {
         let weight = |k| (self.micromodulus)(k as f64 * self.spacing) * self.spacing;
         let weights: Vec<f64> = (1..=self.reach).map(weight).collect();
         Ok(LatticeStencil::new(&weights).map_err(PericlesError::from)?)
     }
 
     /// With this many nodes more on each side.
-    fn body(&self, margin: usize) -> Result<(System, State), CliError> {
+    fn body(&self, margin: usize) -> Result<(System, State), RunError> {
         let half = (10.0 / self.spacing).round() as usize + margin;
         let nodes = 2 * half + 1;
         let grid = Grid {
@@ -150,7 +150,7 @@ impl Case {
         steps: usize,
         margin: usize,
         histories: Vec<(Side, Box<dyn History>)>,
-    ) -> Result<(Vec<f64>, f64), CliError> {
+    ) -> Result<(Vec<f64>, f64), RunError> {
         let (mut system, state) = self.body(margin)?;
         for (side, history) in histories {
             let end = OuterLayer::of(&system, side, &state, &[])
@@ -168,7 +168,7 @@ impl Case {
         let began = Instant::now();
         simulation
             .run(|_| Control::Continue)
-            .map_err(|error| CliError::of_run(error, String::new))?;
+            .map_err(|error| RunError::of_run(error, String::new))?;
         Ok((simulation.state().u.clone(), began.elapsed().as_secs_f64()))
     }
 
@@ -176,7 +176,7 @@ impl Case {
         &self,
         steps: usize,
         make: impl Fn() -> H,
-    ) -> Result<Measured, CliError> {
+    ) -> Result<Measured, RunError> {
         let began = Instant::now();
         let histories: Vec<(Side, Box<dyn History>)> = [Side::Left, Side::Right]
             .map(|side| (side, Box::new(make()) as Box<dyn History>))
@@ -199,7 +199,7 @@ struct Measured {
     bytes: usize,
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for case in &CASES {
         let long = if context.full { case.long } else { &[] };
@@ -214,7 +214,7 @@ fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// The ways to the same displacements, one after the other.
-fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, CliError> {
+fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, RunError> {
     let stencil = case.stencil()?;
     let label = |what: &str| format!("{}, N = {steps}: {what}", case.name);
     let time = |what: &str, seconds: f64| Row::new(label(what), "s", Some(seconds));
@@ -293,7 +293,7 @@ fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, CliError>
 }
 
 /// A million steps near the stability limit: nothing may grow.
-fn endless(case: &Case) -> Result<Vec<Row>, CliError> {
+fn endless(case: &Case) -> Result<Vec<Row>, RunError> {
     let case = Case { dt: 0.249, ..*case };
     let stencil = case.stencil()?;
     let began = Instant::now();

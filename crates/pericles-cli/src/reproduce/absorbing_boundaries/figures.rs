@@ -4,9 +4,9 @@ use pericles_io::{Axis, Curve, LineChart};
 
 use super::bar::{Bar, HALF, Kind, SPACING, kernels};
 use super::tables::SEISMIC_BAR;
-use crate::error::CliError;
 use crate::reproduce::Context;
 use crate::reproduce::row::Row;
+use pericles_run::RunError;
 
 const DT: f64 = 0.005;
 
@@ -27,7 +27,7 @@ fn histories<const N: usize>(
     bar: &Bar,
     nodes: [usize; N],
     end: f64,
-) -> Result<[History; N], CliError> {
+) -> Result<[History; N], RunError> {
     let steps = (end / DT).round() as u64;
     let kernels = kernels(Kind::Discrete, DT, steps as usize)?;
     let mut histories = nodes.map(|_| History {
@@ -44,7 +44,7 @@ fn histories<const N: usize>(
 }
 
 /// Two humps that leave.
-pub(super) fn homogeneous(context: &Context<'_>) -> Result<(), CliError> {
+pub(super) fn homogeneous(context: &Context<'_>) -> Result<(), RunError> {
     let Some(path) = context.figure("fields.png") else {
         return Ok(());
     };
@@ -63,7 +63,7 @@ pub(super) fn homogeneous(context: &Context<'_>) -> Result<(), CliError> {
 }
 
 /// Waves between interfaces leave the slower, the softer the middle is.
-pub(super) fn interfaces(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+pub(super) fn interfaces(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let betas = [1.0, 0.5, 0.1];
     let mut chart = LineChart::new(Axis::new("t", ""), Axis::new("u", ""))
         .title("displacement at x = 0 between interfaces of stiffness β")
@@ -97,7 +97,7 @@ pub(super) fn interfaces(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// The free end moves twice as far as the wavelet.
-pub(super) fn seismic(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+pub(super) fn seismic(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let [left, right] = histories(&SEISMIC_BAR, [0, 2 * HALF], 40.0)?;
     if let Some(path) = context.figure("seismic.png") {
         LineChart::new(Axis::new("t", ""), Axis::new("u", ""))

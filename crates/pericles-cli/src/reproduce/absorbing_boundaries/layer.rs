@@ -10,9 +10,9 @@ use pericles::boundary::DampingProfile;
 use pericles_io::{Axis, Curve, LineChart};
 
 use super::PAPER;
-use crate::error::CliError;
 use crate::reproduce::row::Row;
 use crate::reproduce::{Context, Study};
+use pericles_run::RunError;
 
 pub(super) const DAMPING_LAYER: Study = Study {
     id: "absorbing-boundaries/damping-layer",
@@ -198,7 +198,7 @@ fn reflection(bonds: &[Bond], length: f64, degrees: f64) -> f64 {
     (chain.energy() / before).max(0.0).sqrt()
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let bonds = bonds();
     let mut rows = Vec::new();
     let mut chart = LineChart::new(

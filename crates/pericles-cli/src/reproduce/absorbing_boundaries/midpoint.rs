@@ -9,9 +9,9 @@ use pericles_waves::absorbing::{
 
 use super::PAPER;
 use super::bar::Bar;
-use crate::error::CliError;
 use crate::reproduce::row::Row;
 use crate::reproduce::{Context, Study};
+use pericles_run::RunError;
 
 pub(super) const MIDPOINT: Study = Study {
     id: "absorbing-boundaries/midpoint",
@@ -24,7 +24,7 @@ pub(super) const MIDPOINT: Study = Study {
 const CASES: [(f64, u64); 4] = [(0.05, 800), (0.25, 200), (1.0, 60), (4.0, 30)];
 
 /// The bar with a soft middle; `margin` nodes more on each side where there are no ends.
-fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, CliError> {
+fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, RunError> {
     let bar = Bar {
         margin: margin.unwrap_or(0),
         ..Bar::infinite(0.5)
@@ -47,11 +47,11 @@ fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, CliErro
     let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps);
     simulation
         .run(|_| Control::Continue)
-        .map_err(|error| CliError::of_run(error, String::new))?;
+        .map_err(|error| RunError::of_run(error, String::new))?;
     Ok(simulation)
 }
 
-fn rows(_context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn rows(_context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (dt, steps) in CASES {
         // Ten nodes per unit of time and back; an implicit step reaches everywhere, decaying as exp(−2 n/(10 dt)).

@@ -14,9 +14,9 @@ use pericles_waves::absorbing::strip::{StripEnd, StripLattice};
 use pericles_waves::linear::ConvolutionForce;
 
 use super::PAPER;
-use crate::error::CliError;
 use crate::reproduce::row::Row;
 use crate::reproduce::{Context, Study};
+use pericles_run::RunError;
 
 pub(super) const STRIP: Study = Study {
     id: "absorbing-boundaries/strip",
@@ -36,7 +36,7 @@ const STEPS: usize = 400;
 const MARGIN: usize = 60;
 
 /// A plate with some columns more on each side, and a bell beside its middle that is pushed upwards.
-fn strip(margin: usize) -> Result<(System, State), CliError> {
+fn strip(margin: usize) -> Result<(System, State), RunError> {
     let half = HALF + margin;
     let grid = Grid {
         shape: Shape::Box {
@@ -76,7 +76,7 @@ fn strip(margin: usize) -> Result<(System, State), CliError> {
 fn run(
     (system, state): (System, State),
     every: usize,
-) -> Result<(Vec<(State, f64)>, f64), CliError> {
+) -> Result<(Vec<(State, f64)>, f64), RunError> {
     let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, DT, STEPS as u64);
     let began = Instant::now();
     let mut states = Vec::new();
@@ -92,13 +92,13 @@ fn run(
             note(now);
             Control::Continue
         })
-        .map_err(|error| CliError::of_run(error, String::new))?;
+        .map_err(|error| RunError::of_run(error, String::new))?;
     // The last state of a run is not asked about.
     note(&simulation);
     Ok((states, began.elapsed().as_secs_f64()))
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     const EVERY: usize = 10;
     let (mut system, state) = strip(0)?;
     let began = Instant::now();
@@ -171,7 +171,7 @@ fn draw(
     context: &Context<'_>,
     cloud: &PointCloud,
     states: &[(State, f64)],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     let n = cloud.len();
     let positions: Vec<f64> = [0, 1]
         .iter()

@@ -8,9 +8,9 @@ use pericles_waves::absorbing::{
 };
 
 use super::PAPER;
-use crate::error::CliError;
 use crate::reproduce::row::Row;
 use crate::reproduce::{Context, Study};
+use pericles_run::RunError;
 
 pub(super) const TABLE_1: Study = Study {
     id: "absorbing-boundaries/table-1",
@@ -108,7 +108,7 @@ fn error(kernels: &GhostKernels, dt: f64, step: usize, exact: &[f64; 4]) -> f64 
     apart.fold(0.0, f64::max)
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     /// Half a million steps of the last line.
     const LONG: f64 = 1000.0;
     let stencil = LatticeStencil::new(&[4.0, -1.0]).map_err(PericlesError::from)?;

@@ -5,9 +5,9 @@ use pericles_waves::absorbing::Side;
 
 use super::bar::{Bar, Kind, Source};
 use super::{PAPER, figures};
-use crate::error::CliError;
 use crate::reproduce::row::Row;
 use crate::reproduce::{Context, Study};
+use pericles_run::RunError;
 
 /// Which field is compared.
 #[derive(Clone, Copy)]
@@ -169,7 +169,7 @@ pub(super) const TABLE_6: Study = Study {
     },
 };
 
-fn rows(context: &Context<'_>, table: &Table) -> Result<Vec<Row>, CliError> {
+fn rows(context: &Context<'_>, table: &Table) -> Result<Vec<Row>, RunError> {
     /// The finest step takes as long as all others.
     const FINEST: f64 = 0.001;
     let reference = table.bar.reference(&table.times)?;
@@ -179,7 +179,7 @@ fn rows(context: &Context<'_>, table: &Table) -> Result<Vec<Row>, CliError> {
         if line.dt <= FINEST && !context.full {
             continue;
         }
-        let of = |kind| -> Result<Vec<f64>, CliError> {
+        let of = |kind| -> Result<Vec<f64>, RunError> {
             let states = table.bar.states(kind, line.dt, &table.times)?;
             let pairs = states.iter().zip(&reference);
             Ok(pairs.map(|(a, b)| largest(table.field, a, b)).collect())

@@ -13,7 +13,7 @@ use pericles_dispersion::tuning::{Method, influence_alebrahim, polygon};
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{PAPER, model, tuned};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -56,7 +56,7 @@ const GLASSES: [Glass; 2] = [
 const SQRT2: &str =
     "the printed value is this over √2, as for twice the horizon or half the fracture energy";
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let table = tuned(
         &model(StressState::PlaneStrain, 3.0)?,
         Method::LeastSquares,
@@ -153,7 +153,7 @@ fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
 fn lattice_energies(
     classes: &InfluenceFunction,
     cosines: &InfluenceFunction,
-) -> Result<Vec<Row>, CliError> {
+) -> Result<Vec<Row>, RunError> {
     let half = 0.5f64.sqrt();
     let mut rows = Vec::new();
     for (name, function, expected) in [

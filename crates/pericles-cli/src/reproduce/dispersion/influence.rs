@@ -11,7 +11,7 @@ use pericles_io::{Axis, Curve, LineChart};
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{PAPER, model, tuned, write_curves};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -21,7 +21,7 @@ pub(crate) const STUDY: Study = Study {
     run,
 };
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     const N: f64 = 3.0;
     let on_stretch = |function| Influence {
         function,

@@ -23,8 +23,8 @@ use pericles_dispersion::tuning::{
 use pericles_io::{Axis, Curve, LineChart};
 
 use super::{Context, Study};
-use crate::dispersion::curves::{Curves, STEPS, write_classes};
-use crate::error::CliError;
+use pericles_run::RunError;
+use pericles_run::dispersion::{Curves, STEPS, write_classes};
 
 const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
 
@@ -67,22 +67,22 @@ fn rounding(row: &[&str], column: usize) -> f64 {
     0.6 * 10f64.powi(-(places as i32))
 }
 
-fn method(name: &str) -> Result<Method, CliError> {
+fn method(name: &str) -> Result<Method, RunError> {
     let named = Method::ALL.map(|method| (method.name(), method));
     known("method of tuning", name, &named)
 }
 
-fn combination(name: &str) -> Result<Combination, CliError> {
+fn combination(name: &str) -> Result<Combination, RunError> {
     let named = Combination::ALL.map(|combination| (combination.name(), combination));
     known("combination of branches", name, &named)
 }
 
 /// The value that a word of a study's data names.
-fn known<T: Copy>(kind: &'static str, name: &str, all: &[(&str, T)]) -> Result<T, CliError> {
+fn known<T: Copy>(kind: &'static str, name: &str, all: &[(&str, T)]) -> Result<T, RunError> {
     let found = all.iter().find(|(word, _)| *word == name);
     found.map(|(_, value)| *value).ok_or_else(|| {
         let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
-        CliError::unknown(
+        RunError::unknown(
             kind,
             name,
             &words,
@@ -91,7 +91,7 @@ fn known<T: Copy>(kind: &'static str, name: &str, all: &[(&str, T)]) -> Result<T
     })
 }
 
-fn model(state: StressState, n: f64) -> Result<ScalingModel, CliError> {
+fn model(state: StressState, n: f64) -> Result<ScalingModel, RunError> {
     Ok(ScalingModel::new(state, n, VolumeCorrection::None)?)
 }
 
@@ -99,7 +99,7 @@ fn tuned(
     model: &ScalingModel,
     method: Method,
     lower_bound: Option<f64>,
-) -> Result<TunedTable, CliError> {
+) -> Result<TunedTable, RunError> {
     Ok(model.tune(Tuning {
         method,
         lower_bound,
@@ -114,7 +114,7 @@ fn write_curves(
     name: &str,
     title: &str,
     alpha: &[f64],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     let (Some(picture), Some(csv)) = figures(context, name) else {
         return Ok(());
     };
@@ -128,7 +128,7 @@ fn write_curves(
         targets: &targets,
     };
     curves.write(&csv)?;
-    curves.draw(&picture, title)
+    Ok(curves.draw(&picture, title)?)
 }
 
 /// Draws one branch of several tables of a model over each other, if figures are wanted: `<name>-<branch>.png`.
@@ -138,7 +138,7 @@ fn write_comparison(
     name: &str,
     title: &str,
     tables: &[(&str, &[f64])],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     /// Height of a chart over that of the continuum's curve.
     const ROOM: f64 = 1.6;
     let targets = targets(model.state());
@@ -199,9 +199,9 @@ fn write_tables(
     model: &ScalingModel,
     name: &str,
     tables: &[(String, Vec<f64>)],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     match context.figure(&format!("{name}.csv")) {
-        Some(path) => write_classes(&path, model.classes(), tables),
+        Some(path) => Ok(write_classes(&path, model.classes(), tables)?),
         None => Ok(()),
     }
 }

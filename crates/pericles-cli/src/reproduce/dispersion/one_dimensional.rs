@@ -9,7 +9,7 @@ use super::{
     NamedTables, PAPER, method, model, number, numbers, published, tuned, write_comparison,
     write_curves, write_tables,
 };
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -22,7 +22,7 @@ pub(crate) const STUDY: Study = Study {
 const TABLE: &str =
     include_str!("../../../../../validation/dispersion-and-fracture/one-dimensional.csv");
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = originals()?;
     let mut tables: Vec<(f64, NamedTables)> = Vec::new();
     for cells in published(TABLE) {
@@ -96,7 +96,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
-fn originals() -> Result<Vec<Row>, CliError> {
+fn originals() -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (n, error) in [
         (1.0, 0.36554),

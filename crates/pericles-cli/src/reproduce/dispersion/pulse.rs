@@ -17,7 +17,7 @@ use pericles_dispersion::tuning::{Tuning, Weights, continuum_speeds};
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{PAPER, model};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -37,7 +37,7 @@ const WAVELENGTHS: f64 = 50.0;
 /// Small, so that what is seen is the error of the lattice; over the speed of pressure waves.
 const DT: f64 = 0.05;
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let model = model(StressState::PlaneStrain, 3.0)?;
     let tune = |decay, lower_bound| {
         model.tune(Tuning {
@@ -89,7 +89,7 @@ fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// The root mean square error of the displacement over that of the displacement.
-fn cross(lattice: &BondLattice) -> Result<f64, CliError> {
+fn cross(lattice: &BondLattice) -> Result<f64, RunError> {
     let speed = continuum_speeds(StressState::PlaneStrain).pressure;
     let end = WAVELENGTHS * WAVELENGTH / speed;
     let steps = (end / DT).ceil();
@@ -117,7 +117,7 @@ fn cross(lattice: &BondLattice) -> Result<f64, CliError> {
     let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps as u64);
     simulation
         .run(|_| Control::Continue)
-        .map_err(|error| CliError::of_run(error, String::new))?;
+        .map_err(|error| RunError::of_run(error, String::new))?;
     let exact = continuum(end, speed);
     let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
     let pairs = simulation.state().u.iter().zip(&exact);

@@ -8,9 +8,9 @@ use pericles_dispersion::tuning::Method;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{PAPER, model, targets, tuned};
-use crate::dispersion::curves::{Curves, STEPS};
-use crate::dispersion::spectrum::write_spectrum;
-use crate::error::CliError;
+use pericles_run::RunError;
+use pericles_run::dispersion::write_spectrum;
+use pericles_run::dispersion::{Curves, STEPS};
 
 /// Bars.
 pub(crate) const BARS: Study = Study {
@@ -28,7 +28,7 @@ pub(crate) const PLATES: Study = Study {
     run: plates,
 };
 
-fn bars(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn bars(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let run = SpectrumRun {
         nodes: 512,
         steps: 8192,
@@ -44,7 +44,7 @@ fn bars(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     )
 }
 
-fn plates(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn plates(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let run = SpectrumRun {
         nodes: 48,
         steps: 4096,
@@ -66,7 +66,7 @@ fn spectra(
     horizons: &[f64],
     method: Method,
     run: SpectrumRun,
-) -> Result<Vec<Row>, CliError> {
+) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for n in horizons {
         let model = model(state, *n)?;
@@ -77,7 +77,7 @@ fn spectra(
         for (name, alpha) in cases {
             let lattice = model.lattice(&alpha);
             let spectrum = measure(&lattice, model.contour(), run)
-                .map_err(|error| CliError::of_run(error, String::new))?;
+                .map_err(|error| RunError::of_run(error, String::new))?;
             let (worst, peaks) = spectrum.worst_deviation();
             let what = |quantity: &str| format!("N = {n}, {name}: {quantity}");
             rows.push(

@@ -7,7 +7,7 @@ use pericles_dispersion::tuning::{Combination, Method, Tuning, continuum_speeds}
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{PAPER, model, write_curves, write_tables};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -17,7 +17,7 @@ pub(crate) const STUDY: Study = Study {
     run,
 };
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let separated = Combination::Separated;
     let choices = [
         (Method::LeastSquares, separated, None),

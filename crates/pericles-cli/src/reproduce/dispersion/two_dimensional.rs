@@ -10,8 +10,8 @@ use super::{
     NamedTables, PAPER, combination, method, model, number, numbers, published, rounding, tuned,
     write_comparison, write_curves, write_tables,
 };
-use crate::dispersion::curves::write_polar;
-use crate::error::CliError;
+use pericles_run::RunError;
+use pericles_run::dispersion::write_polar;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -24,7 +24,7 @@ pub(crate) const STUDY: Study = Study {
 const TABLE: &str =
     include_str!("../../../../../validation/dispersion-and-fracture/two-dimensional.csv");
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = originals(context)?;
     let mut tables: Vec<(f64, NamedTables)> = Vec::new();
     for cells in published(TABLE) {
@@ -133,7 +133,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// α = 1: errors and anisotropy of long waves.
-fn originals(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn originals(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let exact = continuum_speeds(StressState::PlaneStrain);
     let mut rows = Vec::new();
     #[rustfmt::skip]
@@ -191,7 +191,7 @@ fn originals(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// Both plane states have the same coefficients; another Poisson's ratio has none.
-fn states() -> Result<Vec<Row>, CliError> {
+fn states() -> Result<Vec<Row>, RunError> {
     let strain = tuned(
         &model(StressState::PlaneStrain, 3.0)?,
         Method::LeastSquares,

@@ -10,7 +10,7 @@ use super::PAPER;
 use super::figures::{curve, picture};
 use super::front::{groups, slopes, widest_gap};
 use super::record::{Look, Recorded, Symmetry, record};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -92,7 +92,7 @@ const VARIANTS: [Variant; 5] = [
     },
 ];
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let deck = read(&[])?;
     let recorded = watched(&deck, context)?;
     let course = Course::of(&recorded);
@@ -107,12 +107,12 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
-fn read(overrides: &[&str]) -> Result<Deck, CliError> {
+fn read(overrides: &[&str]) -> Result<Deck, RunError> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.into()).collect();
     Ok(Deck::parse(DECK, "branching.toml", &overrides)?)
 }
 
-fn watched(deck: &Deck, context: &Context<'_>) -> Result<Recorded, CliError> {
+fn watched(deck: &Deck, context: &Context<'_>) -> Result<Recorded, RunError> {
     let columns = (LENGTH / deck.body.grid.spacing).round() as usize;
     record(deck, |cloud| Symmetry::up_down(cloud, columns), context)
 }
@@ -154,7 +154,7 @@ impl Course {
         self.speeds.iter().map(|speed| speed.1).reduce(f64::max)
     }
 
-    fn draw(&self, context: &Context<'_>, recorded: &Recorded) -> Result<(), CliError> {
+    fn draw(&self, context: &Context<'_>, recorded: &Recorded) -> Result<(), RunError> {
         picture(context, recorded, STUDY.title)?;
         let speed = Axis::new("speed of the foremost point", "m/s");
         curve(

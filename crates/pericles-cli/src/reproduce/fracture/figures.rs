@@ -6,14 +6,14 @@ use pericles_io::{Axis, Curve, LineChart};
 
 use super::super::Context;
 use super::record::Recorded;
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The damage at the end.
 pub(super) fn picture(
     context: &Context<'_>,
     recorded: &Recorded,
     title: &str,
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     let Some(path) = context.figure("damage.png") else {
         return Ok(());
     };
@@ -30,7 +30,7 @@ pub(super) fn curve(
     name: &str,
     axis: Axis,
     points: &[(f64, f64)],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     let Some(path) = context.figure(name) else {
         return Ok(());
     };

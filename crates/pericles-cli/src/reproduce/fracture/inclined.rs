@@ -9,7 +9,7 @@ use super::PAPER;
 use super::figures::{curve, picture};
 use super::front::{arms, slopes};
 use super::record::{Look, Recorded, Symmetry, record};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -67,7 +67,7 @@ fn motion(recorded: &Recorded) -> [Vec<(f64, f64)>; 2] {
     [front, speeds]
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = original(context)?;
     if context.full {
         for variant in &VARIANTS {
@@ -77,7 +77,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
-fn variant_rows(variant: &Variant, context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn variant_rows(variant: &Variant, context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let overrides: Vec<String> = variant.overrides.iter().map(|&text| text.into()).collect();
     let deck = Deck::parse(DECK, "inclined.toml", &overrides)?;
     let recorded = record(&deck, Symmetry::half_turn, context)?;
@@ -103,7 +103,7 @@ fn variant_rows(variant: &Variant, context: &Context<'_>) -> Result<Vec<Row>, Cl
     Ok(rows)
 }
 
-fn original(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn original(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let deck = Deck::parse(DECK, "inclined.toml", &[])?;
     let recorded = record(&deck, Symmetry::half_turn, context)?;
     let [front, speeds] = motion(&recorded);
@@ -199,7 +199,7 @@ fn draw(
     recorded: &Recorded,
     front: &[(f64, f64)],
     speeds: &[(f64, f64)],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     picture(context, recorded, STUDY.title)?;
     let reach = Axis::new("farthest point from the middle", "m");
     curve(context, "tip.png", reach, front)?;

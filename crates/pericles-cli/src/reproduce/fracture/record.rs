@@ -1,7 +1,7 @@
 //! Runs a deck and keeps what the studies measure at every look.
 
-use std::cell::RefCell;
-use std::rc::Rc;
+use std::mem;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use pericles::observe::{
     CrackTracker, Energies, Field, ObserveError, Observer, Schedule, Snapshot,
@@ -13,9 +13,8 @@ use pericles_deck::Deck;
 use super::super::Context;
 use super::super::row::Row;
 use super::{LOOK, THRESHOLD};
-use crate::error::CliError;
-use crate::prepare::Facts;
-use crate::progress::Progress;
+use pericles_run::Facts;
+use pericles_run::RunError;
 
 /// A symmetry of a body: each point's partner, and the signs of the displacement's components there.
 pub(super) struct Symmetry {
@@ -136,26 +135,30 @@ pub(super) fn record(
     deck: &Deck,
     symmetry: impl FnOnce(&PointCloud) -> Symmetry,
     context: &Context<'_>,
-) -> Result<Recorded, CliError> {
+) -> Result<Recorded, RunError> {
     let model = deck.build()?;
     let facts = Facts::of(deck, &model);
     let recorder = Recorder {
         tracker: CrackTracker::new(&model.cloud, model.cracks.clone(), THRESHOLD),
         symmetry: symmetry(&model.cloud),
-        looks: Rc::default(),
+        looks: Arc::default(),
     };
-    let looks = Rc::clone(&recorder.looks);
+    let looks = Arc::clone(&recorder.looks);
     let mut simulation = model.simulation();
     simulation.observe(Schedule::Interval(LOOK), Box::new(recorder));
-    let mut progress = Progress::new(context.quiet, 0, simulation.steps());
+    let mut progress = context.progress(simulation.steps());
     simulation
         .run(|run| {
-            progress.step(run.state().step, run.state().t);
+            if let Some(progress) = &mut progress {
+                progress.step(run.state().step, run.state().t);
+            }
             Control::Continue
         })
-        .map_err(|error| CliError::of_run(error, || "the study stopped there".into()))?;
-    progress.finish();
-    let looks = looks.take();
+        .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
+    if let Some(progress) = progress {
+        progress.finish();
+    }
+    let looks = mem::take(&mut *looks.lock().unwrap_or_else(PoisonError::into_inner));
     Ok(Recorded {
         looks,
         simulation,
@@ -166,7 +169,7 @@ pub(super) fn record(
 struct Recorder {
     tracker: CrackTracker,
     symmetry: Symmetry,
-    looks: Rc<RefCell<Vec<Look>>>,
+    looks: Arc<Mutex<Vec<Look>>>,
 }
 
 impl Observer for Recorder {
@@ -185,7 +188,8 @@ impl Observer for Recorder {
             damage_defect,
             displacement_defect,
         };
-        self.looks.borrow_mut().push(look);
+        let mut looks = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        looks.push(look);
         Ok(())
     }
 }

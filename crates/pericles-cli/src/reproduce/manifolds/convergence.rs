@@ -11,7 +11,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::modes::breathing;
 use super::{PAPER, STANDARD, change};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -99,10 +99,10 @@ const DIAGONALS: Quotients = Quotients {
     tolerance: [0.06, 0.06, 0.6, 0.6, 0.06],
 };
 
-fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let levels: &[u32] = if context.full { &[3, 4, 5] } else { &[3, 4] };
     let kept = Kept::default();
-    let system = |level: u32, changes: &[String]| -> Result<System, CliError> {
+    let system = |level: u32, changes: &[String]| -> Result<System, RunError> {
         let mut changes = changes.to_vec();
         changes.push(change("body.level", level));
         // Nothing moves here, but a deck whose step is too long for a fine mesh is refused.

@@ -9,7 +9,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::modes::breathing;
 use super::{CALIBRATED, PAPER, STANDARD, change, chart, run};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -21,7 +21,7 @@ pub(super) const STUDY: Study = Study {
 
 const WHY: &str = "no consistent reading of the model gives the printed period: with the area of each vertex the sphere is 80 to 130 times softer than the paper's";
 
-fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     // α, printed period, that of the eigenvalue problem, highest frequency, that of the calibrated preset.
     let cases = [
@@ -41,7 +41,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 .note(WHY),
         );
         let omega = highest_frequency(&model.system, &model.state.u)
-            .map_err(|error| CliError::Simulation(error.into()))?;
+            .map_err(|error| RunError::Simulation(error.into()))?;
         rows.push(
             Row::new(
                 format!("highest frequency, standard, α = {alpha}"),

@@ -5,7 +5,7 @@ use pericles_io::Axis;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{CALIBRATED, PAPER, STANDARD, chart, run};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -15,7 +15,7 @@ pub(super) const STUDY: Study = Study {
     run: study,
 };
 
-fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     for (preset, expected) in [(STANDARD, 2.0), (CALIBRATED, 3.0)] {

@@ -5,7 +5,7 @@ use pericles_io::Axis;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{CALIBRATED, Course, PAPER, STANDARD, change, chart, run};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -23,7 +23,7 @@ fn changes(p: f64, alpha: f64, speed: f64) -> Vec<String> {
     ]
 }
 
-fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = spreads()?;
     let (powers, speeds): (&[f64], &[f64]) = if context.full {
         (&[2.0, 3.0, 5.0], &[0.1, 0.5, 1.0])
@@ -73,7 +73,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// For p ≠ 2 the scheme conserves energy to second order only.
-fn spreads() -> Result<Vec<Row>, CliError> {
+fn spreads() -> Result<Vec<Row>, RunError> {
     let mut found = Vec::new();
     for dt in [1e-3, 5e-4, 2.5e-4] {
         let mut changes = changes(3.0, 0.999, 1.0);

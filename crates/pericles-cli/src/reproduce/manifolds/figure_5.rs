@@ -8,7 +8,7 @@ use pericles_manifold::SurfaceMeasure;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{CALIBRATED, PAPER, change, chart, run};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -18,7 +18,7 @@ pub(super) const STUDY: Study = Study {
     run: study,
 };
 
-fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let changes = [
         change("material.p", 5),
         change("initial.0.random_velocity.radius", 1),

@@ -5,7 +5,7 @@ use pericles_io::Axis;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{PAPER, POLES, change, chart, run};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -24,7 +24,7 @@ const CASES: [(f64, f64, f64, f64); 5] = [
     (0.999, 0.8e-5, 5.31e-5, 2.84e-6),
 ];
 
-fn study(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     let mut courses = Vec::new();
     for (alpha, printed, wide, narrow) in CASES {

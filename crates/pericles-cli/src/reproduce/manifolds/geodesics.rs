@@ -6,7 +6,7 @@ use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks};
 
 use super::super::row::Row;
 use super::{Context, PAPER, Study};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -111,7 +111,7 @@ const EXPECTED: [Expected; 6] = [
     },
 ];
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = mesh()?;
     let levels = if context.full { 3..=5 } else { 3..=4 };
     let mut curves: Vec<Vec<[f64; 2]>> = vec![Vec::new(); EXPECTED.len()];
@@ -144,7 +144,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// The paper's mesh, and its bonds by each notion of distance.
-fn mesh() -> Result<Vec<Row>, CliError> {
+fn mesh() -> Result<Vec<Row>, RunError> {
     let sphere = Surface::icosphere(3, 1.0).map_err(pericles::PericlesError::from)?;
     let checked = sphere.checked(SurfaceChecks::default());
     let (sphere, report) = checked.map_err(pericles::PericlesError::from)?;
@@ -214,7 +214,7 @@ fn arcs(sphere: &Surface) -> GeodesicPairs {
     pairs
 }
 
-fn draw(context: &Context<'_>, curves: &[Vec<[f64; 2]>]) -> Result<(), CliError> {
+fn draw(context: &Context<'_>, curves: &[Vec<[f64; 2]>]) -> Result<(), RunError> {
     let Some(path) = context.figure("errors.png") else {
         return Ok(());
     };

@@ -22,7 +22,7 @@ use pericles_io::{Axis, Curve, LineChart};
 use pericles_manifold::SurfaceMeasure;
 
 use super::{Context, Study};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 const PAPER: &str = "Coclite et al. 2022";
 
@@ -64,7 +64,7 @@ const POLES: Preset = Preset {
 };
 
 impl Preset {
-    fn deck(&self, changes: &[String]) -> Result<Deck, CliError> {
+    fn deck(&self, changes: &[String]) -> Result<Deck, RunError> {
         Ok(Deck::parse(self.text, self.file, changes)?)
     }
 }
@@ -115,8 +115,8 @@ impl Course {
 fn run(
     preset: Preset,
     changes: &[String],
-    mut look: impl FnMut(&Simulation) -> Result<(), CliError>,
-) -> Result<(Simulation, Course), CliError> {
+    mut look: impl FnMut(&Simulation) -> Result<(), RunError>,
+) -> Result<(Simulation, Course), RunError> {
     let model = preset.deck(changes)?.build()?;
     let measure = model.surface.clone().map(SurfaceMeasure::new);
     let mut simulation = model.simulation();
@@ -148,7 +148,7 @@ fn run(
                 }
             }
         })
-        .map_err(CliError::Simulation)?;
+        .map_err(RunError::Simulation)?;
     // The loop does not ask after the last step.
     note(&simulation);
     match trouble {
@@ -169,7 +169,7 @@ fn chart(
     title: &str,
     axis: Axis,
     curves: &[(String, &[f64], &[f64])],
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     let Some(path) = context.figure(name) else {
         return Ok(());
     };

@@ -3,11 +3,11 @@
 use pericles::System;
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The lowest eigenvalue ω² of −K/ρ for p = 2 on one component of the displacement that is orthogonal to translations: inverse iteration from the
 /// coordinate x. On a sphere it is that of u = x, y, z: the body breathes.
-pub(super) fn breathing(system: &System) -> Result<f64, CliError> {
+pub(super) fn breathing(system: &System) -> Result<f64, RunError> {
     let n = system.points();
     let areas = system.cloud().volumes();
     let mass: Vec<f64> = (0..n).map(|i| system.density().at(i) * areas[i]).collect();
@@ -39,7 +39,7 @@ pub(super) fn breathing(system: &System) -> Result<f64, CliError> {
         let right: Vec<f64> = vector.iter().zip(&mass).map(|(x, m)| x * m).collect();
         let mut next = vector.clone();
         conjugate_gradient(&mut apply, &right, &mut next, &limits, &mut work)
-            .map_err(|error| CliError::Simulation(error.into()))?;
+            .map_err(|error| RunError::Simulation(error.into()))?;
         let before = value;
         value = inner(&next, &vector) / inner(&next, &next);
         let size = inner(&next, &next).sqrt();

@@ -7,7 +7,7 @@ use pericles::Simulation;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{Method, PAPER, Problem, problem};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// A linear plate pulled from rest.
 pub(crate) const PLATE: Study = Study {
@@ -69,9 +69,9 @@ impl Convergence {
         method: Method,
         levels: std::ops::Range<usize>,
         changes: &[String],
-    ) -> Result<Self, CliError> {
+    ) -> Result<Self, RunError> {
         let first = levels.start;
-        let errors: Result<Vec<f64>, CliError> = levels
+        let errors: Result<Vec<f64>, RunError> = levels
             .map(|level| {
                 let run = problem.run(method, LEVELS[level], changes)?;
                 Ok(error(&run, reference))
@@ -120,7 +120,7 @@ fn error(run: &Simulation, reference: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn reference(problem: &Problem) -> Result<Vec<f64>, CliError> {
+fn reference(problem: &Problem) -> Result<Vec<f64>, RunError> {
     let run = problem.run(Method::Uniform(4), REFERENCE, &[])?;
     Ok(run.state().u[..run.system().points()].to_vec())
 }
@@ -147,7 +147,7 @@ const PLATE_TWO: [(u32, [f64; 4]); 2] = [
     (4, [4.135e-7, 3.49e-8, 2.31e-9, 1.467e-10]),
 ];
 
-fn plate(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn plate(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let problem = problem!("plate.toml");
     let exact = reference(&problem)?;
     let mut rows = vec![
@@ -189,8 +189,8 @@ fn printed_orders(order: u32, row: Row) -> Row {
 }
 
 /// How fast the zoned scheme with M = 1 comes to the plain one.
-fn equal_steps(problem: &Problem, order: u32) -> Result<Row, CliError> {
-    let difference = |steps| -> Result<f64, CliError> {
+fn equal_steps(problem: &Problem, order: u32) -> Result<Row, RunError> {
+    let difference = |steps| -> Result<f64, RunError> {
         let plain = problem.run(Method::Uniform(order), steps, &[])?;
         let zoned = problem.run(Method::Two(order, 1), steps, &[])?;
         Ok(error(&zoned, &plain.state().u))
@@ -207,7 +207,7 @@ fn every_choice(
     problem: &Problem,
     exact: &[f64],
     context: &Context<'_>,
-) -> Result<Vec<Row>, CliError> {
+) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (predictor, interpolant) in [
         ("structured", "stages"),
@@ -237,7 +237,7 @@ const NONLINEAR: [Expected; 2] = [
     expected(Method::Two(4, 4), [1.026e-5, 7.848e-7, 4.989e-8, 3.103e-9]),
 ];
 
-fn plate_nonlinear(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn plate_nonlinear(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let problem = problem!("plate-nonlinear.toml");
     let exact = reference(&problem)?;
     let mut rows = Vec::new();
@@ -276,7 +276,7 @@ const BLOCK_TWO: [Expected; 2] = [
     ),
 ];
 
-fn block(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn block(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let problem = problem!("block.toml");
     let exact = reference(&problem)?;
     let mut rows = Vec::new();

@@ -15,7 +15,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::turns::{Bench, Turns};
 use super::{Method, PAPER, problem, tableau};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -65,7 +65,7 @@ impl Outline {
     }
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
     let mut bench = one.install(|| Bench::new(&problem!("speed.toml")))?;
@@ -92,7 +92,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
             });
         }
     }
-    let on_two = two.install(|| -> Result<Vec<Row>, CliError> {
+    let on_two = two.install(|| -> Result<Vec<Row>, RunError> {
         let mut rows = Vec::new();
         for ratio in [4, 8] {
             rows.extend(on_two_threads(&mut bench, ratio)?);
@@ -106,7 +106,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// Counted evaluations over the model's, which must be one.
-fn counts(bench: &mut Bench) -> Result<Vec<Row>, CliError> {
+fn counts(bench: &mut Bench) -> Result<Vec<Row>, RunError> {
     const STEPS: u32 = 3;
     let n = bench.points();
     let mut rows = Vec::new();
@@ -179,7 +179,7 @@ struct Case {
 
 impl Case {
     /// The rows and the speed-up.
-    fn rows(&self, bench: &mut Bench) -> Result<(Vec<Row>, f64), CliError> {
+    fn rows(&self, bench: &mut Bench) -> Result<(Vec<Row>, f64), RunError> {
         let fine = self.outline.points(bench.system.cloud(), self.fraction);
         let fraction = fine.len() as f64 / bench.points() as f64;
         let m = f64::from(self.ratio);
@@ -217,7 +217,7 @@ impl Case {
     }
 }
 
-fn on_two_threads(bench: &mut Bench, ratio: u32) -> Result<Vec<Row>, CliError> {
+fn on_two_threads(bench: &mut Bench, ratio: u32) -> Result<Vec<Row>, RunError> {
     let fine = Outline::Box.points(bench.system.cloud(), 0.06);
     let turns = Turns::take(bench, ratio, &fine, [7, 2])?;
     Ok(vec![Row::new(
@@ -228,7 +228,7 @@ fn on_two_threads(bench: &mut Bench, ratio: u32) -> Result<Vec<Row>, CliError> {
 }
 
 /// The pre-cracked plate of the paper, whose fine strip is a fifth of it.
-fn papers_case() -> Result<Vec<Row>, CliError> {
+fn papers_case() -> Result<Vec<Row>, RunError> {
     let problem = problem!("crack.toml");
     let mut bench = Bench::new(&problem)?;
     let model = problem.model(Method::Two(4, 4), &[])?;
@@ -263,7 +263,7 @@ struct SpeedUps {
     points: Vec<(f64, f64)>,
 }
 
-fn draw(context: &Context<'_>, curves: &[SpeedUps]) -> Result<(), CliError> {
+fn draw(context: &Context<'_>, curves: &[SpeedUps]) -> Result<(), RunError> {
     let Some(path) = context.figure("speed-up.png") else {
         return Ok(());
     };

@@ -8,7 +8,7 @@ use pericles::Simulation;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{Method, PAPER, Problem, problem, relative};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -25,7 +25,7 @@ const HORIZON: f64 = 3.015 * 0.625e-3;
 const STEPS: f64 = 128.0;
 const END: f64 = 15e-6;
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = pull()?;
     let ratios: &[u32] = if context.full { &[2, 4, 8] } else { &[4] };
     rows.extend(before_failure(ratios)?);
@@ -36,7 +36,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// Orders without failure.
-fn pull() -> Result<Vec<Row>, CliError> {
+fn pull() -> Result<Vec<Row>, RunError> {
     let problem = problem!("pull.toml");
     let exact = problem.run(Method::Uniform(4), 1120, &[])?;
     let mut rows = Vec::new();
@@ -66,7 +66,7 @@ fn plate() -> Problem {
 }
 
 /// The plate at a time, in steps of the length of the deck's over `ratio`.
-fn at(method: Method, end: f64, ratio: u32, changes: &[String]) -> Result<Simulation, CliError> {
+fn at(method: Method, end: f64, ratio: u32, changes: &[String]) -> Result<Simulation, RunError> {
     let mut all = vec![format!("time.end={end:?}")];
     all.extend_from_slice(changes);
     let steps = (STEPS * end / END).round() as u64 * u64::from(ratio);
@@ -74,7 +74,7 @@ fn at(method: Method, end: f64, ratio: u32, changes: &[String]) -> Result<Simula
 }
 
 /// Until the first bonds have broken the runs are the same.
-fn before_failure(ratios: &[u32]) -> Result<Vec<Row>, CliError> {
+fn before_failure(ratios: &[u32]) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (end, most, distance) in [(7e-6, 0.0, Some(3e-4)), (9e-6, 6.0, None)] {
         for &ratio in ratios {
@@ -125,7 +125,7 @@ fn tip(run: &Simulation) -> f64 {
 }
 
 /// At the end, after several hundred bonds have broken.
-fn failure(ratio: u32) -> Result<Vec<Row>, CliError> {
+fn failure(ratio: u32) -> Result<Vec<Row>, RunError> {
     let fine = at(Method::Uniform(4), END, ratio, &[])?;
     let following = ["time.adaptive={}".to_owned()];
     let mut rows = vec![

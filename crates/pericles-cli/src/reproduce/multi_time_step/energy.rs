@@ -8,7 +8,7 @@ use pericles_deck::Model;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{Method, PAPER, Problem, problem};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -38,7 +38,7 @@ struct Kept {
     evaluations: f64,
 }
 
-fn keep(method: Method, omega_dt: f64, steps: u64, changes: &[String]) -> Result<Kept, CliError> {
+fn keep(method: Method, omega_dt: f64, steps: u64, changes: &[String]) -> Result<Kept, RunError> {
     let mut model = plate().model(method, changes)?;
     let omega = model
         .frequency
@@ -62,7 +62,7 @@ fn keep(method: Method, omega_dt: f64, steps: u64, changes: &[String]) -> Result
         }
         Control::Continue
     })
-    .map_err(|error| CliError::of_run(error, || "the study stopped there".into()))?;
+    .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
     let (system, v) = (run.system(), &run.state().v);
     let n = system.points();
     let after = system.momentum(v);
@@ -78,7 +78,7 @@ fn keep(method: Method, omega_dt: f64, steps: u64, changes: &[String]) -> Result
     })
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     const STEPS: u64 = 3000;
     let mut rows = Vec::new();
     for method in [Method::Verlet, Method::Respa(4)] {

@@ -9,7 +9,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::turns::{Bench, Turns};
 use super::{Method, PAPER, Problem, problem, relative};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -24,14 +24,14 @@ const RATIO: u32 = 8;
 /// Coarse steps of 1.6 µs to the deck's end.
 const STEPS: u64 = 75;
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = speed()?;
     rows.extend(ringing()?);
     rows.extend(struck()?);
     Ok(rows)
 }
 
-fn speed() -> Result<Vec<Row>, CliError> {
+fn speed() -> Result<Vec<Row>, RunError> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     one.install(|| {
         let problem = problem!(example "inclusion.toml", |_| ());
@@ -76,7 +76,7 @@ fn speed() -> Result<Vec<Row>, CliError> {
 
 /// Relative distances of a set's displacements to those by velocity Verlet with a quarter of the fine step: of r-RESPA, RK4 with two steps and velocity Verlet with the
 /// fine step.
-fn errors(problem: &Problem, set: &str, steps: u64, end: f64) -> Result<[f64; 3], CliError> {
+fn errors(problem: &Problem, set: &str, steps: u64, end: f64) -> Result<[f64; 3], RunError> {
     let end = [format!("time.end={end:?}")];
     let model = problem.model(Method::Verlet, &[])?;
     let n = model.cloud.len();
@@ -88,7 +88,7 @@ fn errors(problem: &Problem, set: &str, steps: u64, end: f64) -> Result<[f64; 3]
     };
     let fine = steps * u64::from(RATIO);
     let exact = problem.run(Method::Verlet, 4 * fine, &end)?;
-    let error = |method, steps| -> Result<f64, CliError> {
+    let error = |method, steps| -> Result<f64, RunError> {
         let run = problem.run(method, steps, &end)?;
         Ok(relative(&part(&run.state().u), &part(&exact.state().u)))
     };
@@ -100,7 +100,7 @@ fn errors(problem: &Problem, set: &str, steps: u64, end: f64) -> Result<[f64; 3]
 }
 
 /// The grain itself breathes, too fast for the plate to follow.
-fn ringing() -> Result<Vec<Row>, CliError> {
+fn ringing() -> Result<Vec<Row>, RunError> {
     const CENTRE: [f64; 2] = [0.06, 0.05];
     const RADIUS: f64 = 8e-3;
     /// Two coarse steps: one period or so of the breathing.
@@ -131,7 +131,7 @@ fn ringing() -> Result<Vec<Row>, CliError> {
 }
 
 /// The deck itself: a wave from outside, which the plate carries with the coarse step.
-fn struck() -> Result<Vec<Row>, CliError> {
+fn struck() -> Result<Vec<Row>, RunError> {
     let problem = problem!(example "inclusion.toml", |_| ());
     let [respa, two, verlet] = errors(&problem, "all", STEPS, 120e-6)?;
     Ok(vec![

@@ -17,7 +17,7 @@ use pericles::time::{Integrator, RungeKutta, Tableau};
 use pericles::{Control, Simulation};
 use pericles_deck::{Deck, Model};
 
-use crate::error::CliError;
+use pericles_run::RunError;
 
 use super::Study;
 
@@ -102,7 +102,7 @@ impl Method {
     }
 }
 
-fn tableau(order: u32) -> Result<Tableau, CliError> {
+fn tableau(order: u32) -> Result<Tableau, RunError> {
     Ok(match order {
         // Heun's method: the paper's parameter is lost.
         3 => Tableau::rk3(0.75)?,
@@ -111,7 +111,7 @@ fn tableau(order: u32) -> Result<Tableau, CliError> {
 }
 
 impl Problem {
-    fn model(&self, method: Method, changes: &[String]) -> Result<Model, CliError> {
+    fn model(&self, method: Method, changes: &[String]) -> Result<Model, RunError> {
         let mut all = method.changes();
         all.extend_from_slice(changes);
         let mut model = Deck::parse(self.text, self.file, &all)?.build()?;
@@ -130,7 +130,7 @@ impl Problem {
     }
 
     /// The end of the problem in so many steps.
-    fn run(&self, method: Method, steps: u64, changes: &[String]) -> Result<Simulation, CliError> {
+    fn run(&self, method: Method, steps: u64, changes: &[String]) -> Result<Simulation, RunError> {
         let end = Deck::parse(self.text, self.file, changes)?.time.end;
         let mut all = vec![format!("time.dt={:?}", end / steps as f64)];
         all.extend_from_slice(changes);
@@ -140,10 +140,10 @@ impl Problem {
     }
 }
 
-fn finish(simulation: &mut Simulation) -> Result<(), CliError> {
+fn finish(simulation: &mut Simulation) -> Result<(), RunError> {
     simulation
         .run(|_| Control::Continue)
-        .map_err(|error| CliError::of_run(error, || "the study stopped there".into()))?;
+        .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
     Ok(())
 }
 

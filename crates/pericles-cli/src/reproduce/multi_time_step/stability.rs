@@ -8,7 +8,7 @@ use pericles_deck::Model;
 use super::super::row::Row;
 use super::super::{Context, Study};
 use super::{Method, PAPER, Problem, problem};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -33,7 +33,7 @@ fn growth(
     changes: &[String],
     omega_dt: f64,
     [from, to]: [u64; 2],
-) -> Result<f64, CliError> {
+) -> Result<f64, RunError> {
     const BURST: f64 = 1e200;
     let Model {
         mut system,
@@ -69,11 +69,11 @@ fn growth(
 }
 
 /// The largest ω dt between 0.8 and 1 times `most` without growth, to three thousandths.
-fn limit(method: Method, changes: &[String], most: f64) -> Result<f64, CliError> {
+fn limit(method: Method, changes: &[String], most: f64) -> Result<f64, RunError> {
     /// Above what the bounded swings of the energy make.
     const GROWS: f64 = 2e-4;
     let grows =
-        |omega_dt| Ok::<_, CliError>(growth(method, changes, omega_dt, [300, 1300])? > GROWS);
+        |omega_dt| Ok::<_, RunError>(growth(method, changes, omega_dt, [300, 1300])? > GROWS);
     let (mut low, mut high) = (0.8 * most, most);
     while high - low > 3e-3 * most {
         let middle = 0.5 * (low + high);
@@ -86,13 +86,13 @@ fn limit(method: Method, changes: &[String], most: f64) -> Result<f64, CliError>
     Ok(low)
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = limits(context)?;
     rows.extend(rates(context)?);
     Ok(rows)
 }
 
-fn limits(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn limits(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (order, full) in [(3, 3f64.sqrt()), (4, 8f64.sqrt())] {
         for interpolant in ["hermite", "stages"] {
@@ -144,7 +144,7 @@ fn limits(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// Growth with the paper's predictor and with ours.
-fn rates(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn rates(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let backward = ["time.predictor=backward-difference".to_owned()];
     let mut rows = Vec::new();
     // ω dt, and the growth that the independent code found on a plate like it.

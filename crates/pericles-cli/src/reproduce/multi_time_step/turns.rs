@@ -11,7 +11,7 @@ use pericles::{Interrupt, PericlesError, System};
 use pericles_deck::Model;
 
 use super::{Method, Problem, tableau};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// A body with its state, on which schemes take turns.
 pub(super) struct Bench {
@@ -22,7 +22,7 @@ pub(super) struct Bench {
 
 impl Bench {
     /// The body of a problem; the coarse step is ω dt = 1.
-    pub(super) fn new(problem: &Problem) -> Result<Self, CliError> {
+    pub(super) fn new(problem: &Problem) -> Result<Self, RunError> {
         let Model {
             mut system,
             mut state,
@@ -106,7 +106,7 @@ impl Turns {
         ratio: u32,
         fine: &PointSet,
         [rounds, steps]: [u32; 2],
-    ) -> Result<Self, CliError> {
+    ) -> Result<Self, RunError> {
         let options = bench.options(ratio, fine);
         let regions = options.fine.clone();
         let rk4 = tableau(4)?;

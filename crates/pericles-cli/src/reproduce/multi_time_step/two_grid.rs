@@ -10,7 +10,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::turns::{Bench, Turns};
 use super::{Method, PAPER, Problem, problem};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(crate) const STUDY: Study = Study {
@@ -27,7 +27,7 @@ fn plate() -> Problem {
     problem!("two-grid.toml")
 }
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for cells in [1, 2] {
         rows.extend(patch_test(cells)?);
@@ -79,7 +79,7 @@ impl Places {
 }
 
 /// A uniform strain: the force it leaves, and the displacement that is in balance with the border held to it.
-fn patch_test(finer: u32) -> Result<Vec<Row>, CliError> {
+fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
     let spacing = 4e-3 / f64::from(finer);
     let changes = [format!("body.spacing={spacing:?}")];
     let deck = Deck::parse(plate().text, plate().file, &changes)?;
@@ -135,7 +135,7 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, CliError> {
 }
 
 /// max |u − u_strained| over e L, where K u = 0 with the points near the border held at the uniform strain.
-fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f64, CliError> {
+fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f64, RunError> {
     let system = &model.system;
     let n = system.points();
     let volumes = system.cloud().volumes();
@@ -176,7 +176,7 @@ fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f6
 }
 
 /// How much shorter the stable step of the small cells is.
-fn frequencies() -> Result<Vec<Row>, CliError> {
+fn frequencies() -> Result<Vec<Row>, RunError> {
     let model = plate().model(Method::Respa(RATIO), &[])?;
     let whole = highest_frequency(&model.system, &model.state.u)?.estimate;
     let coarse = model.frequency.map(|frequency| frequency.estimate);
@@ -192,7 +192,7 @@ fn frequencies() -> Result<Vec<Row>, CliError> {
 }
 
 /// A free body: momentum to round-off, energy within bounds.
-fn conservation() -> Result<Vec<Row>, CliError> {
+fn conservation() -> Result<Vec<Row>, RunError> {
     const STEPS: u64 = 2000;
     let mut model = plate().model(Method::Respa(RATIO), &[])?;
     for (k, v) in model.state.v.iter_mut().enumerate() {
@@ -214,7 +214,7 @@ fn conservation() -> Result<Vec<Row>, CliError> {
         }
         Control::Continue
     })
-    .map_err(|error| CliError::of_run(error, || "the study stopped there".into()))?;
+    .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
     let system = run.system();
     let after = system.momentum(&run.state().v);
     let apart = (0..3)
@@ -234,7 +234,7 @@ fn conservation() -> Result<Vec<Row>, CliError> {
     ])
 }
 
-fn speed() -> Result<Vec<Row>, CliError> {
+fn speed() -> Result<Vec<Row>, RunError> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     one.install(|| {
         let model = plate().model(Method::Respa(RATIO), &[])?;

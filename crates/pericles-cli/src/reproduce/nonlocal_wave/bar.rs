@@ -12,7 +12,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::PAPER;
 use super::line::{Method, UNIT, cells_of, integrator, march, system};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -30,7 +30,7 @@ fn error(
     end: f64,
     start: fn(f64) -> f64,
     exact: &dyn ExactSolution,
-) -> Result<f64, CliError> {
+) -> Result<f64, RunError> {
     let material = BondMaterial {
         horizon: ratio * h,
         influence: Influence::default(),
@@ -65,7 +65,7 @@ fn error(
     Ok(worst)
 }
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let bar = StretchedBar {
         length: 1.0,
         strain: 1.0,

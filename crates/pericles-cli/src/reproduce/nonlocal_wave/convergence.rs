@@ -6,7 +6,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::PAPER;
 use super::line::{GT, MT, Method, Reference, UNIT, nodes};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -79,7 +79,7 @@ const TABLE: [Cells; 4] = [
     },
 ];
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     let mut plain = Vec::new();
     let mut orders = Vec::new();

@@ -14,7 +14,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::PAPER;
 use super::line::{UNIT, cells_of, largest, march, pulse, system};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -27,7 +27,7 @@ pub(super) const STUDY: Study = Study {
 const T: f64 = 30.0;
 
 /// The state after one step, and the seconds that making the scheme and stepping took.
-fn step(system: &mut System, functions: FunctionMethod) -> Result<(State, f64), CliError> {
+fn step(system: &mut System, functions: FunctionMethod) -> Result<(State, f64), RunError> {
     let began = Instant::now();
     let options = TrigonometricOptions {
         functions,
@@ -39,7 +39,7 @@ fn step(system: &mut System, functions: FunctionMethod) -> Result<(State, f64), 
     Ok((state, began.elapsed().as_secs_f64()))
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     let sizes: &[usize] = if context.full { &[501, 2001] } else { &[501] };
     for &n in sizes {

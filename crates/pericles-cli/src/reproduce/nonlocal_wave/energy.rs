@@ -13,7 +13,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::PAPER;
 use super::line::{MT, Method, UNIT, integrator, march, nodes, pulse, system};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -31,7 +31,7 @@ struct Course {
     physical_at_start: f64,
 }
 
-fn course(method: Method, h: f64) -> Result<Course, CliError> {
+fn course(method: Method, h: f64) -> Result<Course, RunError> {
     let cloud = nodes(method, h)?;
     let mut system = system(&cloud, &UNIT.material())?;
     let mut scheme = integrator(method, h, &system)?;
@@ -78,7 +78,7 @@ fn farthest(values: &[f64]) -> f64 {
         .fold(0.0, |m: f64, x| if x.abs() > m.abs() { *x } else { m })
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     let mut drawn = Vec::new();
     for (name, method, h, expected) in [
@@ -153,7 +153,7 @@ struct Loaded {
     bound: Vec<f64>,
 }
 
-fn loaded(method: Method, h: f64, dt: f64, end: f64) -> Result<Loaded, CliError> {
+fn loaded(method: Method, h: f64, dt: f64, end: f64) -> Result<Loaded, RunError> {
     let cloud = nodes(method, h)?;
     let mut body = system(&cloud, &UNIT.material())?;
     let middle = (0..cloud.len() as u32).filter(|&i| cloud.axis(0)[i as usize].abs() < 1.0);
@@ -193,7 +193,7 @@ fn loaded(method: Method, h: f64, dt: f64, end: f64) -> Result<Loaded, CliError>
 }
 
 /// e(t) ≤ e(0) exp(νt) + 1/(2νρ) ∫ exp(ν(t−s)) ‖b‖² ds.
-fn inequality(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn inequality(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     const END: f64 = 8.0;
     let mut rows = Vec::new();
     for (name, method, dt) in [

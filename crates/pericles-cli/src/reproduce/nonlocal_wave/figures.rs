@@ -11,7 +11,7 @@ use super::PAPER;
 use super::convergence::LINE;
 use super::line::{Method, UNIT, integrator, march, nodes, pulse, system};
 use super::spectral::{displacement, errors, ring};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -21,7 +21,7 @@ pub(super) const STUDY: Study = Study {
     run,
 };
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = vec![line(context)?];
     rows.push(period(context)?);
     rows.push(error_over_place(context)?);
@@ -33,7 +33,7 @@ fn chart(title: &str, y: Axis) -> LineChart {
 }
 
 /// Figure 1: MSV on the piece of line, until waves have met its ends.
-fn line(context: &Context<'_>) -> Result<Row, CliError> {
+fn line(context: &Context<'_>) -> Result<Row, RunError> {
     const H: f64 = 0.1;
     let cloud = nodes(Method::Msv, H)?;
     let mut system = system(&cloud, &UNIT.material())?;
@@ -63,7 +63,7 @@ fn line(context: &Context<'_>) -> Result<Row, CliError> {
 }
 
 /// Figure 3: the spectral method at six times.
-fn period(context: &Context<'_>) -> Result<Row, CliError> {
+fn period(context: &Context<'_>) -> Result<Row, RunError> {
     let cloud = ring(2.5, 320)?;
     let x = cloud.axis(0).to_vec();
     let mut figure = chart("Spectral method, period 5π", Axis::new("u", ""));
@@ -90,7 +90,7 @@ fn period(context: &Context<'_>) -> Result<Row, CliError> {
 }
 
 /// Figure 4: the error grows towards the ends of the period.
-fn error_over_place(context: &Context<'_>) -> Result<Row, CliError> {
+fn error_over_place(context: &Context<'_>) -> Result<Row, RunError> {
     let found = errors(2.5, 320, f64::INFINITY)?;
     if let Some(path) = context.figure("spectral-error.png") {
         let (x, e): (Vec<f64>, Vec<f64>) = found

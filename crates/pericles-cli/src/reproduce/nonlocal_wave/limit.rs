@@ -7,7 +7,7 @@ use super::super::{Context, Study};
 use super::PAPER;
 use super::convergence::LINE;
 use super::line::{GT, MT, Medium, Method, Reference, nodes};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -17,7 +17,7 @@ pub(super) const STUDY: Study = Study {
     run,
 };
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     const H: f64 = 0.1;
     const STEPS: usize = 30;
     let string = TravellingPulse {

@@ -15,7 +15,7 @@ use pericles_waves::ForceForm;
 use pericles_waves::exact::ExactSolution;
 use pericles_waves::{Trigonometric, TrigonometricOptions};
 
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The medium: ρ = 1, C(ξ) = 4E/(l³√π) exp(−(ξ/l)²).
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +74,7 @@ pub(super) const GT: Method = Method::Gt(Some(4.0));
 const HALF: f64 = 10.0;
 
 /// The nodes of a method at spacing h: −10, −10 + h … 10, or two in each cell of [−10, 10].
-pub(super) fn nodes(method: Method, h: f64) -> Result<Arc<PointCloud>, CliError> {
+pub(super) fn nodes(method: Method, h: f64) -> Result<Arc<PointCloud>, RunError> {
     let cells = (2.0 * HALF / h).round();
     let cloud = match method {
         Method::Gt(_) => gauss_bar(-HALF, cells * h, h, 1.0)?,
@@ -84,7 +84,7 @@ pub(super) fn nodes(method: Method, h: f64) -> Result<Arc<PointCloud>, CliError>
 }
 
 /// The middles of cells of a bar.
-pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, CliError> {
+pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, RunError> {
     let grid = Grid {
         shape: Shape::Box {
             origin: [origin, 0.0, 0.0],
@@ -98,7 +98,7 @@ pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, C
 }
 
 /// A body with free ends.
-pub(super) fn system(cloud: &Arc<PointCloud>, material: &BondMaterial) -> Result<System, CliError> {
+pub(super) fn system(cloud: &Arc<PointCloud>, material: &BondMaterial) -> Result<System, RunError> {
     system_as(cloud, material, ForceForm::Convolution)
 }
 
@@ -107,7 +107,7 @@ pub(super) fn system_as(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     form: ForceForm,
-) -> Result<System, CliError> {
+) -> Result<System, RunError> {
     let constants = material.constants(cloud, StressState::Uniaxial)?;
     let body = BondBody {
         cloud,
@@ -130,7 +130,7 @@ pub(super) fn integrator(
     method: Method,
     h: f64,
     system: &System,
-) -> Result<Box<dyn Integrator>, CliError> {
+) -> Result<Box<dyn Integrator>, RunError> {
     Ok(match method {
         Method::Msv => Box::new(VelocityVerlet),
         Method::Mmi => Box::new(Implicit::new(ImplicitRule::Midpoint, system)?),
@@ -161,7 +161,7 @@ pub(super) fn march(
     dt: f64,
     steps: usize,
     mut visit: impl FnMut(&System, &State),
-) -> Result<(), CliError> {
+) -> Result<(), RunError> {
     integrator.start(system, state);
     for k in 1..=steps {
         integrator.step(system, state, k as f64 * dt, Interrupt::never())?;
@@ -209,7 +209,7 @@ impl Reference {
         method: Method,
         h: f64,
         width: f64,
-    ) -> Result<f64, CliError> {
+    ) -> Result<f64, RunError> {
         let mut system = system(&self.cloud, &medium.material())?;
         let mut integrator = integrator(method, h, &system)?;
         let mut state = pulse(&self.cloud, width);

@@ -7,7 +7,7 @@ use super::super::{Context, Study};
 use super::PAPER;
 use super::convergence::LINE;
 use super::line::{MT, Medium, Method, Reference, nodes};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -24,7 +24,7 @@ const MEDIUM: Medium = Medium {
 
 const CASES: [(f64, f64, usize); 3] = [(0.1, 0.1, 300), (0.05, 0.2, 150), (0.025, 0.4, 75)];
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let line = LineSolution {
         young: MEDIUM.young,
         ..LINE

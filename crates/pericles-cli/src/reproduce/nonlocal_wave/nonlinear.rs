@@ -15,7 +15,7 @@ use super::super::row::Row;
 use super::super::{Context, Study};
 use super::PAPER;
 use super::line::{Method, UNIT, cells_of, largest, march, nodes, pulse, system_as};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -30,7 +30,7 @@ const H: f64 = 0.1;
 /// Height of the pulse over its width: bonds of an L stretch by some tenths of it.
 const HEIGHT: f64 = 0.1;
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = treatments(context)?;
     rows.extend(schemes()?);
     rows.push(series()?);
@@ -45,7 +45,7 @@ fn material(law: PairLaw) -> BondMaterial {
     }
 }
 
-fn body(law: PairLaw) -> Result<System, CliError> {
+fn body(law: PairLaw) -> Result<System, RunError> {
     let cloud = nodes(Method::Msv, H)?;
     system_as(&cloud, &material(law), ForceForm::List)
 }
@@ -62,7 +62,7 @@ fn moved(
     scheme: &mut dyn Integrator,
     height: f64,
     steps: usize,
-) -> Result<Vec<f64>, CliError> {
+) -> Result<Vec<f64>, RunError> {
     let mut state = start(&Arc::clone(body.cloud()), height);
     let dt = END / steps as f64;
     march(&mut body, scheme, &mut state, dt, steps, |_, _| {})?;
@@ -70,7 +70,7 @@ fn moved(
 }
 
 /// What approximations of the force do to a pulse: orders in its height.
-fn treatments(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn treatments(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     const STEPS: usize = 60;
     let run = |law, height| moved(body(law)?, &mut VelocityVerlet, height, STEPS);
     let mut rows = Vec::new();
@@ -93,7 +93,7 @@ fn treatments(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
                 3.0,
             ),
         ] {
-            let miss = |height| -> Result<f64, CliError> {
+            let miss = |height| -> Result<f64, RunError> {
                 Ok(largest(&run(law, height)?, &run(exact, height)?, 0.0))
             };
             let misses = [miss(HEIGHT)?, miss(0.5 * HEIGHT)?];
@@ -131,8 +131,8 @@ fn treatments(context: &Context<'_>) -> Result<Vec<Row>, CliError> {
 }
 
 /// Orders in the step on the true nonlinear force.
-fn schemes() -> Result<Vec<Row>, CliError> {
-    type Make = fn(&System) -> Result<Box<dyn Integrator>, CliError>;
+fn schemes() -> Result<Vec<Row>, RunError> {
+    type Make = fn(&System) -> Result<Box<dyn Integrator>, RunError>;
     let schemes: [(&str, Make); 4] = [
         ("Störmer–Verlet", |_| Ok(Box::new(VelocityVerlet))),
         ("implicit midpoint, Newton–Krylov", |body| {
@@ -153,7 +153,7 @@ fn schemes() -> Result<Vec<Row>, CliError> {
     let fine = moved(body(law)?, &mut VelocityVerlet, HEIGHT, 3840)?;
     let mut rows = Vec::new();
     for (name, make) in schemes {
-        let miss = |steps| -> Result<f64, CliError> {
+        let miss = |steps| -> Result<f64, RunError> {
             let body = body(law)?;
             let mut scheme = make(&body)?;
             Ok(largest(
@@ -176,7 +176,7 @@ fn schemes() -> Result<Vec<Row>, CliError> {
 }
 
 /// The pseudo-spectral force, dealiased, against the sum over bonds.
-fn series() -> Result<Row, CliError> {
+fn series() -> Result<Row, RunError> {
     let cloud = Arc::new(cells_of(-18.0, 36.0, 0.125)?);
     let ring = Arc::new(PointCloud::clone(&cloud).with_periodic_faces()?);
     let material = material(PairLaw::GreenStrain);
@@ -195,7 +195,7 @@ fn series() -> Result<Row, CliError> {
 }
 
 /// How far the force is from its linearisation at the start.
-fn linearisation() -> Result<Row, CliError> {
+fn linearisation() -> Result<Row, RunError> {
     let body = body(PairLaw::GreenStrain)?;
     let rest = vec![0.0; body.points()];
     let tangent = Linearisation::new(body.operator(), rest);

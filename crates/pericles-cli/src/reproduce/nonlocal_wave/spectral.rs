@@ -16,7 +16,7 @@ use super::super::{Context, Study};
 use super::PAPER;
 use super::convergence::LINE;
 use super::line::{UNIT, cells_of, march, pulse};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -29,7 +29,7 @@ pub(super) const STUDY: Study = Study {
 const T: f64 = 3.5;
 
 /// A period 2πM with n points, one of them at −πM.
-pub(super) fn ring(half_periods: f64, n: usize) -> Result<Arc<PointCloud>, CliError> {
+pub(super) fn ring(half_periods: f64, n: usize) -> Result<Arc<PointCloud>, RunError> {
     let period = 2.0 * PI * half_periods;
     let h = period / n as f64;
     let cells = cells_of(-0.5 * (period + h), period, h)?;
@@ -37,7 +37,7 @@ pub(super) fn ring(half_periods: f64, n: usize) -> Result<Arc<PointCloud>, CliEr
 }
 
 /// The pulse at time t, in one step.
-pub(super) fn displacement(cloud: &Arc<PointCloud>, t: f64) -> Result<State, CliError> {
+pub(super) fn displacement(cloud: &Arc<PointCloud>, t: f64) -> Result<State, RunError> {
     let material = UNIT.material();
     let constants = material.constants(cloud, StressState::Uniaxial)?;
     let operator = SpectralForce::<1>::new(Arc::clone(cloud), &material, &constants)?;
@@ -56,7 +56,7 @@ pub(super) struct Errors {
     pub(super) at: Vec<(f64, f64)>,
 }
 
-pub(super) fn errors(half_periods: f64, n: usize, window: f64) -> Result<Errors, CliError> {
+pub(super) fn errors(half_periods: f64, n: usize, window: f64) -> Result<Errors, RunError> {
     let cloud = ring(half_periods, n)?;
     let state = displacement(&cloud, T)?;
     let inside = |i: &usize| cloud.axis(0)[*i].abs() <= window * (1.0 + 1e-12);
@@ -79,7 +79,7 @@ pub(super) fn errors(half_periods: f64, n: usize, window: f64) -> Result<Errors,
     })
 }
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (half_periods, n, expected, tolerance) in [
         (1.0, 128, 0.50, 5e-3),

@@ -6,7 +6,7 @@ use pericles_deck::Deck;
 
 use super::super::row::Row;
 use super::super::{Context, Study};
-use crate::error::CliError;
+use pericles_run::RunError;
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -160,7 +160,7 @@ const LARGE: [Body; 3] = [
     ),
 ];
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
+fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (name, deck, changes) in BODIES {
         let model = model(deck, changes)?;
@@ -202,7 +202,7 @@ fn run(_: &Context<'_>) -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
-fn model(deck: &str, changes: &[&str]) -> Result<pericles_deck::Model, CliError> {
+fn model(deck: &str, changes: &[&str]) -> Result<pericles_deck::Model, RunError> {
     let changes: Vec<String> = changes.iter().map(|&change| change.into()).collect();
     Ok(Deck::parse(deck, "highest-frequency.toml", &changes)?.build()?)
 }

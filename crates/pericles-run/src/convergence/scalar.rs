@@ -2,7 +2,7 @@
 
 use pericles_io::read_csv;
 
-use crate::error::CliError;
+use crate::error::RunError;
 use crate::results::Results;
 
 /// Where the number is.
@@ -38,7 +38,7 @@ impl Scalar {
     ///
     /// # Errors
     /// A run that has no such number, tables that are damaged.
-    pub(super) fn of(&self, results: &Results) -> Result<(f64, String), CliError> {
+    pub(super) fn of(&self, results: &Results) -> Result<(f64, String), RunError> {
         let mut known = Vec::new();
         for path in results.tables() {
             let table = read_csv(path)?;
@@ -61,7 +61,7 @@ impl Scalar {
                 "the tables have {}; run.json has numbers such as audit.elastic_energy",
                 known.join(", ")
             );
-            CliError::unknown("number", &self.name, &known, &listing)
+            RunError::unknown("number", &self.name, &known, &listing)
         })
     }
 

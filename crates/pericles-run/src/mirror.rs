@@ -37,17 +37,17 @@ struct Symmetry {
 
 /// The symmetries of a run, as found at its start.
 #[derive(Debug, Default)]
-pub(crate) struct Symmetries(Vec<Symmetry>);
+pub struct Symmetries(Vec<Symmetry>);
 
 /// How far a state is from its image.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct MirrorError {
+pub struct MirrorError {
     /// The mirror is across it.
-    pub(crate) axis: &'static str,
+    pub axis: &'static str,
     /// Whether the image has the opposite sign.
-    pub(crate) opposite: bool,
+    pub opposite: bool,
     /// Largest difference of displacements over the largest displacement.
-    pub(crate) error: f64,
+    pub error: f64,
 }
 
 impl fmt::Display for MirrorError {
@@ -72,7 +72,7 @@ impl fmt::Display for MirrorError {
 
 impl Symmetries {
     /// Those of a simulation before its first step.
-    pub(crate) fn of(simulation: &Simulation) -> Self {
+    pub fn of(simulation: &Simulation) -> Self {
         let system = simulation.system();
         // What leaves through ends and layers is not asked for its image.
         if system.points() > MOST_POINTS || system.has_boundaries() {
@@ -99,7 +99,7 @@ impl Symmetries {
     }
 
     /// How far the state is from them.
-    pub(crate) fn errors(&self, simulation: &Simulation) -> Vec<MirrorError> {
+    pub fn errors(&self, simulation: &Simulation) -> Vec<MirrorError> {
         let errors = self.0.iter().filter_map(|symmetry| {
             let mirror = Mirror::across(symmetry.axis, simulation.system().cloud())?;
             Some(MirrorError {

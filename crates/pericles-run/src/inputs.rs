@@ -8,11 +8,11 @@ use pericles_deck::Deck;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::error::CliError;
+use crate::error::RunError;
 
 /// The files that a deck names, as they were when the run began. Empty for decks without files, and for runs of versions that did not record them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Inputs {
+pub struct Inputs {
     /// The folder of the deck, where relative paths start; absolute.
     folder: Option<PathBuf>,
     files: Vec<Input>,
@@ -29,7 +29,7 @@ struct Input {
 
 impl Inputs {
     /// The files of a deck that was read from `file`. Those that cannot be read are left out: they are refused where they are needed.
-    pub(crate) fn of(deck: &Deck, file: &str) -> Self {
+    pub fn of(deck: &Deck, file: &str) -> Self {
         let inputs: Vec<Input> = deck
             .files()
             .into_iter()
@@ -49,12 +49,12 @@ impl Inputs {
     }
 
     /// Whether nothing is recorded.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
 
     /// The deck's path, by which its files are found: as it was given, or absolute if it was given from another folder than the present one.
-    pub(crate) fn located(&self, file: &str) -> String {
+    pub fn located(&self, file: &str) -> String {
         let name = Path::new(file).file_name();
         match (&self.folder, name) {
             (Some(folder), Some(name))
@@ -70,7 +70,7 @@ impl Inputs {
     ///
     /// # Errors
     /// The first file that is gone, or whose content is another.
-    pub(crate) fn check(&self, deck: &Deck) -> Result<(), CliError> {
+    pub fn check(&self, deck: &Deck) -> Result<(), RunError> {
         for input in &self.files {
             let path = deck.beside(&input.file);
             let reason = match digest(&path) {
@@ -81,7 +81,7 @@ impl Inputs {
                 }
                 Err(error) => format!("it cannot be read ({error})"),
             };
-            return Err(CliError::InputChanged { path, reason });
+            return Err(RunError::InputChanged { path, reason });
         }
         Ok(())
     }

@@ -4,26 +4,26 @@ use std::path::Path;
 
 use pericles_dispersion::tuning::BondClass;
 use pericles_dispersion::{BondLattice, Contour, ContourPoint, PolarSpeeds, verlet_frequency};
-use pericles_io::{Axis, Cell, Column, CsvTable, Curve, LineChart};
-
-use crate::error::CliError;
+use pericles_io::{Axis, Cell, Column, CsvTable, Curve, IoError, LineChart};
 
 /// Points of a segment.
-pub(crate) const STEPS: usize = 200;
+pub const STEPS: usize = 200;
 
 /// Branches along a contour with what belongs to them.
-pub(crate) struct Curves<'a> {
-    pub(crate) contour: &'a Contour,
-    pub(crate) points: &'a [ContourPoint],
+pub struct Curves<'a> {
+    /// The path through the wave vectors.
+    pub contour: &'a Contour,
+    /// The branches at each point of the path.
+    pub points: &'a [ContourPoint],
     /// Time step for the time-discrete curve, s.
-    pub(crate) dt: Option<f64>,
+    pub dt: Option<f64>,
     /// Speed of the continuum for each branch, m/s; none where a branch changes its nature.
-    pub(crate) targets: &'a [Option<f64>],
+    pub targets: &'a [Option<f64>],
 }
 
 impl Curves<'_> {
     /// Frequency of the continuum, 1/s.
-    pub(crate) fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
+    pub fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
         let wave_number = point.k.iter().map(|k| k * k).sum::<f64>().sqrt();
         let speed = self.targets.get(branch).copied().flatten();
         speed.map_or(f64::NAN, |speed| speed * wave_number)
@@ -35,7 +35,7 @@ impl Curves<'_> {
     }
 
     /// All numbers. Cells are empty where a wave is unstable or a branch has no counterpart in the continuum.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), CliError> {
+    pub fn write(&self, path: &Path) -> Result<(), IoError> {
         let mut columns = vec![
             Column::integer("segment"),
             Column::real("abscissa", "rad/m"),
@@ -75,19 +75,19 @@ impl Curves<'_> {
     }
 
     /// The picture: lattice as lines, continuum dashed.
-    pub(crate) fn draw(&self, path: &Path, title: &str) -> Result<(), CliError> {
+    pub fn draw(&self, path: &Path, title: &str) -> Result<(), IoError> {
         Ok(self.chart(title).write(path)?)
     }
 
     /// What is along the axis.
-    pub(crate) fn along(&self) -> String {
+    pub fn along(&self) -> String {
         let mut names = vec![self.contour.segments[0].ends[0]];
         names.extend(self.contour.segments.iter().map(|segment| segment.ends[1]));
         format!("arc length along {}", names.join("–"))
     }
 
     /// Abscissas and time-discrete frequencies of a branch.
-    pub(crate) fn discrete_branch(&self, branch: usize) -> (Vec<f64>, Vec<f64>) {
+    pub fn discrete_branch(&self, branch: usize) -> (Vec<f64>, Vec<f64>) {
         let place = |point: &ContourPoint| {
             let omega = self.discrete(point.branches[branch].omega());
             (point.abscissa, omega)
@@ -96,7 +96,7 @@ impl Curves<'_> {
     }
 
     /// The chart, for adding more curves.
-    pub(crate) fn chart(&self, title: &str) -> LineChart {
+    pub fn chart(&self, title: &str) -> LineChart {
         let along = self.along();
         let x: Vec<f64> = self.points.iter().map(|point| point.abscissa).collect();
         let mut chart =
@@ -126,12 +126,12 @@ impl Curves<'_> {
 }
 
 /// Speeds of long waves over the direction, as a table and a chart.
-pub(crate) fn write_polar(
+pub fn write_polar(
     table: &Path,
     picture: &Path,
     polar: &[PolarSpeeds],
     names: &[&str],
-) -> Result<(), CliError> {
+) -> Result<(), IoError> {
     let mut columns = vec![Column::real("angle", "rad")];
     columns.extend(
         names
@@ -164,11 +164,11 @@ pub(crate) fn write_polar(
 }
 
 /// The classes of bonds with one column of coefficients for each table.
-pub(crate) fn write_classes(
+pub fn write_classes(
     path: &Path,
     classes: &[BondClass],
     tables: &[(String, Vec<f64>)],
-) -> Result<(), CliError> {
+) -> Result<(), IoError> {
     let mut columns = ["i", "j", "k"].map(Column::integer).to_vec();
     columns.push(Column::real("length_in_spacings", ""));
     columns.push(Column::integer("multiplicity"));
@@ -185,7 +185,7 @@ pub(crate) fn write_classes(
 }
 
 /// One bond of each pair ±ξ, for lattices whose axes are not alike.
-pub(crate) fn write_bonds(path: &Path, lattice: &BondLattice) -> Result<(), CliError> {
+pub fn write_bonds(path: &Path, lattice: &BondLattice) -> Result<(), IoError> {
     let mut columns = ["i", "j", "k"].map(Column::integer).to_vec();
     columns.push(Column::real("length", "m"));
     columns.push(Column::real("stiffness_over_density", "m/s2"));

@@ -6,22 +6,22 @@ use std::path::{Path, PathBuf};
 use pericles_io::{FieldData, IoError, PvdSeries, read_fields};
 use serde_json::Value;
 
-use crate::checkpoint::DeckText;
-use crate::error::CliError;
+use crate::deck_text::DeckText;
+use crate::error::RunError;
 use crate::machine;
 
 /// The folder of a run that was started once.
-pub(crate) struct Results {
+pub struct Results {
     folder: PathBuf,
     report: Value,
 }
 
 /// One state among the fields.
-pub(crate) struct FieldFile {
+pub struct FieldFile {
     /// The time, s.
-    pub(crate) time: f64,
+    pub time: f64,
     /// The file.
-    pub(crate) path: PathBuf,
+    pub path: PathBuf,
 }
 
 impl FieldFile {
@@ -29,7 +29,7 @@ impl FieldFile {
     ///
     /// # Errors
     /// A file that is gone or damaged.
-    pub(crate) fn read(&self) -> Result<FieldData, CliError> {
+    pub fn read(&self) -> Result<FieldData, RunError> {
         Ok(read_fields(&self.path, machine::memory())?)
     }
 }
@@ -39,7 +39,7 @@ impl Results {
     ///
     /// # Errors
     /// A folder without `run.json`, or with one that is none.
-    pub(crate) fn open(folder: &Path) -> Result<Self, CliError> {
+    pub fn open(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join("run.json");
         let reason = match (folder.is_dir(), folder.exists()) {
             (true, _) => (!path.exists()).then_some("it has no run.json"),
@@ -47,19 +47,19 @@ impl Results {
             (false, false) => Some("it is not there"),
         };
         if let Some(reason) = reason {
-            return Err(CliError::NoResults {
+            return Err(RunError::NoResults {
                 path: folder.into(),
                 reason,
             });
         }
         let text =
             std::fs::read_to_string(&path).map_err(|error| IoError::reading(&path, error))?;
-        let report: Value = serde_json::from_str(&text).map_err(|error| CliError::Damaged {
+        let report: Value = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
             path,
             reason: error.to_string(),
         })?;
         if report.pointer("/program/name") != Some(&Value::from("pericles")) {
-            return Err(CliError::NoResults {
+            return Err(RunError::NoResults {
                 path: folder.into(),
                 reason: "its run.json was not written by Pericles",
             });
@@ -71,36 +71,36 @@ impl Results {
     }
 
     /// Where they are.
-    pub(crate) fn folder(&self) -> &Path {
+    pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// A value of `run.json` by its JSON pointer, such as `/model/points`.
-    pub(crate) fn value(&self, pointer: &str) -> Option<&Value> {
+    pub fn value(&self, pointer: &str) -> Option<&Value> {
         self.report.pointer(pointer)
     }
 
     /// A text of `run.json`; empty if there is none.
-    pub(crate) fn text(&self, pointer: &str) -> &str {
+    pub fn text(&self, pointer: &str) -> &str {
         self.value(pointer)
             .and_then(Value::as_str)
             .unwrap_or_default()
     }
 
     /// A number of `run.json`.
-    pub(crate) fn number(&self, pointer: &str) -> Option<f64> {
+    pub fn number(&self, pointer: &str) -> Option<f64> {
         self.value(pointer)?.as_f64()
     }
 
     /// A count of `run.json`; zero if there is none.
-    pub(crate) fn count(&self, pointer: &str) -> u64 {
+    pub fn count(&self, pointer: &str) -> u64 {
         self.value(pointer)
             .and_then(Value::as_u64)
             .unwrap_or_default()
     }
 
     /// The texts of a list of `run.json`.
-    pub(crate) fn texts(&self, pointer: &str) -> impl Iterator<Item = &str> {
+    pub fn texts(&self, pointer: &str) -> impl Iterator<Item = &str> {
         let list = self.value(pointer).and_then(Value::as_array);
         list.into_iter().flatten().filter_map(Value::as_str)
     }
@@ -109,14 +109,14 @@ impl Results {
     ///
     /// # Errors
     /// A `run.json` without one.
-    pub(crate) fn deck(&self) -> Result<DeckText, CliError> {
+    pub fn deck(&self) -> Result<DeckText, RunError> {
         let deck = self.value("/deck").cloned().unwrap_or_default();
         serde_json::from_value(deck).map_err(|error| self.damaged("run.json", error.to_string()))
     }
 
     /// A file of the folder that cannot be used.
-    pub(crate) fn damaged(&self, file: &str, reason: String) -> CliError {
-        CliError::Damaged {
+    pub fn damaged(&self, file: &str, reason: String) -> RunError {
+        RunError::Damaged {
             path: self.folder.join(file),
             reason,
         }
@@ -126,7 +126,7 @@ impl Results {
     ///
     /// # Errors
     /// A series that cannot be read.
-    pub(crate) fn fields(&self) -> Result<Vec<FieldFile>, CliError> {
+    pub fn fields(&self) -> Result<Vec<FieldFile>, RunError> {
         let series = self.folder.join("fields.pvd");
         if !series.exists() {
             return Ok(Vec::new());
@@ -139,12 +139,12 @@ impl Results {
     }
 
     /// The tables, by name.
-    pub(crate) fn tables(&self) -> Vec<PathBuf> {
+    pub fn tables(&self) -> Vec<PathBuf> {
         files(&self.folder, "csv")
     }
 
     /// The pictures, by name.
-    pub(crate) fn pictures(&self) -> Vec<PathBuf> {
+    pub fn pictures(&self) -> Vec<PathBuf> {
         let folder = self.folder.join("pictures");
         if folder.is_symlink() {
             return Vec::new();
@@ -153,7 +153,7 @@ impl Results {
     }
 
     /// The steps of the checkpoints.
-    pub(crate) fn checkpoints(&self) -> Vec<u64> {
+    pub fn checkpoints(&self) -> Vec<u64> {
         let step = |path: PathBuf| {
             let stem = path.file_stem()?.to_str()?;
             stem.strip_prefix("step-")?.parse().ok()
@@ -177,7 +177,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
 }
 
 /// The last part of a path, for people.
-pub(crate) fn file_name(path: &Path) -> String {
+pub fn file_name(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default();
     name.to_string_lossy().into_owned()
 }

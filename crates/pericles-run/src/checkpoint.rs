@@ -9,70 +9,33 @@ use std::time::{Duration, Instant};
 
 use pericles::observe::Schedule;
 use pericles::{Archive, Saved, Simulation};
-use pericles_deck::{Checkpoint, Deck};
+use pericles_deck::Checkpoint;
 use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
-use crate::error::CliError;
-use crate::inputs::Inputs;
+use crate::deck_text::DeckText;
+use crate::error::RunError;
 
 /// The state of a run that became unstable.
-pub(crate) const FAILED: &str = "failed.chk";
+pub const FAILED: &str = "failed.chk";
 /// Between load steps checkpoints are as many times rarer than they take to write.
 const SHARE: u32 = 20;
 
 /// What a checkpoint says besides the state: enough to build the same run again.
 #[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
-pub(crate) struct Metadata {
+pub struct Metadata {
     /// The version that wrote it.
-    pub(crate) version: String,
+    pub version: String,
     /// The instruction set it ran with.
-    pub(crate) instruction_set: String,
+    pub instruction_set: String,
     /// Steps taken.
-    pub(crate) step: u64,
+    pub step: u64,
     /// The deck.
-    pub(crate) deck: DeckText,
-}
-
-/// A deck as it was given.
-#[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
-pub(crate) struct DeckText {
-    /// What messages call it.
-    pub(crate) file: String,
-    /// Its text.
-    pub(crate) source: String,
-    /// The overrides from the command line.
-    pub(crate) overrides: Vec<String>,
-    /// The files that the deck names.
-    #[serde(default, skip_serializing_if = "Inputs::is_empty")]
-    pub(crate) inputs: Inputs,
-}
-
-impl DeckText {
-    /// The text of a deck that was read from `file`.
-    pub(crate) fn of(deck: &Deck, file: String) -> Self {
-        Self {
-            inputs: Inputs::of(deck, &file),
-            file,
-            source: deck.source().to_owned(),
-            overrides: deck.overrides().map(str::to_owned).collect(),
-        }
-    }
-
-    /// Reads the deck again, from whatever folder.
-    ///
-    /// # Errors
-    /// What this version no longer accepts; a file that the deck names and that is no longer what it was.
-    pub(crate) fn read(&self) -> Result<Deck, CliError> {
-        let file = self.inputs.located(&self.file);
-        let deck = Deck::parse(&self.source, &file, &self.overrides)?;
-        self.inputs.check(&deck)?;
-        Ok(deck)
-    }
+    pub deck: DeckText,
 }
 
 /// The checkpoints of one run.
-pub(crate) struct Checkpoints {
+pub struct Checkpoints {
     folder: CheckpointFolder,
     schedule: Checkpoint,
     deck: DeckText,
@@ -83,7 +46,7 @@ pub(crate) struct Checkpoints {
 
 impl Checkpoints {
     /// The checkpoints of a run in its output folder.
-    pub(crate) fn new(folder: &OutputFolder, schedule: Checkpoint, deck: DeckText) -> Self {
+    pub fn new(folder: &OutputFolder, schedule: Checkpoint, deck: DeckText) -> Self {
         Self {
             folder: CheckpointFolder::new(folder.file("checkpoints")),
             schedule,
@@ -94,12 +57,12 @@ impl Checkpoints {
     }
 
     /// How long the last one took to write; zero before the first.
-    pub(crate) fn cost(&self) -> Duration {
+    pub fn cost(&self) -> Duration {
         self.cost
     }
 
     /// Whether one is due after the present step.
-    pub(crate) fn is_due(&self, simulation: &Simulation) -> bool {
+    pub fn is_due(&self, simulation: &Simulation) -> bool {
         let step = simulation.state().step;
         let due = |schedule: Schedule| schedule.is_due(step, simulation.dt(), simulation.steps());
         match self.schedule {
@@ -121,7 +84,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub(crate) fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, CliError> {
+    pub fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let began = Instant::now();
         let container = self.container(simulation)?;
         let path = self.folder.write(simulation.state().step, &container)?;
@@ -134,27 +97,27 @@ impl Checkpoints {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub(crate) fn write_failed(&self, simulation: &Simulation) -> Result<PathBuf, CliError> {
+    pub fn write_failed(&self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let path = self.folder.path().join(FAILED);
         self.container(simulation)?.write(&path)?;
         Ok(path)
     }
 
     /// Removes what an earlier failure left.
-    pub(crate) fn forget_failed(&self) {
+    pub fn forget_failed(&self) {
         // It is overwritten by the next failure, and of no use to a success.
         let _ = std::fs::remove_file(self.folder.path().join(FAILED));
     }
 
     /// The step from which `resume` would go on.
-    pub(crate) fn last_step(&self) -> Option<u64> {
+    pub fn last_step(&self) -> Option<u64> {
         self.folder.steps().ok()?.last().copied()
     }
 
-    fn container(&self, simulation: &Simulation) -> Result<Container, CliError> {
+    fn container(&self, simulation: &Simulation) -> Result<Container, RunError> {
         simulation
             .settle()
-            .map_err(|error| CliError::of_run(error, String::new))?;
+            .map_err(|error| RunError::of_run(error, String::new))?;
         let operator = simulation.system().operator();
         let metadata = Metadata {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -172,15 +135,15 @@ impl Checkpoints {
 }
 
 /// A checkpoint read back.
-pub(crate) struct Stored {
+pub struct Stored {
     /// The file.
-    pub(crate) path: PathBuf,
+    pub path: PathBuf,
     /// What it says.
-    pub(crate) metadata: Metadata,
+    pub metadata: Metadata,
     /// The state.
-    pub(crate) archive: Archive,
+    pub archive: Archive,
     /// Why newer ones were refused.
-    pub(crate) refused: Vec<IoError>,
+    pub refused: Vec<IoError>,
 }
 
 impl Stored {
@@ -188,9 +151,9 @@ impl Stored {
     ///
     /// # Errors
     /// No checkpoint that is whole, one of another program, one that needs more memory.
-    pub(crate) fn latest(folder: &OutputFolder, memory: u64) -> Result<Self, CliError> {
+    pub fn latest(folder: &OutputFolder, memory: u64) -> Result<Self, RunError> {
         let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid(memory)?;
-        let unusable = |reason: String| CliError::Checkpoint {
+        let unusable = |reason: String| RunError::Checkpoint {
             path: latest.path.clone(),
             reason,
         };

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 /// The time by which a run must have stopped.
 #[derive(Debug, Clone)]
-pub(crate) struct Deadline {
+pub struct Deadline {
     end: Instant,
     /// The end of the step before.
     before: Instant,
@@ -13,7 +13,7 @@ pub(crate) struct Deadline {
 
 impl Deadline {
     /// So long from now; none without a limit, or with one that no clock can count.
-    pub(crate) fn from_now(limit: Option<Duration>) -> Option<Self> {
+    pub fn from_now(limit: Option<Duration>) -> Option<Self> {
         let now = Instant::now();
         Some(Self {
             end: now.checked_add(limit?)?,
@@ -23,17 +23,17 @@ impl Deadline {
     }
 
     /// The first step begins.
-    pub(crate) fn begin(&mut self) {
+    pub fn begin(&mut self) {
         self.before = Instant::now();
     }
 
     /// The time by which the run must have stopped.
-    pub(crate) fn end(&self) -> Instant {
+    pub fn end(&self) -> Instant {
         self.end
     }
 
     /// Whether another step, output included, and a checkpoint may no longer fit in; to be asked once after every step.
-    pub(crate) fn is_near(&mut self, checkpoint: Duration) -> bool {
+    pub fn is_near(&mut self, checkpoint: Duration) -> bool {
         let now = Instant::now();
         self.longest_step = self.longest_step.max(now - self.before);
         self.before = now;

@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use pericles_dispersion::spectrum::MeasuredSpectrum;
-use pericles_io::{Axis, Backdrop, Cell, Column, CsvTable, Curve, LineChart};
+use pericles_io::{Axis, Backdrop, Cell, Column, CsvTable, Curve, IoError, LineChart};
 
 use super::curves::Curves;
-use crate::error::CliError;
 
 /// Rows of a map: lines are put together to no more than these.
 const ROWS: usize = 240;
@@ -14,12 +13,12 @@ const ROWS: usize = 240;
 const FLOOR: f64 = 1e-8;
 
 /// Writes `spectrum_<branch>.csv`, `spectrum_<branch>.png` for each branch and `peaks.csv`, `peaks.png`; the curves of the analysis are drawn into all pictures.
-pub(crate) fn write_spectrum(
+pub fn write_spectrum(
     folder: &dyn Fn(&str) -> std::path::PathBuf,
     spectrum: &MeasuredSpectrum,
     curves: &Curves<'_>,
     title: &str,
-) -> Result<(), CliError> {
+) -> Result<(), IoError> {
     for (branch, name) in curves.contour.branches.iter().enumerate() {
         let map = Map::of(spectrum, branch);
         map.write(&folder(&format!("spectrum_{name}.csv")), spectrum, branch)?;
@@ -44,7 +43,7 @@ fn write_peaks(
     path: &Path,
     spectrum: &MeasuredSpectrum,
     curves: &Curves<'_>,
-) -> Result<(), CliError> {
+) -> Result<(), IoError> {
     let mut columns = vec![Column::real("abscissa", "rad/m")];
     columns.extend(["k_x", "k_y", "k_z"].map(|name| Column::real(name, "rad/m")));
     for name in &curves.contour.branches {
@@ -103,7 +102,7 @@ impl Map {
         path: &Path,
         spectrum: &MeasuredSpectrum,
         branch: usize,
-    ) -> Result<(), CliError> {
+    ) -> Result<(), IoError> {
         let columns = [
             Column::real("abscissa", "rad/m"),
             Column::real("omega", "rad/s"),

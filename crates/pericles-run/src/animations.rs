@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 /// What to say of a folder of pictures: animations between whose pictures some are missing, in words.
-pub(crate) fn gaps(folder: &Path) -> Vec<String> {
+pub fn gaps(folder: &Path) -> Vec<String> {
     let names: Vec<String> = std::fs::read_dir(folder)
         .into_iter()
         .flatten()

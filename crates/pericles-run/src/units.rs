@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
 /// A time span: `0.4 s`, `12 s`, `3 min 20 s`, `2 h 5 min`.
-pub(crate) fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() {
         return "unknown time".into();
     }
@@ -17,7 +17,7 @@ pub(crate) fn duration(seconds: f64) -> String {
 }
 
 /// A size in memory: `512 B`, `16.2 MB`.
-pub(crate) fn bytes(count: u64) -> String {
+pub fn bytes(count: u64) -> String {
     let size = count as f64;
     let (factor, unit) = match count {
         0..1_000 => (1.0, "B"),
@@ -29,7 +29,7 @@ pub(crate) fn bytes(count: u64) -> String {
 }
 
 /// A large count in groups of three digits: `1 234 567`.
-pub(crate) fn count(number: u64) -> String {
+pub fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
     for (k, digit) in digits.chars().enumerate() {
@@ -42,20 +42,20 @@ pub(crate) fn count(number: u64) -> String {
 }
 
 /// `1 thread`, `2 threads`.
-pub(crate) fn threads(number: usize) -> String {
+pub fn threads(number: usize) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} thread{ending}")
 }
 
 /// A ratio in percent with two significant digits.
-pub(crate) fn percent(ratio: f64) -> String {
+pub fn percent(ratio: f64) -> String {
     if !ratio.is_finite() {
         return "unknown".into();
     }
     format!("{} %", significant(100.0 * ratio, 2))
 }
 
-pub(crate) use pericles::units::{quantity, significant};
+pub use pericles::units::{quantity, significant};
 
 #[cfg(test)]
 mod tests {

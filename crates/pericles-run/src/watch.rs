@@ -16,7 +16,7 @@
 use pericles::Simulation;
 use pericles::observe::Field;
 
-use crate::report::Audit;
+use crate::audit::Audit;
 use crate::units::{percent, quantity, significant};
 
 /// The account closes to 10⁻³ and better with steps near the stable one.
@@ -41,7 +41,7 @@ const BROKEN_AT_ONCE: f64 = 0.1;
 const BROKEN_IN_ALL: f64 = 0.5;
 
 /// Looks out for bonds that break in masses, and warns once.
-pub(crate) struct Breakage {
+pub struct Breakage {
     /// Bonds at the start.
     bonds: u64,
     /// Broken at the last step.
@@ -51,7 +51,7 @@ pub(crate) struct Breakage {
 
 impl Breakage {
     /// From a state of a run on.
-    pub(crate) fn from(simulation: &Simulation) -> Self {
+    pub fn from(simulation: &Simulation) -> Self {
         let operator = simulation.system().operator();
         let (bonds, broken) = (operator.directed_bonds() / 2, operator.broken_bonds());
         // A resumed run has warned before.
@@ -64,7 +64,7 @@ impl Breakage {
     }
 
     /// Looks at the state after a step.
-    pub(crate) fn look(&mut self, simulation: &Simulation) -> Option<String> {
+    pub fn look(&mut self, simulation: &Simulation) -> Option<String> {
         if self.warned {
             return None;
         }
@@ -90,7 +90,7 @@ impl Breakage {
 }
 
 /// What is odd.
-pub(crate) fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
+pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     let found = [
         simulation.instability().map(ToString::to_string),
         energy(simulation, audit),

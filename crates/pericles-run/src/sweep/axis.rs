@@ -9,16 +9,16 @@ const MOST: usize = 10_000;
 
 /// A key of the deck with the values it is to take: `key=a,b,c`, or `key=start:stop:step` with the stop included.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Axis {
+pub struct Axis {
     /// The key, such as `material.horizon_ratio`.
-    pub(crate) key: String,
+    pub key: String,
     /// The values as decks write them.
-    pub(crate) values: Vec<String>,
+    pub values: Vec<String>,
 }
 
 impl Axis {
     /// The key without its tables.
-    pub(crate) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         self.key.rsplit('.').next().unwrap_or_default()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::results::FieldFile;
+use pericles_run::FieldFile;
 
 /// States by time.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ pub(crate) enum Frames {
 
 impl Frames {
     /// Their numbers among states that are ordered in time; each once, in the order of the states.
-    pub(super) fn among(&self, states: &[FieldFile]) -> Vec<usize> {
+    pub(crate) fn among(&self, states: &[FieldFile]) -> Vec<usize> {
         let Some(last) = states.len().checked_sub(1) else {
             return Vec::new();
         };

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Operating system, architecture, processor and cores, in words; for people comparing speeds.
-pub(crate) fn words() -> String {
+pub fn words() -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get);
     let system = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
     match processor() {
@@ -19,7 +19,7 @@ fn processor() -> Option<String> {
 }
 
 /// The largest memory the process has held so far, bytes, where the system tells.
-pub(crate) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;
     let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
@@ -37,7 +37,7 @@ fn free_memory() -> Option<u64> {
 }
 
 /// Memory that may be used, bytes, where nothing else is asked for: what is free, or any amount where the system does not tell.
-pub(crate) fn memory() -> u64 {
+pub fn memory() -> u64 {
     free_memory().unwrap_or(u64::MAX)
 }
 
@@ -73,7 +73,7 @@ fn left_in(group: &Path) -> Option<u64> {
 }
 
 /// Reads a size such as 8GB, 512 MiB, or a number of bytes.
-pub(crate) fn size(text: &str) -> Result<u64, String> {
+pub fn size(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, f64); 8] = [
         ("KiB", 1024.0),
         ("MiB", 1048576.0),
