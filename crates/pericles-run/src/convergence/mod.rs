@@ -13,12 +13,11 @@ use std::path::Path;
 
 use pericles_io::{Axis, Curve, LineChart, csv_row, write_atomically};
 
+use self::family::{Family, Point, families};
+use self::scalar::Scalar;
 use crate::error::RunError;
 use crate::sweep::Sweep;
 use crate::units::{quantity, significant};
-
-use self::family::{Family, Point, families};
-use self::scalar::Scalar;
 
 /// What a number should converge to, and along which limit.
 #[derive(Debug, Clone)]
