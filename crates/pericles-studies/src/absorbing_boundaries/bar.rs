@@ -130,6 +130,14 @@ pub(super) fn kernels(kind: Kind, dt: f64, steps: usize) -> Result<GhostKernels,
     })
 }
 
+/// Absorbing at the left, free at the right, moved in the middle.
+pub(super) const SEISMIC_BAR: Bar = Bar {
+    source: Source::Wavelet,
+    beta: 1.0,
+    sides: &[Side::Left],
+    margin: 0,
+};
+
 impl Bar {
     /// With both ends absorbing.
     pub(super) const fn infinite(beta: f64) -> Self {

@@ -3,8 +3,7 @@
 use pericles_io::{Axis, Curve, LineChart};
 use pericles_run::RunError;
 
-use super::bar::{Bar, HALF, Kind, SPACING, kernels};
-use super::tables::SEISMIC_BAR;
+use super::bar::{Bar, HALF, Kind, SEISMIC_BAR, SPACING, kernels};
 use crate::row::Row;
 use crate::study::Context;
 

@@ -2,9 +2,8 @@
 
 use pericles::time::State;
 use pericles_run::RunError;
-use pericles_waves::absorbing::Side;
 
-use super::bar::{Bar, Kind, Source};
+use super::bar::{Bar, Kind, SEISMIC_BAR};
 use super::figures;
 use super::paper::PAPER;
 use crate::row::Row;
@@ -114,14 +113,6 @@ const SEISMIC: Table = Table {
         line(0.002, [3.38e-6, 1.11e-5, 5.55e-6, 4.49e-6]),
         line(0.001, [8.46e-7, 2.78e-6, 1.38e-6, 1.11e-6]),
     ],
-};
-
-/// Absorbing at the left, free at the right, moved in the middle.
-pub(super) const SEISMIC_BAR: Bar = Bar {
-    source: Source::Wavelet,
-    beta: 1.0,
-    sides: &[Side::Left],
-    margin: 0,
 };
 
 pub(super) const TABLE_2: Study = Study {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 /// A line: its name, its text, and what the JSON says of it.
 #[derive(Debug, Clone)]
-pub(crate) struct Line {
+pub(super) struct Line {
     name: &'static str,
     text: String,
     values: Vec<(&'static str, Entry)>,
@@ -24,7 +24,7 @@ enum Entry {
 
 impl Line {
     /// A line whose numbers are among the facts, or that has none.
-    pub(crate) fn new(name: &'static str, text: impl Into<String>) -> Self {
+    pub(super) fn new(name: &'static str, text: impl Into<String>) -> Self {
         Self {
             name,
             text: text.into(),
@@ -33,13 +33,13 @@ impl Line {
     }
 
     /// The same with a value for the JSON, in SI units. A number that is not finite and a missing one are null.
-    pub(crate) fn with(mut self, key: &'static str, value: impl Into<Value>) -> Self {
+    pub(super) fn with(mut self, key: &'static str, value: impl Into<Value>) -> Self {
         self.values.push((key, Entry::One(value.into())));
         self
     }
 
     /// The same with an entry in a list of the JSON, for lines of which there may be several.
-    pub(crate) fn with_entry(mut self, key: &'static str, value: impl Into<Value>) -> Self {
+    pub(super) fn with_entry(mut self, key: &'static str, value: impl Into<Value>) -> Self {
         self.values.push((key, Entry::Listed(value.into())));
         self
     }
@@ -52,7 +52,7 @@ impl Display for Line {
 }
 
 /// Adds the values of the lines to a JSON object.
-pub(crate) fn add_values(object: &mut Map<String, Value>, lines: &[Line]) {
+pub(super) fn add_values(object: &mut Map<String, Value>, lines: &[Line]) {
     for (key, entry) in lines.iter().flat_map(|line| &line.values) {
         match entry {
             Entry::One(value) => {

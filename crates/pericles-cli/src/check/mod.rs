@@ -1,14 +1,14 @@
 //! `check`: report what a run of a deck needs, without running it: as lines for people, and as JSON with every number in them.
 
+mod line;
+mod material;
+mod refinement;
+mod waves;
+
 use std::path::Path;
 
-use pericles::kernel::ActsOn;
-use pericles::material::{BondConstants, Calibration, ElasticWaves};
 use pericles::observe::Probe;
-use pericles_deck::{Deck, KernelQuality, Model, Scheme, SurfaceDeck, VertexAreas};
-use pericles_manifold::SurfaceBond;
-use pericles_manifold::geodesic::Ball;
-use pericles_manifold::surface::AreaRule;
+use pericles_deck::{Deck, Model, Scheme};
 use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
 use pericles_run::{Facts, Means, Modelled};
@@ -20,9 +20,11 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::given;
-use crate::line::{self, Line};
-use crate::refinement;
 use crate::screen::Screen;
+
+use self::line::Line;
+use self::material::{material, surface_material};
+use self::waves::plane_waves;
 
 /// Checks a deck.
 ///
@@ -238,250 +240,6 @@ fn probes(model: &Model) -> Vec<Line> {
         Line::new("probe", text).with_entry("probes", value)
     };
     model.probes.iter().map(line).collect()
-}
-
-fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
-    let mut lines = vec![
-        Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
-        Line::new(
-            "bond constant c",
-            format!(
-                "{:.6e} (SI, of the force density c α {})",
-                facts.micromodulus,
-                match deck.material.bonds.influence.acts_on {
-                    ActsOn::Stretch => "s",
-                    ActsOn::Displacement => "η",
-                }
-            ),
-        ),
-        Line::new("stiffness error", stiffness_error(deck, facts)),
-    ];
-    let strength = facts.critical_stretch.zip(facts.fracture_energy);
-    lines.push(Line::new("breaking", breaking(strength)));
-    if !facts.crack_planes.is_empty() {
-        lines.push(Line::new("crack planes", crack_planes(facts)));
-    }
-    for (part, constants) in deck.material.parts.iter().zip(parts) {
-        let strength = Some((constants.critical_stretch, constants.fracture_energy))
-            .filter(|(stretch, _)| stretch.is_finite());
-        let text = format!(
-            "{}: Young's modulus {}, {} kg/m³; breaking {}",
-            part.name,
-            quantity(constants.young, "Pa"),
-            significant(part.density, 4),
-            breaking(strength)
-        );
-        lines.push(Line::new("besides", text).with_entry(
-            "parts",
-            json!({
-                "name": part.name,
-                "youngs_modulus": constants.young,
-                "density": part.density,
-                "critical_stretch": strength.map(|(stretch, _)| stretch),
-                "fracture_energy": strength.map(|(_, energy)| energy),
-            }),
-        ));
-    }
-    let density = deck.material.bonds.density;
-    let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
-    let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
-    if let Some(transverse) = speeds.transverse {
-        waves += &format!(
-            ", shear {} m/s, Rayleigh {} m/s",
-            speed(transverse.shear),
-            speed(transverse.rayleigh)
-        );
-    }
-    lines.push(Line::new("waves", waves).with(
-        "wave_speeds",
-        json!({
-            "pressure": speeds.pressure,
-            "shear": speeds.transverse.map(|transverse| transverse.shear),
-            "rayleigh": speeds.transverse.map(|transverse| transverse.rayleigh),
-        }),
-    ));
-    lines
-}
-
-/// A speed with whole metres per second, or with three digits where it is small.
-fn speed(speed: f64) -> String {
-    match speed.abs() >= 100.0 {
-        true if speed < 1e7 => format!("{speed:.0}"),
-        _ => significant(speed, 3),
-    }
-}
-
-/// How far the grid's interior is from the stiffness asked for, and what can be done about it.
-fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
-    /// Worth a word.
-    const NOTICED: f64 = 0.01;
-    let mut line = format!("{} in bulk", deviation(facts.stiffness_error));
-    if facts.dimension > 1 {
-        line += &format!(", {} in shear along the axes", deviation(facts.shear_error));
-    }
-    line += ", of the grid's interior";
-    let calibration = deck.material.bonds.modulus.calibration;
-    if facts.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
-        line += "; modulus = \"lattice\" makes it 0 in bulk";
-    }
-    line
-}
-
-/// A relative deviation with its sign; what rounding leaves is none.
-fn deviation(ratio: f64) -> String {
-    // Plus zero: no minus before a zero.
-    let rounded = (ratio * 1e6).round() * 1e-6 + 0.0;
-    let sign = if rounded > 0.0 { "+" } else { "" };
-    format!("{sign}{}", percent(rounded))
-}
-
-/// What cracks along the planes of the lattice cost.
-fn crack_planes(facts: &Facts) -> String {
-    let planes: Vec<String> = facts
-        .crack_planes
-        .iter()
-        .map(|plane| format!("{} {}", plane.plane, deviation(plane.deviation)))
-        .collect();
-    let calibration = match facts.fracture_calibration {
-        Some(calibration) => format!(" (fracture_calibration = \"{calibration}\")"),
-        None => String::new(),
-    };
-    format!(
-        "energy per area over the fracture energy: {}{calibration}",
-        planes.join(", ")
-    )
-}
-
-/// What kernel and grid do to plane waves.
-fn plane_waves(deck: &Deck, model: &Model) -> Vec<Line> {
-    let Some(waves) = deck.plane_waves(model) else {
-        return Vec::new();
-    };
-    let grid = waves.grid;
-    let tolerance = percent(grid.tolerance);
-    let length = std::f64::consts::TAU / grid.wavenumber;
-    let spacings = length / model.cloud.spacing();
-    let mut lines = Vec::new();
-    if let Some(longest) = waves.model {
-        let horizons = longest / deck.material.bonds.horizon;
-        let text = format!(
-            "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
-            quantity(longest, "m"),
-            significant(horizons, 3)
-        );
-        let value =
-            json!({ "tolerance": grid.tolerance, "wavelength": longest, "horizons": horizons });
-        lines.push(Line::new("kernel dispersion", text).with("kernel_dispersion", value));
-    }
-    let reference = match waves.model {
-        Some(_) => "the nonlocal continuum",
-        None => "long waves",
-    };
-    let text = format!(
-        "phase speed within {tolerance} of {reference} from wavelengths of {} ({} spacings)",
-        quantity(length, "m"),
-        significant(spacings, 3)
-    );
-    let value = json!({ "tolerance": grid.tolerance, "wavelength": length, "spacings": spacings });
-    lines.push(Line::new("grid dispersion", text).with("grid_dispersion", value));
-    if let (Some(pair), Some(table)) = (waves.tuning, &deck.material.tuned) {
-        lines.push(tuned_kernel(pair, table.tuning.lower_bound));
-    }
-    lines
-}
-
-/// A tuned kernel beside a constant one.
-fn tuned_kernel([tuned, constant]: [KernelQuality; 2], lower_bound: Option<f64>) -> Line {
-    const TOLERANCE: f64 = 0.01;
-    let shortest = KernelQuality::SHORTEST;
-    let bound = match lower_bound {
-        Some(bound) => format!("; coefficients of at least {bound}"),
-        None => String::new(),
-    };
-    let text = format!(
-        "within {} of long waves from {} spacings per wavelength (constant kernel: {}); at most {} off from {shortest} spacings (constant: {}){bound}",
-        percent(TOLERANCE),
-        significant(tuned.spacings, 3),
-        significant(constant.spacings, 3),
-        percent(tuned.worst),
-        percent(constant.worst)
-    );
-    let quality = |quality: KernelQuality| json!({ "spacings": quality.spacings, "largest_error": quality.worst });
-    let value = json!({
-        "tolerance": TOLERANCE,
-        "shortest_spacings": shortest,
-        "tuned": quality(tuned),
-        "constant": quality(constant),
-        "lower_bound": lower_bound,
-    });
-    Line::new("tuned kernel", text).with("tuned_kernel", value)
-}
-
-/// From critical stretch and fracture energy (J/m²).
-fn breaking(strength: Option<(f64, f64)>) -> String {
-    match strength {
-        Some((stretch, energy)) => format!(
-            "beyond the stretch {}, fracture energy {}",
-            significant(stretch, 4),
-            quantity(energy, "J/m²")
-        ),
-        None => "never".into(),
-    }
-}
-
-fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
-    let material = &surface.material;
-    let law = match material.bond {
-        SurfaceBond::Displacement => "κ |η|^(p−2) η / d^(2+αp)",
-        SurfaceBond::Chord => "κ |ℓ−ℓ₀|^(p−2) (ℓ−ℓ₀) n / d^(2+αp), frame-indifferent",
-    };
-    let areas = match surface.areas {
-        VertexAreas::Rule(AreaRule::Barycentric) => "a third of each triangle".into(),
-        VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
-        VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
-    };
-    let same_area = match surface.areas {
-        VertexAreas::Same(area) => Some(area),
-        VertexAreas::Rule(_) => None,
-    };
-    let own_cell = if material.self_cell {
-        "added"
-    } else if material.alpha >= 0.5 {
-        "left out: for α of 1/2 and more results depend on the mesh"
-    } else {
-        "left out"
-    };
-    let breaking = if material.critical_stretch.is_finite() {
-        format!(
-            "beyond |η|/d = {}",
-            significant(material.critical_stretch, 4)
-        )
-    } else {
-        "never".into()
-    };
-    vec![
-        Line::new(
-            "force",
-            format!(
-                "{law}; p = {}, α = {}, κ = {}",
-                material.p, material.alpha, material.kappa
-            ),
-        )
-        .with(
-            "surface_law",
-            json!({ "p": material.p, "alpha": material.alpha, "kappa": material.kappa }),
-        ),
-        Line::new(
-            "distances",
-            match surface.ball {
-                Ball::Geodesic => surface.method.to_string(),
-                Ball::Euclid => format!("{}, of the vertices in a ball of space", surface.method),
-            },
-        ),
-        Line::new("areas", areas).with("vertex_area", same_area),
-        Line::new("own cell", own_cell),
-        Line::new("breaking", breaking),
-    ]
 }
 
 fn time(facts: &Facts) -> Vec<Line> {

@@ -4,10 +4,10 @@ use pericles_run::refinement::{Comparison, RefinementFacts};
 use pericles_run::units::{count, percent, quantity, significant};
 use serde_json::json;
 
-use crate::line::Line;
+use super::line::Line;
 
 /// The lines of `check` about two time steps.
-pub(crate) fn lines(
+pub(super) fn lines(
     facts: &RefinementFacts,
     scheme: &str,
     dt: f64,
