@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use pericles::bench::{self, Case, Timing};
+use pericles_run::{RunError, machine};
 use serde::Serialize;
 
 use crate::args::BenchArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::machine;
 
 /// Rounds whose median is told.
 const ROUNDS: usize = 9;
@@ -68,7 +68,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
                 "bar-N, plate-N or block-N with N cells an axis, then any of -list, -f32, -scalar, -avx2, -moved: {} …",
                 names.join(", ")
             );
-            CliError::unknown("case", name, names, &all)
+            RunError::unknown("case", name, names, &all)
         })?],
     };
     let threads = args.threads.start()?;

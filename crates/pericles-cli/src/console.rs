@@ -7,22 +7,21 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use pericles_io::{IoError, write_atomically};
+use pericles_run::RunError;
 use serde::Serialize;
-
-use crate::error::CliError;
 
 /// Prints results on the standard output.
 ///
 /// # Errors
 /// Whatever but a closed pipe keeps them from being written.
-pub(crate) fn print(text: Arguments<'_>) -> Result<(), CliError> {
+pub(crate) fn print(text: Arguments<'_>) -> Result<(), IoError> {
     let mut out = io::stdout().lock();
     let text = text.to_string();
     match writeln!(out, "{}", printable(&text)).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(|error| {
-            CliError::Io(IoError::writing(Path::new("the standard output"), error))
-        }),
+        written => {
+            written.map_err(|error| IoError::writing(Path::new("the standard output"), error))
+        }
     }
 }
 
@@ -30,10 +29,10 @@ pub(crate) fn print(text: Arguments<'_>) -> Result<(), CliError> {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), CliError> {
+pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), RunError> {
     let text = serde_json::to_string_pretty(results)?;
     if path == Path::new("-") {
-        return print(format_args!("{text}"));
+        return Ok(print(format_args!("{text}"))?);
     }
     Ok(write_atomically(path, |file| writeln!(file, "{text}"))?)
 }

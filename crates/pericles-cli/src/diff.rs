@@ -9,7 +9,9 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use pericles_io::read_csv;
+use pericles_io::{IoError, read_csv};
+use pericles_run::units::quantity;
+use pericles_run::{FieldFile, Results};
 use serde::Serialize;
 
 use self::times::{Matches, matched};
@@ -17,8 +19,6 @@ use crate::args::DiffArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::results::{FieldFile, Results};
-use crate::units::quantity;
 
 /// What two results have in common and how far they are apart.
 #[derive(Debug, Serialize)]
@@ -83,7 +83,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Result<Exit, CliError> {
 }
 
 impl Comparison {
-    fn print(&self) -> Result<(), CliError> {
+    fn print(&self) -> Result<(), IoError> {
         for unlike in &self.unlike {
             console::print(format_args!("{unlike}"))?;
         }

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use pericles_io::read_csv;
+use pericles_run::units::{bytes, count, duration, percent, quantity, threads};
+use pericles_run::{Results, file_name};
 
 use crate::args::InfoArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::results::{Results, file_name};
-use crate::units::{bytes, count, duration, percent, quantity, threads};
 
 /// Describes the results of a run.
 ///

@@ -1,10 +1,10 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] and [`converge`] on one deck at several values, `info`, `plot`, `diff` and `report` ([`page`]) on results ([`results`]), `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command is one module; what they
-//! share are a model with its observers ([`prepare`]), checkpoints, the report `run.json` and the console. Errors end in one message and one exit
-//! status ([`exit`]).
+//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] and [`converge`] on one deck at several values, `info`, `plot`,
+//! `diff` and `report` ([`page`]) on results, `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command
+//! is one module; it reads arguments, calls a library and prints. What they share are the console, what is shown of a run ([`screen`]), the signals,
+//! and errors, which end in one message and one exit status ([`exit`]).
 
-mod animations;
 mod args;
 mod bench;
 #[cfg(test)]
@@ -12,39 +12,31 @@ mod book;
 mod bug;
 mod charts;
 mod check;
-mod checkpoint;
 mod console;
 mod converge;
-mod deadline;
 mod diff;
 mod dispersion;
 mod drawn;
 mod error;
 mod exit;
+mod folder;
+mod frames;
 mod geodesics;
 mod given;
 mod info;
-mod inputs;
-mod line;
-mod machine;
 mod manual;
-mod mirror;
 mod new;
 mod page;
 mod plot;
-mod prepare;
 mod progress;
-mod refinement;
-mod report;
 mod reproduce;
-mod results;
 mod run;
 mod schema;
+mod screen;
 mod signals;
 mod summary;
 mod sweep;
-mod units;
-mod watch;
+mod text_chart;
 
 use std::process::ExitCode;
 

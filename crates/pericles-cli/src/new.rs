@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, str};
 
 use pericles_io::IoError;
+use pericles_run::RunError;
 
 use crate::args::NewArgs;
 use crate::console;
@@ -115,7 +116,7 @@ pub(crate) fn id_of(path: &str) -> Option<String> {
     find(wanted).ok().map(|example| example.id())
 }
 
-fn find(id: &str) -> Result<Example, CliError> {
+fn find(id: &str) -> Result<Example, RunError> {
     let wanted = id.trim_end_matches(".toml");
     // The name alone is enough where only one topic has it.
     let named = |example: &Example| {
@@ -125,7 +126,7 @@ fn find(id: &str) -> Result<Example, CliError> {
     let all = "`pericles new` lists all examples";
     if found.len() > 1 {
         let ids: Vec<String> = found.iter().map(Example::id).collect();
-        return Err(CliError::Unknown {
+        return Err(RunError::Unknown {
             kind: "single example",
             name: id.to_owned(),
             hint: format!("{}? {all}", ids.join(" or ")),
@@ -135,7 +136,7 @@ fn find(id: &str) -> Result<Example, CliError> {
         return Ok(example);
     }
     let ids = Example::all().map(|example| example.id());
-    Err(CliError::unknown("example", id, ids, all))
+    Err(RunError::unknown("example", id, ids, all))
 }
 
 /// Writes a file that must not exist.
@@ -192,7 +193,7 @@ mod tests {
             find("branching.toml").map(|e| e.id()).unwrap(),
             "fracture/branching"
         );
-        let Err(CliError::Unknown { hint, .. }) = find("fracture/brancing") else {
+        let Err(RunError::Unknown { hint, .. }) = find("fracture/brancing") else {
             panic!("found");
         };
         assert!(hint.contains("fracture/branching"), "{hint}");

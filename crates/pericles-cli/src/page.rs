@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use pericles_io::{IoError, escaped, write_atomically};
+use pericles_run::{Results, file_name};
 use serde_json::Value;
 
 use crate::args::ReportArgs;
@@ -14,7 +15,6 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
-use crate::results::{Results, file_name};
 
 /// Pictures of one field on the page; of more, so many evenly spread ones.
 const MOST_PICTURES: usize = 6;

@@ -1,12 +1,12 @@
-//! How far a run is: a bar on a terminal, a line every tenth otherwise, or nothing.
+//! How far a run is: a bar on a terminal, a line every tenth otherwise.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use pericles_run::units::{duration, quantity};
 
 use crate::console;
-use crate::units::{duration, quantity};
 
 /// Shows on the standard error how far a run is.
 pub(crate) struct Progress {
@@ -25,7 +25,6 @@ enum Style {
     Lines {
         next: u64,
     },
-    Quiet,
 }
 
 /// Between two changes of the text beside the bar.
@@ -33,11 +32,9 @@ const REFRESH: Duration = Duration::from_millis(200);
 
 impl Progress {
     /// A run from step `first` to step `steps`.
-    pub(crate) fn new(quiet: bool, first: u64, steps: u64) -> Self {
+    pub(crate) fn new(first: u64, steps: u64) -> Self {
         let now = Instant::now();
-        let style = if quiet {
-            Style::Quiet
-        } else if std::io::stderr().is_terminal() {
+        let style = if std::io::stderr().is_terminal() {
             let bar = ProgressBar::new(steps).with_position(first);
             let template = "{bar:30} {percent:>3} %  step {pos} of {len}  {msg}  {eta} left";
             if let Ok(style) = ProgressStyle::with_template(template) {
@@ -61,7 +58,6 @@ impl Progress {
     /// After a step.
     pub(crate) fn step(&mut self, step: u64, t: f64) {
         match &mut self.style {
-            Style::Quiet => {}
             Style::Bar { bar, shown } => {
                 bar.set_position(step);
                 if shown.elapsed() >= REFRESH {

@@ -3,8 +3,9 @@
 //! A SIGHUP that is ignored when the program starts, as under `nohup`, stays ignored.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicBool;
 
+use pericles_run::{Cancel, Ending};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag;
 
@@ -29,7 +30,8 @@ fn is_ignored(signal: i32) -> bool {
 /// What has been asked for so far.
 #[derive(Debug, Default)]
 pub(crate) struct Signals {
-    last: Arc<AtomicUsize>,
+    /// Cancelled for the number of the last signal.
+    cancel: Cancel,
 }
 
 impl Signals {
@@ -49,14 +51,28 @@ impl Signals {
             flag::register_conditional_shutdown(signal, status, Arc::clone(&asked))?;
             flag::register(signal, Arc::clone(&asked))?;
             let number = usize::try_from(signal).unwrap_or_default();
-            flag::register_usize(signal, Arc::clone(&signals.last), number)?;
+            flag::register_usize(signal, signals.cancel.flag(), number)?;
         }
         Ok(signals)
     }
 
+    /// What tells a run of them.
+    pub(crate) fn cancel(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    /// The exit status that a run leads to.
+    pub(crate) fn exit_of(&self, ending: Ending) -> Exit {
+        match ending {
+            Ending::Finished => Exit::Done,
+            Ending::Cancelled => self.asked().unwrap_or(Exit::StoppedEarly),
+            Ending::Deadline => Exit::StoppedEarly,
+        }
+    }
+
     /// How the program is to end, if it was asked to.
     pub(crate) fn asked(&self) -> Option<Exit> {
-        let last = i32::try_from(self.last.load(Ordering::Relaxed)).unwrap_or_default();
+        let last = i32::try_from(self.cancel.reason()?.get()).unwrap_or_default();
         let asked = STOPPING.iter().find(|(signal, _)| *signal == last);
         asked.map(|(_, exit)| *exit)
     }

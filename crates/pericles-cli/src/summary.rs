@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use pericles_io::IoError;
+use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
+use pericles_run::{Audit, Report, Status};
+
 use crate::console;
-use crate::error::CliError;
-use crate::report::{Audit, Report, Status};
-use crate::units::{bytes, count, duration, percent, quantity, significant, threads};
 
 /// Before the first step.
 pub(crate) fn opening(report: &Report, folder: &Path) {
@@ -25,7 +26,7 @@ pub(crate) fn opening(report: &Report, folder: &Path) {
 ///
 /// # Errors
 /// A standard output that cannot be written.
-pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), CliError> {
+pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
     let (model, progress) = (&report.model, &report.progress);
     let folder = place.display();
     let word = match report.status {
@@ -80,7 +81,7 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), CliError> {
     ))
 }
 
-fn energies(audit: &Audit) -> Result<(), CliError> {
+fn energies(audit: &Audit) -> Result<(), IoError> {
     console::print(format_args!(
         "energy: kinetic {}, elastic {}, dissipated {}; work done on the body {}",
         quantity(audit.kinetic_energy, "J"),

@@ -8,10 +8,10 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use pericles::operator::InstructionSet;
 use pericles_manifold::geodesic::GeodesicMethod;
+use pericles_run::sweep::Axis;
 
 use crate::exit::Exit;
-use crate::plot::Frames;
-use crate::sweep::Axis;
+use crate::frames::Frames;
 
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
 pub(crate) use values::{Direction, Format, Length, Pair, Range};

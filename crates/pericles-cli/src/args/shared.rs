@@ -5,11 +5,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use pericles_io::DiskCache;
+use pericles_run::{self as library, Means, RunError, machine};
 
 use super::values::{threads, wall_time};
-use crate::machine;
-use crate::prepare::Means;
 
 /// Changes to the deck.
 #[derive(Debug, Args)]
@@ -32,9 +30,9 @@ pub(crate) struct RunOptions {
 
 impl RunOptions {
     /// What a model may be made with.
-    pub(crate) fn means(&self) -> Means<'_> {
+    pub(crate) fn means(&self) -> Means {
         Means {
-            caching: &self.caching,
+            caching: self.caching.wanted(),
             memory: self.limits.memory.bytes(),
         }
     }
@@ -52,12 +50,12 @@ pub(crate) struct Caching {
 }
 
 impl Caching {
-    /// The cache; none if it is not wanted or the user has no place for one.
-    pub(crate) fn cache(&self) -> Option<DiskCache> {
+    /// Where they are kept.
+    pub(crate) fn wanted(&self) -> library::Caching {
         match &self.folder {
-            Some(folder) => Some(DiskCache::new(folder)),
-            None if self.no_cache => None,
-            None => DiskCache::of_user(),
+            Some(folder) => library::Caching::Folder(folder.clone()),
+            None if self.no_cache => library::Caching::Off,
+            None => library::Caching::User,
         }
     }
 }
@@ -112,7 +110,7 @@ impl Threads {
     }
 
     /// Starts the threads; without a number one per core.
-    pub(crate) fn start(&self) -> Result<usize, rayon::ThreadPoolBuildError> {
+    pub(crate) fn start(&self) -> Result<usize, RunError> {
         let count = self.count.map_or(0, NonZeroUsize::get);
         rayon::ThreadPoolBuilder::new()
             .num_threads(count)

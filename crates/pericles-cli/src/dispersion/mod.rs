@@ -1,26 +1,25 @@
 //! `dispersion`: what the grid and the kernel of a deck do to waves. Runs nothing unless a spectrum is to be measured.
 
-pub(crate) mod curves;
-pub(crate) mod spectrum;
 mod wavevectors;
 
 use pericles_deck::{Deck, KernelQuality, Model, PlaneWaves};
 use pericles_dispersion::spectrum::{SpectrumRun, measure};
 use pericles_dispersion::tuning::{TunedTable, bond_classes, continuum_speeds};
 use pericles_dispersion::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
-use pericles_io::{OutputFolder, write_atomically};
+use pericles_io::{IoError, OutputFolder, write_atomically};
+use pericles_run::dispersion::{
+    Curves, STEPS, write_bonds, write_classes, write_polar, write_spectrum,
+};
+use pericles_run::units::{percent, quantity, significant};
+use pericles_run::{RunError, readers};
 use serde_json::{Value as Json, json};
 
 use crate::args::DispersionArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::folder::output_folder;
 use crate::given;
-use crate::prepare;
-use crate::run;
-use crate::units::{percent, quantity, significant};
-use curves::{Curves, STEPS, write_bonds, write_classes, write_polar};
-use spectrum::write_spectrum;
 use wavevectors::AtWaveVector;
 
 /// Analyses the lattice of a deck and writes curves, polar plot, classes and a summary.
@@ -30,13 +29,13 @@ use wavevectors::AtWaveVector;
 pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let model = deck.build_with(prepare::readers())?;
+    let model = deck.build_with(readers())?;
     let lattice = deck.bond_lattice(&model)?;
     let study = Analysis::of(&deck, &model, lattice, args)?;
     if args.measure && !study.stability.is_stable() {
         return Err(CliError::UnstableSpectrum);
     }
-    let folder = run::output_folder(args.out.as_deref(), None, &args.deck, "-dispersion")?;
+    let folder = output_folder(args.out.as_deref(), None, &args.deck, "-dispersion")?;
     let left_out = left_out(&deck);
     for part in &left_out {
         console::note(format_args!(
@@ -151,7 +150,7 @@ impl Analysis {
     }
 
     /// α of each class as the deck has it, with its bonds' share κ.
-    fn write_classes(&self, deck: &Deck, folder: &OutputFolder) -> Result<(), CliError> {
+    fn write_classes(&self, deck: &Deck, folder: &OutputFolder) -> Result<(), IoError> {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
         }
@@ -189,7 +188,7 @@ impl Analysis {
             seed: 1,
         };
         let spectrum = measure(&self.lattice, &self.contour, run)
-            .map_err(|error| CliError::of_run(error, String::new))?;
+            .map_err(|error| RunError::of_run(error, String::new))?;
         write_spectrum(&|name| folder.file(name), &spectrum, &self.curves(), title)?;
         let (worst, peaks) = spectrum.worst_deviation();
         Ok(json!({
@@ -282,7 +281,7 @@ impl Analysis {
         Some(std::f64::consts::TAU / k / self.lattice.spacing()[0])
     }
 
-    fn print(&self, measured: &Json) -> Result<(), CliError> {
+    fn print(&self, measured: &Json) -> Result<(), IoError> {
         let found = &self.stability;
         let names = ["pressure", "shear", "second shear"];
         for (branch, [low, high]) in self.anisotropy().into_iter().enumerate() {
@@ -366,7 +365,7 @@ fn tuning(table: &TunedTable) -> Json {
     })
 }
 
-fn print_tuning(table: &TunedTable) -> Result<(), CliError> {
+fn print_tuning(table: &TunedTable) -> Result<(), IoError> {
     let error = &table.assessment.error;
     let functionals = table.functionals.iter().map(|branches| {
         let values = branches.iter().map(|value| significant(*value, 3));

@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use pericles_dispersion::{BondLattice, Mode, Vector, verlet_frequency};
-use pericles_io::{Cell, Column, CsvTable};
+use pericles_io::{Cell, Column, CsvTable, IoError};
+use pericles_run::units::significant;
 use serde_json::{Value as Json, json};
 
 use crate::console;
-use crate::error::CliError;
-use crate::units::significant;
 
 /// The modes at one wave vector, fastest first.
 pub(crate) struct AtWaveVector {
@@ -52,7 +51,7 @@ impl AtWaveVector {
         json!({ "k": self.k, "modes": modes.collect::<Vec<_>>() })
     }
 
-    fn print(&self) -> Result<(), CliError> {
+    fn print(&self) -> Result<(), IoError> {
         let modes: Vec<String> = self
             .modes
             .iter()
@@ -76,12 +75,12 @@ pub(crate) fn summary(all: &[AtWaveVector]) -> Json {
 }
 
 /// All of them, on the screen.
-pub(crate) fn print(all: &[AtWaveVector]) -> Result<(), CliError> {
+pub(crate) fn print(all: &[AtWaveVector]) -> Result<(), IoError> {
     all.iter().try_for_each(AtWaveVector::print)
 }
 
 /// A row for each mode; cells are empty where a wave grows.
-pub(crate) fn write(path: &Path, all: &[AtWaveVector]) -> Result<(), CliError> {
+pub(crate) fn write(path: &Path, all: &[AtWaveVector]) -> Result<(), IoError> {
     let mut columns = ["k_x", "k_y", "k_z"]
         .map(|name| Column::real(name, "rad/m"))
         .to_vec();

@@ -10,13 +10,13 @@ use pericles_manifold::geodesic::{
     GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_distance, geodesic_pairs,
 };
 use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceReport};
+use pericles_run::units::{count, duration, significant};
 use serde::Serialize;
 
 use crate::args::{GeodesicsArgs, Pair};
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::units::{count, duration, significant};
 
 /// The results as JSON.
 #[derive(Serialize)]

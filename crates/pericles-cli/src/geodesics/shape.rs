@@ -2,9 +2,9 @@
 
 use pericles_io::read_surface;
 use pericles_manifold::surface::{Surface, SurfaceError};
+use pericles_run::machine;
 
 use crate::error::CliError;
-use crate::machine;
 
 const ALLOWED: &str = "icosphere(LEVEL), icosphere(LEVEL,RADIUS), uv-sphere(SEGMENTS,RINGS,RADIUS), ellipsoid(LEVEL,A,B,C), \
                        torus(MAJOR,MINOR,AROUND,ACROSS), capsule(RADIUS,LENGTH,SEGMENTS), or a file";

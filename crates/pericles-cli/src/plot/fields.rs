@@ -9,21 +9,17 @@ use pericles::space::PointCloud;
 use pericles_deck::{Deck, Resources};
 use pericles_io::observers::{DrawnState, PictureOf};
 use pericles_io::{FieldData, write_animation};
+use pericles_run::{DeckText, FieldFile, Results, RunError, machine, picture_of, readers};
 
-use super::Frames;
 use crate::args::{Format, PlotArgs};
-use crate::checkpoint::DeckText;
-use crate::error::CliError;
-use crate::machine;
-use crate::prepare::{picture_of, readers};
-use crate::results::{FieldFile, Results};
+use crate::frames::Frames;
 
 /// Draws pictures into a folder; returns them, and the animations.
 pub(super) fn draw(
     results: &Results,
     args: &PlotArgs,
     place: &Path,
-) -> Result<Vec<PathBuf>, CliError> {
+) -> Result<Vec<PathBuf>, RunError> {
     let states = results.fields()?;
     let Some(last) = states.last() else {
         if args.fields.is_empty() {
@@ -95,7 +91,7 @@ fn wanted(
     args: &PlotArgs,
     data: &FieldData,
     dimension: usize,
-) -> Result<Vec<PictureOf>, CliError> {
+) -> Result<Vec<PictureOf>, RunError> {
     let title = deck.title.clone().unwrap_or_default();
     if args.fields.is_empty() {
         let own = deck.output.pictures.iter();
@@ -139,10 +135,10 @@ fn wanted(
             let names: Vec<String> = written.iter().map(|what| what.name(dimension)).collect();
             let listing = format!("the run wrote {}", names.join(", "));
             let Some(left_out) = all.iter().find(|what| what.name(dimension) == *name) else {
-                return CliError::unknown("field", name, &names, &listing);
+                return RunError::unknown("field", name, &names, &listing);
             };
             let field = left_out.field.name();
-            CliError::Unknown {
+            RunError::Unknown {
                 kind: "field",
                 name: name.clone(),
                 hint: format!(
@@ -204,7 +200,7 @@ impl Body {
         state: &FieldFile,
         data: &FieldData,
         path: &Path,
-    ) -> Result<(), CliError> {
+    ) -> Result<(), RunError> {
         let n = self.cloud.len();
         let displacement = match data.field(Field::Displacement.name()) {
             Some(_) => self.field(Field::Displacement, state, data)?,
@@ -226,8 +222,8 @@ impl Body {
         field: Field,
         state: &FieldFile,
         data: &FieldData,
-    ) -> Result<Vec<f64>, CliError> {
-        let damaged = |reason: String| CliError::Damaged {
+    ) -> Result<Vec<f64>, RunError> {
+        let damaged = |reason: String| RunError::Damaged {
             path: state.path.clone(),
             reason,
         };
@@ -258,7 +254,7 @@ impl Body {
         what: &PictureOf,
         states: &[FieldFile],
         numbers: &[usize],
-    ) -> Result<Option<[f64; 2]>, CliError> {
+    ) -> Result<Option<[f64; 2]>, RunError> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for &number in numbers {
             let field = self.field(what.field, &states[number], &states[number].read()?)?;

@@ -1,22 +1,18 @@
 //! `plot`: pictures of fields and charts of histories, drawn again from an output folder.
 
 mod fields;
-mod frames;
-mod terminal;
-
-pub(crate) use frames::Frames;
-pub(crate) use terminal::TextChart;
 
 use std::path::{Path, PathBuf};
 
 use pericles_io::IoError;
+use pericles_run::{Results, RunError, file_name};
 
 use crate::args::PlotArgs;
 use crate::charts::{self, Chart};
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::results::{Results, file_name};
+use crate::text_chart::TextChart;
 
 /// Draws what is asked for; without a field or a column the pictures of the last state and the charts of all tables.
 ///
@@ -71,12 +67,13 @@ fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart
         charts.extend(found.into_iter().map(|chart| (stem(&table), chart)));
     }
     match columns.iter().find(|column| !known.contains(column)) {
-        Some(unknown) => Err(CliError::unknown(
+        Some(unknown) => Err(RunError::unknown(
             "column",
             unknown,
             &known,
             &format!("the tables have {}", known.join(", ")),
-        )),
+        )
+        .into()),
         None => Ok(charts),
     }
 }

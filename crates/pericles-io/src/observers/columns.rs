@@ -11,7 +11,7 @@ use super::table::whole;
 use crate::csv::{Cell, Column};
 
 /// More columns of a [`History`](super::History).
-pub trait HistoryColumns: Saved {
+pub trait HistoryColumns: Saved + Send {
     /// Their names and units.
     fn columns(&self) -> Vec<Column>;
 

@@ -22,7 +22,7 @@ use crate::archive::Saved;
 pub type ObserveError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Someone who looks at a run. What is saved lets an observer continue where it was, without gap or repetition.
-pub trait Observer: Saved {
+pub trait Observer: Saved + Send {
     /// Sees a state.
     ///
     /// # Errors

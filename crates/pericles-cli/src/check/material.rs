@@ -1,0 +1,192 @@
+//! What `check` says of materials.
+
+use pericles::kernel::ActsOn;
+use pericles::material::{BondConstants, Calibration, ElasticWaves};
+use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
+use pericles_manifold::SurfaceBond;
+use pericles_manifold::geodesic::Ball;
+use pericles_manifold::surface::AreaRule;
+use pericles_run::Facts;
+use pericles_run::units::{percent, quantity, significant};
+use serde_json::json;
+
+use super::line::Line;
+
+pub(super) fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
+    let mut lines = vec![
+        Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
+        Line::new(
+            "bond constant c",
+            format!(
+                "{:.6e} (SI, of the force density c α {})",
+                facts.micromodulus,
+                match deck.material.bonds.influence.acts_on {
+                    ActsOn::Stretch => "s",
+                    ActsOn::Displacement => "η",
+                }
+            ),
+        ),
+        Line::new("stiffness error", stiffness_error(deck, facts)),
+    ];
+    let strength = facts.critical_stretch.zip(facts.fracture_energy);
+    lines.push(Line::new("breaking", breaking(strength)));
+    if !facts.crack_planes.is_empty() {
+        lines.push(Line::new("crack planes", crack_planes(facts)));
+    }
+    for (part, constants) in deck.material.parts.iter().zip(parts) {
+        let strength = Some((constants.critical_stretch, constants.fracture_energy))
+            .filter(|(stretch, _)| stretch.is_finite());
+        let text = format!(
+            "{}: Young's modulus {}, {} kg/m³; breaking {}",
+            part.name,
+            quantity(constants.young, "Pa"),
+            significant(part.density, 4),
+            breaking(strength)
+        );
+        lines.push(Line::new("besides", text).with_entry(
+            "parts",
+            json!({
+                "name": part.name,
+                "youngs_modulus": constants.young,
+                "density": part.density,
+                "critical_stretch": strength.map(|(stretch, _)| stretch),
+                "fracture_energy": strength.map(|(_, energy)| energy),
+            }),
+        ));
+    }
+    let density = deck.material.bonds.density;
+    let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
+    let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
+    if let Some(transverse) = speeds.transverse {
+        waves += &format!(
+            ", shear {} m/s, Rayleigh {} m/s",
+            speed(transverse.shear),
+            speed(transverse.rayleigh)
+        );
+    }
+    lines.push(Line::new("waves", waves).with(
+        "wave_speeds",
+        json!({
+            "pressure": speeds.pressure,
+            "shear": speeds.transverse.map(|transverse| transverse.shear),
+            "rayleigh": speeds.transverse.map(|transverse| transverse.rayleigh),
+        }),
+    ));
+    lines
+}
+
+/// A speed with whole metres per second, or with three digits where it is small.
+fn speed(speed: f64) -> String {
+    match speed.abs() >= 100.0 {
+        true if speed < 1e7 => format!("{speed:.0}"),
+        _ => significant(speed, 3),
+    }
+}
+
+/// How far the grid's interior is from the stiffness asked for, and what can be done about it.
+fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
+    /// Worth a word.
+    const NOTICED: f64 = 0.01;
+    let mut line = format!("{} in bulk", deviation(facts.stiffness_error));
+    if facts.dimension > 1 {
+        line += &format!(", {} in shear along the axes", deviation(facts.shear_error));
+    }
+    line += ", of the grid's interior";
+    let calibration = deck.material.bonds.modulus.calibration;
+    if facts.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
+        line += "; modulus = \"lattice\" makes it 0 in bulk";
+    }
+    line
+}
+
+/// A relative deviation with its sign; what rounding leaves is none.
+fn deviation(ratio: f64) -> String {
+    // Plus zero: no minus before a zero.
+    let rounded = (ratio * 1e6).round() * 1e-6 + 0.0;
+    let sign = if rounded > 0.0 { "+" } else { "" };
+    format!("{sign}{}", percent(rounded))
+}
+
+/// What cracks along the planes of the lattice cost.
+fn crack_planes(facts: &Facts) -> String {
+    let planes: Vec<String> = facts
+        .crack_planes
+        .iter()
+        .map(|plane| format!("{} {}", plane.plane, deviation(plane.deviation)))
+        .collect();
+    let calibration = match facts.fracture_calibration {
+        Some(calibration) => format!(" (fracture_calibration = \"{calibration}\")"),
+        None => String::new(),
+    };
+    format!(
+        "energy per area over the fracture energy: {}{calibration}",
+        planes.join(", ")
+    )
+}
+
+/// From critical stretch and fracture energy (J/m²).
+fn breaking(strength: Option<(f64, f64)>) -> String {
+    match strength {
+        Some((stretch, energy)) => format!(
+            "beyond the stretch {}, fracture energy {}",
+            significant(stretch, 4),
+            quantity(energy, "J/m²")
+        ),
+        None => "never".into(),
+    }
+}
+
+pub(super) fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
+    let material = &surface.material;
+    let law = match material.bond {
+        SurfaceBond::Displacement => "κ |η|^(p−2) η / d^(2+αp)",
+        SurfaceBond::Chord => "κ |ℓ−ℓ₀|^(p−2) (ℓ−ℓ₀) n / d^(2+αp), frame-indifferent",
+    };
+    let areas = match surface.areas {
+        VertexAreas::Rule(AreaRule::Barycentric) => "a third of each triangle".into(),
+        VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
+        VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
+    };
+    let same_area = match surface.areas {
+        VertexAreas::Same(area) => Some(area),
+        VertexAreas::Rule(_) => None,
+    };
+    let own_cell = if material.self_cell {
+        "added"
+    } else if material.alpha >= 0.5 {
+        "left out: for α of 1/2 and more results depend on the mesh"
+    } else {
+        "left out"
+    };
+    let breaking = if material.critical_stretch.is_finite() {
+        format!(
+            "beyond |η|/d = {}",
+            significant(material.critical_stretch, 4)
+        )
+    } else {
+        "never".into()
+    };
+    vec![
+        Line::new(
+            "force",
+            format!(
+                "{law}; p = {}, α = {}, κ = {}",
+                material.p, material.alpha, material.kappa
+            ),
+        )
+        .with(
+            "surface_law",
+            json!({ "p": material.p, "alpha": material.alpha, "kappa": material.kappa }),
+        ),
+        Line::new(
+            "distances",
+            match surface.ball {
+                Ball::Geodesic => surface.method.to_string(),
+                Ball::Euclid => format!("{}, of the vertices in a ball of space", surface.method),
+            },
+        ),
+        Line::new("areas", areas).with("vertex_area", same_area),
+        Line::new("own cell", own_cell),
+        Line::new("breaking", breaking),
+    ]
+}

@@ -1,0 +1,305 @@
+//! `check`: report what a run of a deck needs, without running it: as lines for people, and as JSON with every number in them.
+
+mod line;
+mod material;
+mod refinement;
+mod waves;
+
+use std::path::Path;
+
+use pericles::observe::Probe;
+use pericles_deck::{Deck, Model, Scheme};
+use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
+use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
+use pericles_run::{Facts, Means, Modelled};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::args::CheckArgs;
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::given;
+use crate::screen::Screen;
+
+use self::line::Line;
+use self::material::{material, surface_material};
+use self::waves::plane_waves;
+
+/// Checks a deck.
+///
+/// # Errors
+/// A deck that is refused.
+pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
+    let count_of_threads = args.threads.start()?;
+    let deck = given::deck(&args.deck, &args.overrides.set)?;
+    let means = Means {
+        caching: args.caching.wanted(),
+        memory: args.memory.bytes(),
+    };
+    let mut screen = Screen::new(false);
+    let Modelled { model, facts } = Modelled::of(&deck, &means, &mut |event| screen.show(event))?;
+    for warning in &facts.warnings {
+        console::note(format_args!("warning: {warning}"));
+    }
+    let mut lines = body(&deck, &facts);
+    lines.extend(neighbours(&model));
+    match &deck.surface {
+        Some(surface) => lines.extend(surface_material(surface)),
+        None => lines.extend(material(&deck, &facts, &model.parts)),
+    }
+    lines.extend(plane_waves(&deck, &model));
+    lines.extend(time(&facts));
+    /// Loads with a line of their own; `run.json` has all.
+    const LOADS: usize = 20;
+    for load in facts.loads.iter().take(LOADS) {
+        lines.push(Line::new("load", load.line()));
+    }
+    if facts.loads.len() > LOADS {
+        let more = facts.loads.len() - LOADS;
+        lines.push(
+            Line::new("loads", format!("{} more", count(more as u64)))
+                .with("loads_not_listed", more),
+        );
+    }
+    lines.extend(probes(&model));
+    for end in &facts.ends {
+        lines.push(Line::new("absorbing end", end.line()));
+    }
+    for changed in &facts.changed_defaults {
+        lines.push(Line::new("changed default", changed.clone()));
+    }
+    if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
+        // A step goes from static state to static state: one would be the whole run.
+        let note = "that of as many iterations as each static state takes";
+        lines.push(Line::new("run time", note));
+    } else {
+        let time = run_time(&deck, &facts, model, count_of_threads, &mut lines)?;
+        lines.push(time);
+    }
+    if let Some(path) = &args.json {
+        let results = json_of(&args.deck, &deck, &facts, &lines)?;
+        console::write_json(path, &results)?;
+    }
+    if args.json.as_deref() != Some(Path::new("-")) {
+        let title = deck.title.as_deref().unwrap_or("no title");
+        let mut text = format!("{}: {title}", args.deck.display());
+        for line in &lines {
+            text += &format!("\n  {line}");
+        }
+        console::print(format_args!("{text}"))?;
+    }
+    Ok(Exit::Done)
+}
+
+/// All that `check` knows, in SI units: the facts under the keys that they have in `model` of `run.json`, and the values of the lines.
+fn json_of(path: &Path, deck: &Deck, facts: &Facts, lines: &[Line]) -> Result<Value, CliError> {
+    #[derive(Serialize)]
+    struct Named<'a> {
+        deck: String,
+        title: Option<&'a str>,
+        #[serde(flatten)]
+        facts: &'a Facts,
+    }
+    let mut json = serde_json::to_value(Named {
+        deck: path.display().to_string(),
+        title: deck.title.as_deref(),
+        facts,
+    })?;
+    if let Value::Object(object) = &mut json {
+        line::add_values(object, lines);
+    }
+    Ok(json)
+}
+
+/// How long the run will take, from a few of its steps; what that says of two time steps is added to the lines.
+fn run_time(
+    deck: &Deck,
+    facts: &Facts,
+    mut model: Model,
+    count_of_threads: usize,
+    lines: &mut Vec<Line>,
+) -> Result<Line, CliError> {
+    model.integrator.start(&mut model.system, &mut model.state);
+    let comparison = Comparison::measure(deck, &mut model)?;
+    if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {
+        lines.extend(refinement::lines(two, facts.scheme, facts.dt, comparison));
+    }
+    let step = match comparison {
+        Some(comparison) => comparison.seconds,
+        None => seconds_per_step(
+            &mut model.system,
+            &mut model.state,
+            &mut *model.integrator,
+            facts.dt,
+            // Not one more than the run has: histories of absorbing ends are no longer.
+            facts.steps,
+            LONGEST,
+        )?,
+    };
+    let seconds = step * facts.steps as f64;
+    let text = format!(
+        "about {} on {} ({}), files not counted",
+        duration(seconds),
+        threads(count_of_threads),
+        facts.instruction_set
+    );
+    Ok(Line::new("run time", text)
+        .with("run_seconds", seconds)
+        .with("threads", count_of_threads))
+}
+
+fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
+    let body = match &deck.surface {
+        Some(_) => Line::new("body", "surface in 3D"),
+        None => {
+            let state = deck.body.state.name();
+            let text = format!("{}D, {state}", facts.dimension);
+            Line::new("body", text).with("state", state)
+        }
+    };
+    let per_point = facts.directed_bonds as f64 / facts.points as f64;
+    let ratio = facts.horizon / facts.spacing;
+    let mut lines = vec![
+        body,
+        Line::new("points", count(facts.points as u64)),
+        Line::new(
+            "bonds",
+            format!(
+                "{} ({} directed, {} per point), kept as a {}",
+                count(facts.bonds),
+                count(facts.directed_bonds),
+                significant(per_point, 3),
+                facts.operator
+            ),
+        )
+        .with("directed_bonds_per_point", per_point),
+        Line::new(
+            "memory",
+            format!("about {} at the peak", bytes(facts.memory_estimate)),
+        ),
+        Line::new(
+            "spacing, horizon",
+            format!(
+                "{}, {}; ratio {}",
+                quantity(facts.spacing, "m"),
+                quantity(facts.horizon, "m"),
+                significant(ratio, 4)
+            ),
+        )
+        .with("horizon_ratio", ratio),
+    ];
+    if facts.precut_bonds > 0 {
+        let cut = Line::new("bonds cut before", count(facts.precut_bonds));
+        lines.insert(3, cut);
+    }
+    lines
+}
+
+/// The fewest, mean and most neighbours of a point, where the operator knows them one by one.
+fn neighbours(model: &Model) -> Option<Line> {
+    let zoned = model.system.operator().as_zoned()?;
+    let count_of = |i: usize| {
+        let mut count = 0u64;
+        zoned.neighbours(i, &mut |_| count += 1);
+        count
+    };
+    let counts = (0..model.cloud.len()).map(count_of);
+    let (least, most, sum) = counts.fold((u64::MAX, 0, 0), |(least, most, sum), n| {
+        (least.min(n), most.max(n), sum + n)
+    });
+    let mean = sum as f64 / model.cloud.len() as f64;
+    let text = format!(
+        "{} to {} per point, {} on average",
+        count(least),
+        count(most),
+        significant(mean, 3)
+    );
+    let value = json!({ "least": least, "mean": mean, "most": most });
+    Some(Line::new("neighbours", text).with("neighbours", value))
+}
+
+/// Where the probes read: at a point, or the mean over a set.
+fn probes(model: &Model) -> Vec<Line> {
+    let line = |probe: &Probe| {
+        let mut value = json!({ "name": probe.name, "points": probe.points.len() });
+        let text = match probe.points[..] {
+            [point] => {
+                let place = model.cloud.point(point as usize);
+                let place = &place[..model.cloud.dimension()];
+                let shown: Vec<String> = place.iter().map(|x| quantity(*x, "m")).collect();
+                value["place"] = json!(place);
+                format!("{} at ({})", probe.name, shown.join(", "))
+            }
+            _ => format!(
+                "{}: mean over {} points",
+                probe.name,
+                count(probe.points.len() as u64)
+            ),
+        };
+        Line::new("probe", text).with_entry("probes", value)
+    };
+    model.probes.iter().map(line).collect()
+}
+
+fn time(facts: &Facts) -> Vec<Line> {
+    let mut lines = Vec::new();
+    if let (Some(omega), Some(bound)) = (facts.highest_frequency, facts.highest_frequency_bound) {
+        let certainty = match facts.highest_frequency_failure_probability {
+            Some(probability) if probability > 0.0 => {
+                format!(" (bound from random vectors, wrong with probability {probability:.0e})")
+            }
+            _ => String::new(),
+        };
+        let range = range(omega, bound);
+        lines.push(
+            Line::new("highest frequency", format!("{range}{certainty}"))
+                .with("highest_frequency_margin", bound / omega - 1.0),
+        );
+    }
+    if let (Some(omega), Some(bound)) = (facts.limiting_frequency, facts.limiting_frequency_bound)
+        && facts.refinement.is_some()
+    {
+        let line = Line::new("of the coarse step", range(omega, bound));
+        lines.push(line.with("limiting_frequency_margin", bound / omega - 1.0));
+    }
+    if let Some(limit) = facts.stable_step {
+        let text = format!("{} ({})", quantity(limit, "s"), facts.scheme);
+        lines.push(Line::new("stable step", text));
+    }
+    let ratio = facts.stable_step.map(|limit| facts.dt / limit);
+    let share = ratio.map(step_share).unwrap_or_default();
+    let end = facts.steps as f64 * facts.dt;
+    let text = format!(
+        "{} of {}{share}; end at {}",
+        count(facts.steps),
+        quantity(facts.dt, "s"),
+        quantity(end, "s")
+    );
+    let steps = Line::new("steps", text)
+        .with("end", end)
+        .with("dt_over_stable_step", ratio)
+        .with(
+            "dt_above_stable_step",
+            ratio.map(|ratio| (ratio - 1.0).max(0.0)),
+        );
+    lines.push(steps);
+    lines
+}
+
+/// A frequency between an estimate and a bound.
+fn range(omega: f64, bound: f64) -> String {
+    format!(
+        "{omega:.4e} 1/s, at most {} more",
+        percent((bound / omega - 1.0).max(0.0))
+    )
+}
+
+/// A step over the stable one. A step above it is never called one of 100 %.
+fn step_share(ratio: f64) -> String {
+    if ratio > 1.0 {
+        format!(", {} above the stable one", percent(ratio - 1.0))
+    } else {
+        format!(", {} of the stable one", percent(ratio))
+    }
+}

@@ -1,0 +1,72 @@
+//! What `check` says of plane waves.
+
+use pericles_deck::{Deck, KernelQuality, Model};
+use pericles_run::units::{percent, quantity, significant};
+use serde_json::json;
+
+use super::line::Line;
+
+/// What kernel and grid do to plane waves.
+pub(super) fn plane_waves(deck: &Deck, model: &Model) -> Vec<Line> {
+    let Some(waves) = deck.plane_waves(model) else {
+        return Vec::new();
+    };
+    let grid = waves.grid;
+    let tolerance = percent(grid.tolerance);
+    let length = std::f64::consts::TAU / grid.wavenumber;
+    let spacings = length / model.cloud.spacing();
+    let mut lines = Vec::new();
+    if let Some(longest) = waves.model {
+        let horizons = longest / deck.material.bonds.horizon;
+        let text = format!(
+            "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
+            quantity(longest, "m"),
+            significant(horizons, 3)
+        );
+        let value =
+            json!({ "tolerance": grid.tolerance, "wavelength": longest, "horizons": horizons });
+        lines.push(Line::new("kernel dispersion", text).with("kernel_dispersion", value));
+    }
+    let reference = match waves.model {
+        Some(_) => "the nonlocal continuum",
+        None => "long waves",
+    };
+    let text = format!(
+        "phase speed within {tolerance} of {reference} from wavelengths of {} ({} spacings)",
+        quantity(length, "m"),
+        significant(spacings, 3)
+    );
+    let value = json!({ "tolerance": grid.tolerance, "wavelength": length, "spacings": spacings });
+    lines.push(Line::new("grid dispersion", text).with("grid_dispersion", value));
+    if let (Some(pair), Some(table)) = (waves.tuning, &deck.material.tuned) {
+        lines.push(tuned_kernel(pair, table.tuning.lower_bound));
+    }
+    lines
+}
+
+/// A tuned kernel beside a constant one.
+fn tuned_kernel([tuned, constant]: [KernelQuality; 2], lower_bound: Option<f64>) -> Line {
+    const TOLERANCE: f64 = 0.01;
+    let shortest = KernelQuality::SHORTEST;
+    let bound = match lower_bound {
+        Some(bound) => format!("; coefficients of at least {bound}"),
+        None => String::new(),
+    };
+    let text = format!(
+        "within {} of long waves from {} spacings per wavelength (constant kernel: {}); at most {} off from {shortest} spacings (constant: {}){bound}",
+        percent(TOLERANCE),
+        significant(tuned.spacings, 3),
+        significant(constant.spacings, 3),
+        percent(tuned.worst),
+        percent(constant.worst)
+    );
+    let quality = |quality: KernelQuality| json!({ "spacings": quality.spacings, "largest_error": quality.worst });
+    let value = json!({
+        "tolerance": TOLERANCE,
+        "shortest_spacings": shortest,
+        "tuned": quality(tuned),
+        "constant": quality(constant),
+        "lower_bound": lower_bound,
+    });
+    Line::new("tuned kernel", text).with("tuned_kernel", value)
+}

@@ -1,0 +1,55 @@
+//! What is shown of a run while it goes on.
+
+use pericles_run::Event;
+
+use crate::console;
+use crate::progress::Progress;
+use crate::summary;
+
+/// Shows the events of a run on the standard error.
+pub(crate) struct Screen {
+    quiet: bool,
+    progress: Option<Progress>,
+}
+
+impl Screen {
+    /// For one run; a quiet one shows notes of the cache only.
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self {
+            quiet,
+            progress: None,
+        }
+    }
+
+    /// Shows an event.
+    pub(crate) fn show(&mut self, event: Event<'_>) {
+        match event {
+            Event::CacheNote(note) => console::note(format_args!("{note}")),
+            _ if self.quiet => {}
+            Event::Opening { report, folder } => {
+                for warning in &report.model.warnings {
+                    console::note(format_args!("warning: {warning}"));
+                }
+                summary::opening(report, folder);
+            }
+            Event::LoopBegins { first, steps } => {
+                self.progress = Some(Progress::new(first, steps));
+            }
+            Event::Step { step, t } => {
+                if let Some(progress) = &mut self.progress {
+                    progress.step(step, t);
+                }
+            }
+            Event::Warning(warning) => match &self.progress {
+                Some(progress) => progress.note(format_args!("warning: {warning}")),
+                None => console::note(format_args!("warning: {warning}")),
+            },
+            Event::LoopEnds => {
+                if let Some(progress) = self.progress.take() {
+                    progress.finish();
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! The account of energy and momentum at the end of a run.
+
+use std::path::Path;
+
+use pericles::Simulation;
+use pericles::observe::Field;
+use pericles_io::{IoError, read_csv};
+use serde::Serialize;
+
+use crate::facts::Facts;
+use crate::mirror::{MirrorError, Symmetries};
+use crate::refinement::RefinementAudit;
+
+/// What the audit compares the end with: the state before the first step of the whole run.
+pub struct Start {
+    momentum: [f64; 3],
+    symmetries: Symmetries,
+}
+
+impl Start {
+    /// Of a simulation that has made no step yet.
+    pub fn of(simulation: &Simulation) -> Self {
+        Self {
+            momentum: simulation.system().momentum(&simulation.state().v),
+            symmetries: Symmetries::of(simulation),
+        }
+    }
+}
+
+/// The account of energy and momentum at the end.
+#[derive(Debug, Clone, Serialize)]
+pub struct Audit {
+    /// Kinetic energy, J.
+    pub kinetic_energy: f64,
+    /// Elastic energy, J.
+    pub elastic_energy: f64,
+    /// Energy dissipated by broken bonds and damping, J.
+    pub dissipated_energy: f64,
+    /// Work done on the body by loads and supports, J.
+    pub external_work: f64,
+    /// Kinetic and elastic energy before the first step of the whole run, J.
+    pub initial_energy: f64,
+    /// By how much the scheme's own conserved energy differs from kinetic + elastic.
+    pub scheme_correction: f64,
+    /// What the energies do not add up by.
+    pub balance: f64,
+    /// The balance over the external work.
+    pub balance_over_work: f64,
+    /// The balance over the dissipated energy.
+    pub balance_over_dissipated: f64,
+    /// The largest size of the balance among the rows of history.csv.
+    pub largest_balance: f64,
+    /// Momentum, kg m/s.
+    pub momentum: [f64; 3],
+    /// Impulse of loads and supports since the start, N s.
+    pub impulse: [f64; 3],
+    /// |momentum − momentum at the start − impulse|; NaN (null) for static states, which have no momentum.
+    pub momentum_error: f64,
+    /// The same over √(2 · kinetic energy · mass).
+    pub momentum_error_relative: f64,
+    /// Bonds broken since the start, each counted once.
+    pub broken_bonds: u64,
+    /// Those of them that were stretched from compression, or to many times their critical stretch, within one step.
+    pub coarse_breaks: u64,
+    /// The largest damage of a point.
+    pub largest_damage: f64,
+    /// The balance over the larger of work and initial energy.
+    pub energy_drift: f64,
+    /// Highest frequency of the reference state that limits the step times the step; none if nothing resists motion.
+    pub omega_dt: Option<f64>,
+    /// Points whose force was evaluated since the start of the run: the whole body counts as many as it has points.
+    pub evaluated_points: u64,
+    /// Error of the last force for being computed in floats, over the largest force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_rounding: Option<f64>,
+    /// How far the displacements are from their mirror images, where a run begins as its own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mirror_errors: Vec<MirrorError>,
+    /// None for schemes with one time step.
+    pub refinement: Option<RefinementAudit>,
+    /// What is odd about the results.
+    pub warnings: Vec<String>,
+}
+
+impl Audit {
+    /// The account of the present state, without warnings.
+    ///
+    /// # Errors
+    /// A history that cannot be read.
+    pub fn of(
+        simulation: &Simulation,
+        start: &Start,
+        history: &Path,
+        facts: &Facts,
+    ) -> Result<Self, IoError> {
+        let (system, state) = (simulation.system(), simulation.state());
+        let snapshot = simulation.snapshot();
+        let energies = snapshot.energies();
+        let balance = energies.balance();
+        let momentum = system.momentum(&state.v);
+        let impulse = system.ledger().impulse;
+        let error = if simulation.integrator().is_static() {
+            f64::NAN
+        } else {
+            (0..3)
+                .map(|c| (momentum[c] - start.momentum[c] - impulse[c]).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        let volumes = system.cloud().volumes();
+        let mass: f64 = (0..system.points())
+            .map(|i| system.density().at(i) * volumes[i])
+            .sum();
+        let damage = snapshot.field(Field::Damage);
+        // A run may keep no history.
+        let table = history.exists().then(|| read_csv(history)).transpose()?;
+        let rows = table.as_ref().and_then(|table| table.column("balance"));
+        Ok(Self {
+            kinetic_energy: energies.kinetic,
+            elastic_energy: energies.elastic,
+            dissipated_energy: energies.dissipated,
+            external_work: energies.work,
+            initial_energy: energies.initial,
+            scheme_correction: energies.scheme,
+            balance,
+            balance_over_work: balance / energies.work.abs(),
+            balance_over_dissipated: balance / energies.dissipated,
+            largest_balance: rows
+                .unwrap_or_default()
+                .iter()
+                .fold(balance.abs(), |most: f64, b| most.max(b.abs())),
+            momentum,
+            impulse,
+            momentum_error: error,
+            momentum_error_relative: error / (2.0 * energies.kinetic * mass).sqrt(),
+            broken_bonds: system.operator().broken_bonds(),
+            coarse_breaks: system.coarse_breaks(),
+            largest_damage: damage.iter().fold(0.0, |most: f64, &d| most.max(d)),
+            energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
+            omega_dt: facts.limiting_frequency.map(|omega| omega * facts.dt),
+            evaluated_points: system.evaluated_points(),
+            force_rounding: system.operator().rounding(&simulation.state().u),
+            mirror_errors: start.symmetries.errors(simulation),
+            refinement: simulation
+                .integrator()
+                .refinement()
+                .map(|refinement| RefinementAudit::of(&refinement, system)),
+            warnings: Vec::new(),
+        })
+    }
+}

@@ -1,0 +1,7 @@
+//! What a lattice does to waves, as files: curves, polar plots, tables of classes, measured spectra.
+
+mod curves;
+mod spectrum;
+
+pub use curves::{Curves, STEPS, write_bonds, write_classes, write_polar};
+pub use spectrum::write_spectrum;

@@ -1,0 +1,283 @@
+//! What is known of a run before its first step: what reports, `check` and `run.json` say of a model.
+
+use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
+use pericles_deck::{Deck, LoadReport, Model};
+use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
+use serde::Serialize;
+
+use crate::refinement::RefinementFacts;
+use crate::units::{bytes, count, quantity, significant};
+
+/// What is known about a run before its first step; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub struct Facts {
+    /// Dimension of the body.
+    pub dimension: usize,
+    /// Number of points.
+    pub points: usize,
+    /// Spacing of the points, m.
+    pub spacing: f64,
+    /// Horizon, m.
+    pub horizon: f64,
+    /// Bonds, each counted once, after pre-cutting.
+    pub bonds: u64,
+    /// Bonds, each counted from both ends.
+    pub directed_bonds: u64,
+    /// Bonds cut before the start, each counted once.
+    pub precut_bonds: u64,
+    /// How the bonds are kept: grid or list.
+    pub operator: &'static str,
+    /// Young's modulus, Pa.
+    pub youngs_modulus: f64,
+    /// The bond constant c.
+    pub micromodulus: f64,
+    /// None if bonds never break.
+    pub critical_stretch: Option<f64>,
+    /// Fracture energy, J/m²; none if bonds never break.
+    pub fracture_energy: Option<f64>,
+    /// How the critical stretch follows from the fracture energy; none if the deck gives no fracture energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fracture_calibration: Option<&'static str>,
+    /// Cracks along the planes of the lattice, if bonds break and there is a lattice.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub crack_planes: Vec<PlaneFacts>,
+    /// Bulk stiffness of the grid's interior over the continuum's, less one.
+    pub stiffness_error: f64,
+    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one.
+    pub shear_error: f64,
+    /// Time step, s.
+    pub dt: f64,
+    /// Steps of the whole run.
+    pub steps: u64,
+    /// An estimate of the body's highest frequency from below, whatever the scheme, 1/s. None if nothing resists motion.
+    pub highest_frequency: Option<f64>,
+    /// An upper bound of it, which holds but for the probability below, 1/s.
+    pub highest_frequency_bound: Option<f64>,
+    /// The probability that the bound is wrong.
+    pub highest_frequency_failure_probability: Option<f64>,
+    /// Whether both agree to 2 %.
+    pub frequency_converged: Option<bool>,
+    /// The frequency that limits the step, from below, 1/s: the highest, except for schemes with two time steps.
+    pub limiting_frequency: Option<f64>,
+    /// An upper bound of it, 1/s.
+    pub limiting_frequency_bound: Option<f64>,
+    /// The largest stable time step, s; none where no step is unstable.
+    pub stable_step: Option<f64>,
+    /// The estimated peak, files and pictures not counted, bytes.
+    pub memory_estimate: u64,
+    /// The time integration scheme.
+    pub scheme: &'static str,
+    /// None for schemes with one time step.
+    pub refinement: Option<RefinementFacts>,
+    /// The loads, in the order of the deck.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<LoadFacts>,
+    /// The absorbing ends.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ends: Vec<EndFacts>,
+    /// The vector instructions that the force loops use.
+    pub instruction_set: &'static str,
+    /// What is odd about the run.
+    pub warnings: Vec<String>,
+    /// Defaults that this deck relies on and that have changed since the last release.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changed_defaults: Vec<String>,
+}
+
+/// What a crack along a plane of the lattice costs.
+#[derive(Debug, Clone, Serialize)]
+pub struct PlaneFacts {
+    /// Miller indices, such as (110).
+    pub plane: String,
+    /// Energy per area over the fracture energy, less one.
+    pub deviation: f64,
+}
+
+/// What a load comes to; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub struct LoadFacts {
+    /// The set of points that it acts on.
+    pub set: String,
+    /// Number of these points.
+    pub points: usize,
+    /// None for body forces.
+    pub area: Option<f64>,
+    /// The resultant when it is largest in the run, an entry per dimension.
+    pub force: Vec<f64>,
+    /// When that is first so.
+    pub force_time: f64,
+}
+
+impl LoadFacts {
+    fn of(load: &LoadReport, dimension: usize) -> Self {
+        Self {
+            set: load.set.clone(),
+            points: load.points,
+            area: load.area,
+            force: load.force[..dimension].to_vec(),
+            force_time: load.at,
+        }
+    }
+
+    /// In a line.
+    pub fn line(&self) -> String {
+        let force: Vec<String> = self.force.iter().map(|f| quantity(*f, "N")).collect();
+        let area = self.area.map_or_else(String::new, |area| {
+            format!(" on {} mm²", significant(1e6 * area, 4))
+        });
+        format!(
+            "{}: {} points{area}; total force ({}), largest at t = {}",
+            self.set,
+            count(self.points as u64),
+            force.join(", "),
+            quantity(self.force_time, "s")
+        )
+    }
+}
+
+/// How an absorbing end is made.
+#[derive(Debug, Clone, Serialize)]
+pub struct EndFacts {
+    /// Which end of the body.
+    pub side: &'static str,
+    /// How its kernels are computed.
+    pub method: &'static str,
+    /// How the history of its ghosts is kept.
+    pub history: &'static str,
+    /// Memory of the history, bytes.
+    pub memory: u64,
+    /// None for exact histories.
+    pub exponentials: Option<usize>,
+    /// Error of the fit on its samples.
+    pub residual: Option<f64>,
+    /// Distance from the exact kernels, where `verify` asks for it.
+    pub distance: Option<f64>,
+}
+
+impl EndFacts {
+    fn of((side, report): &(Side, EndReport)) -> Self {
+        Self {
+            side: side.name(),
+            method: report.method.name(),
+            history: report.history,
+            memory: report.bytes as u64,
+            exponentials: report.exponentials,
+            residual: report.residual,
+            distance: report.distance,
+        }
+    }
+
+    /// In a line.
+    pub fn line(&self) -> String {
+        let mut line = format!("{}: {}, {}", self.side, self.history, bytes(self.memory));
+        if self.method != KernelMethod::Discrete.name() {
+            line += &format!(", {} kernels", self.method);
+        }
+        if let (Some(count), Some(residual)) = (self.exponentials, self.residual) {
+            line += &format!(", {count} terms, error {residual:.1e}");
+        }
+        if let Some(distance) = self.distance {
+            line += &format!(", {distance:.1e} from the exact kernels");
+        }
+        line
+    }
+}
+
+impl Facts {
+    /// The facts about a model of a deck.
+    pub fn of(deck: &Deck, model: &Model) -> Self {
+        let operator = model.system.operator();
+        let (points, dimension) = (model.cloud.len(), model.cloud.dimension());
+        let directed_bonds = operator.directed_bonds();
+        let constants = &model.constants;
+        let finite = |x: f64| x.is_finite().then_some(x);
+        Self {
+            dimension,
+            points,
+            spacing: model.cloud.spacing(),
+            horizon: deck
+                .surface
+                .as_ref()
+                .map_or(deck.material.bonds.horizon, |surface| {
+                    surface.material.horizon
+                }),
+            bonds: directed_bonds / 2,
+            directed_bonds,
+            precut_bonds: model.precut_bonds,
+            operator: model.form.name(),
+            youngs_modulus: constants.young,
+            micromodulus: constants.micromodulus,
+            critical_stretch: finite(constants.critical_stretch),
+            fracture_energy: finite(constants.fracture_energy),
+            fracture_calibration: constants.fracture_calibration.map(|given| given.name()),
+            crack_planes: constants
+                .crack_planes
+                .iter()
+                .map(|plane| PlaneFacts {
+                    plane: plane.to_string(),
+                    deviation: plane.energy() / constants.fracture_energy - 1.0,
+                })
+                .collect(),
+            stiffness_error: constants.stiffness_error,
+            shear_error: constants.shear_error,
+            dt: model.dt,
+            steps: model.steps,
+            highest_frequency: model.body_frequency.map(|f| f.estimate),
+            highest_frequency_bound: model.body_frequency.map(|f| f.bound),
+            highest_frequency_failure_probability: model
+                .body_frequency
+                .map(|f| f.failure_probability),
+            frequency_converged: model.body_frequency.map(|f| f.converged),
+            limiting_frequency: model.frequency.map(|f| f.estimate),
+            limiting_frequency_bound: model.frequency.map(|f| f.bound),
+            stable_step: model.stable_step(),
+            memory_estimate: deck.memory_estimate(model),
+            scheme: model.integrator.name(),
+            refinement: RefinementFacts::of(deck, model),
+            loads: model
+                .loads
+                .iter()
+                .map(|load| LoadFacts::of(load, dimension))
+                .collect(),
+            ends: model.ends.iter().map(EndFacts::of).collect(),
+            instruction_set: operator.instruction_set().name(),
+            warnings: model
+                .warnings
+                .iter()
+                .chain(&deck.judge_waves(model))
+                .map(|w| w.line())
+                .collect(),
+            changed_defaults: changed_defaults(deck, model),
+        }
+    }
+}
+
+/// What this deck leaves to defaults that differ from those of the last release.
+fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
+    let mut changed = Vec::new();
+    let (material, constants) = (&deck.material.bonds, &model.constants);
+    let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
+    if lattice && !deck.gives("material.fracture_calibration") {
+        let continuum = BondMaterial {
+            fracture: Fracture::Energy {
+                energy: constants.fracture_energy,
+                calibration: FractureCalibration::Continuum,
+            },
+            ..material.clone()
+        };
+        let before = continuum.constants(&model.cloud, deck.body.state);
+        let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
+        changed.push(format!(
+            "fracture_calibration = \"lattice\" gives the critical stretch {}; \"continuum\", the former default, gives {}",
+            significant(constants.critical_stretch, 4),
+            significant(before, 4)
+        ));
+    }
+    if deck.material.surface_correction == SurfaceCorrection::Energy {
+        changed.push(
+            "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one for all directions"
+                .into(),
+        );
+    }
+    changed
+}

@@ -1,0 +1,76 @@
+//! Runs: the whole way from a deck to a finished folder of results, as a library.
+//!
+//! * [`Modelled`] – the model of a deck, with the facts about it ([`Facts`]); built with the [`Means`] of the machine.
+//! * [`Run`] – a run in its folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last checkpoint, then [`drive`](Run::drive) with
+//!   a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It writes what the deck asks for, checkpoints, and [`Report`] as `run.json`.
+//! * [`Results`] – the results of a run, read back from its folder.
+//! * [`sweep`] – one deck at several values of its keys; [`convergence`] – how a number of such runs converges.
+//! * [`refinement`] – whether two time steps pay; [`dispersion`] – what a lattice does to waves, as files.
+//!
+//! Nothing here prints, reads the command line or watches signals.
+//!
+//! ```no_run
+//! use pericles_deck::Deck;
+//! use pericles_io::OutputFolder;
+//! use pericles_run::{Cancel, DeckText, Ending, Event, Means, Modelled, Run};
+//!
+//! let source = std::fs::read_to_string("plate.toml")?;
+//! let deck = Deck::parse(&source, "plate.toml", &[])?;
+//! let text = DeckText::of(&deck, "plate.toml".into());
+//!
+//! // The folder is made once nothing in the deck can be wrong any more.
+//! let modelled = Modelled::of(&deck, &Means::default(), &mut |_| {})?;
+//! let folder = OutputFolder::create("plate".as_ref(), false)?;
+//! let mut run = Run::begin(&deck, text, modelled, folder)?;
+//!
+//! let cancel = Cancel::new();
+//! let ending = run.drive(None, &cancel, &mut |event| {
+//!     if let Event::Step { step, t } = event {
+//!         println!("step {step}, t = {t} s");
+//!     }
+//! })?;
+//! assert_eq!(ending, Ending::Finished);
+//! if let Some(audit) = &run.report().audit {
+//!     println!("{} bonds broke", audit.broken_bonds);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod animations;
+mod audit;
+mod cancel;
+mod checkpoint;
+pub mod convergence;
+mod deadline;
+mod deck_text;
+pub mod dispersion;
+mod error;
+mod event;
+mod facts;
+mod inputs;
+pub mod machine;
+mod mirror;
+mod modelled;
+mod observers;
+pub mod refinement;
+mod report;
+mod results;
+mod run;
+pub mod sweep;
+pub mod units;
+mod watch;
+
+pub use audit::{Audit, Start};
+pub use cancel::Cancel;
+pub use deadline::Deadline;
+pub use deck_text::DeckText;
+pub use error::RunError;
+pub use event::{Event, Tell};
+pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
+pub use inputs::Inputs;
+pub use mirror::{MirrorError, Symmetries};
+pub use modelled::{Caching, Means, Modelled, readers};
+pub use observers::picture_of;
+pub use report::{Report, Span, Status};
+pub use results::{FieldFile, Results, file_name};
+pub use run::{Ending, Run};

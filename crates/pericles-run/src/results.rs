@@ -1,0 +1,183 @@
+//! The results of a run, read back from its folder.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use pericles_io::{FieldData, IoError, PvdSeries, read_fields};
+use serde_json::Value;
+
+use crate::deck_text::DeckText;
+use crate::error::RunError;
+use crate::machine;
+
+/// The folder of a run that was started once.
+pub struct Results {
+    folder: PathBuf,
+    report: Value,
+}
+
+/// One state among the fields.
+pub struct FieldFile {
+    /// The time, s.
+    pub time: f64,
+    /// The file.
+    pub path: PathBuf,
+}
+
+impl FieldFile {
+    /// Reads the fields.
+    ///
+    /// # Errors
+    /// A file that is gone or damaged.
+    pub fn read(&self) -> Result<FieldData, RunError> {
+        Ok(read_fields(&self.path, machine::memory())?)
+    }
+}
+
+impl Results {
+    /// Opens a folder.
+    ///
+    /// # Errors
+    /// A folder without `run.json`, or with one that is none.
+    pub fn open(folder: &Path) -> Result<Self, RunError> {
+        let path = folder.join("run.json");
+        let reason = match (folder.is_dir(), folder.exists()) {
+            (true, _) => (!path.exists()).then_some("it has no run.json"),
+            (false, true) => Some("it is a file"),
+            (false, false) => Some("it is not there"),
+        };
+        if let Some(reason) = reason {
+            return Err(RunError::NoResults {
+                path: folder.into(),
+                reason,
+            });
+        }
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| IoError::reading(&path, error))?;
+        let report: Value = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
+            path,
+            reason: error.to_string(),
+        })?;
+        if report.pointer("/program/name") != Some(&Value::from("pericles")) {
+            return Err(RunError::NoResults {
+                path: folder.into(),
+                reason: "its run.json was not written by Pericles",
+            });
+        }
+        Ok(Self {
+            folder: folder.into(),
+            report,
+        })
+    }
+
+    /// Where they are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A value of `run.json` by its JSON pointer, such as `/model/points`.
+    pub fn value(&self, pointer: &str) -> Option<&Value> {
+        self.report.pointer(pointer)
+    }
+
+    /// A text of `run.json`; empty if there is none.
+    pub fn text(&self, pointer: &str) -> &str {
+        self.value(pointer)
+            .and_then(Value::as_str)
+            .unwrap_or_default()
+    }
+
+    /// A number of `run.json`.
+    pub fn number(&self, pointer: &str) -> Option<f64> {
+        self.value(pointer)?.as_f64()
+    }
+
+    /// A count of `run.json`; zero if there is none.
+    pub fn count(&self, pointer: &str) -> u64 {
+        self.value(pointer)
+            .and_then(Value::as_u64)
+            .unwrap_or_default()
+    }
+
+    /// The texts of a list of `run.json`.
+    pub fn texts(&self, pointer: &str) -> impl Iterator<Item = &str> {
+        let list = self.value(pointer).and_then(Value::as_array);
+        list.into_iter().flatten().filter_map(Value::as_str)
+    }
+
+    /// The deck, as it was given.
+    ///
+    /// # Errors
+    /// A `run.json` without one.
+    pub fn deck(&self) -> Result<DeckText, RunError> {
+        let deck = self.value("/deck").cloned().unwrap_or_default();
+        serde_json::from_value(deck).map_err(|error| self.damaged("run.json", error.to_string()))
+    }
+
+    /// A file of the folder that cannot be used.
+    pub fn damaged(&self, file: &str, reason: String) -> RunError {
+        RunError::Damaged {
+            path: self.folder.join(file),
+            reason,
+        }
+    }
+
+    /// The states whose fields were written, in time; none if the deck asked for no fields.
+    ///
+    /// # Errors
+    /// A series that cannot be read.
+    pub fn fields(&self) -> Result<Vec<FieldFile>, RunError> {
+        let series = self.folder.join("fields.pvd");
+        if !series.exists() {
+            return Ok(Vec::new());
+        }
+        let located = |(time, file): (f64, PathBuf)| FieldFile {
+            time,
+            path: self.folder.join(file),
+        };
+        Ok(PvdSeries::read(series)?.into_iter().map(located).collect())
+    }
+
+    /// The tables, by name.
+    pub fn tables(&self) -> Vec<PathBuf> {
+        files(&self.folder, "csv")
+    }
+
+    /// The pictures, by name.
+    pub fn pictures(&self) -> Vec<PathBuf> {
+        let folder = self.folder.join("pictures");
+        if folder.is_symlink() {
+            return Vec::new();
+        }
+        files(&folder, "png")
+    }
+
+    /// The steps of the checkpoints.
+    pub fn checkpoints(&self) -> Vec<u64> {
+        let step = |path: PathBuf| {
+            let stem = path.file_stem()?.to_str()?;
+            stem.strip_prefix("step-")?.parse().ok()
+        };
+        let all = files(&self.folder.join("checkpoints"), "chk");
+        all.into_iter().filter_map(step).collect()
+    }
+}
+
+/// The files of a folder with an ending, sorted; none if there is no such folder. Links are left out: what they point at is no result of the run, and a report
+/// that is passed on must not carry it.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<_> = entries
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()))
+        .map(|entry| entry.path())
+        .filter(|path| path.extension() == Some(OsStr::new(ending)))
+        .collect();
+    paths.sort();
+    paths
+}
+
+/// The last part of a path, for people.
+pub fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}

@@ -1,0 +1,341 @@
+//! A run in its folder, from its first step or its last checkpoint to its end.
+
+use std::cell::Cell;
+use std::path::Path;
+use std::time::Instant;
+
+use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
+use pericles_deck::Deck;
+use pericles_io::{OutputFolder, PvdSeries, VtuFile};
+
+use crate::animations;
+use crate::audit::{Audit, Start};
+use crate::cancel::Cancel;
+use crate::checkpoint::{Checkpoints, Stored};
+use crate::deadline::Deadline;
+use crate::deck_text::DeckText;
+use crate::error::RunError;
+use crate::event::{Event, Tell};
+use crate::facts::Facts;
+use crate::modelled::{Means, Modelled};
+use crate::observers;
+use crate::report::{Report, Status};
+use crate::units::quantity;
+use crate::watch::{self, Breakage};
+
+/// A run in its folder.
+pub struct Run {
+    simulation: Simulation,
+    start: Start,
+    checkpoints: Checkpoints,
+    report: Report,
+    folder: OutputFolder,
+}
+
+/// How a run came to rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// It reached its end: its last step, or a stop condition of the deck.
+    Finished,
+    /// It was asked to stop; it can be resumed.
+    Cancelled,
+    /// It stopped while there was time for a checkpoint before the deadline; it can be resumed.
+    Deadline,
+}
+
+impl Run {
+    /// A run at its start, with the observers that the deck asks for. `text` is what `run.json` and checkpoints keep of the deck.
+    ///
+    /// # Errors
+    /// Sub-folders that cannot be made, files of an earlier run that cannot be claimed.
+    pub fn begin(
+        deck: &Deck,
+        text: DeckText,
+        modelled: Modelled,
+        folder: OutputFolder,
+    ) -> Result<Self, RunError> {
+        let Modelled { model, facts } = modelled;
+        let simulation = observers::simulation(deck, model, &folder)?;
+        Ok(Self {
+            checkpoints: Checkpoints::new(&folder, deck.checkpoint, text.clone()),
+            start: Start::of(&simulation),
+            simulation,
+            report: Report::new(deck, text, facts, 0),
+            folder,
+        })
+    }
+
+    /// The run of a folder at its last checkpoint; none if it has finished.
+    ///
+    /// # Errors
+    /// No usable checkpoint, one that does not go with its deck.
+    pub fn resume(path: &Path, means: &Means, tell: Tell<'_>) -> Result<Option<Self>, RunError> {
+        if path.is_dir() && !path.join("checkpoints").is_dir() {
+            return Err(RunError::NoRun { path: path.into() });
+        }
+        let folder = OutputFolder::open(path)?;
+        if is_finished(&folder) {
+            return Ok(None);
+        }
+        let stored = Stored::latest(&folder, means.memory)?;
+        let deck = stored.metadata.deck.read()?;
+        let Modelled { model, mut facts } = Modelled::of(&deck, means, tell)?;
+        facts.warnings.extend(doubts(&stored, &deck, &facts));
+        facts.warnings.extend(incomplete(&folder)?);
+        let mut simulation = observers::simulation(&deck, model, &folder)?;
+        // The state is still that of the start.
+        let start = Start::of(&simulation);
+        simulation
+            .restore(&stored.archive)
+            .map_err(|error| RunError::Checkpoint {
+                path: stored.path.clone(),
+                reason: error.to_string(),
+            })?;
+        let step = simulation.state().step;
+        let text = stored.metadata.deck;
+        let checkpoints = Checkpoints::new(&folder, deck.checkpoint, text.clone());
+        checkpoints.forget_failed();
+        Ok(Some(Self {
+            checkpoints,
+            start,
+            simulation,
+            report: Report::new(&deck, text, facts, step),
+            folder,
+        }))
+    }
+
+    /// The simulation as it stands.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// What `run.json` says.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// The folder of the results.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Runs to the end, until it is cancelled, or close to the deadline, with checkpoints and the report `run.json`. A run that was stopped may be driven on.
+    ///
+    /// # Errors
+    /// Output that cannot be written, an unstable run.
+    pub fn drive(
+        &mut self,
+        deadline: Option<Deadline>,
+        cancel: &Cancel,
+        tell: Tell<'_>,
+    ) -> Result<Ending, RunError> {
+        self.report.begin_session(self.simulation.state().step);
+        tell(Event::Opening {
+            report: &self.report,
+            folder: self.folder.path(),
+        });
+        self.write_report()?;
+        let began = Instant::now();
+        let ended = self.integrate(deadline, cancel, tell);
+        self.report
+            .note_progress(&self.simulation, began.elapsed().as_secs_f64());
+        match ended {
+            Ok(outcome) => self.close(outcome, cancel),
+            Err(error) => {
+                self.report.status = Status::Failed;
+                self.report.error = Some(error.to_string());
+                // The first error is the one to report; on a full disk this one fails for the same reason.
+                let _ = self.write_report();
+                Err(error)
+            }
+        }
+    }
+
+    fn write_report(&self) -> Result<(), RunError> {
+        self.report.write(&self.folder.file("run.json"))
+    }
+
+    fn integrate(
+        &mut self,
+        mut deadline: Option<Deadline>,
+        cancel: &Cancel,
+        tell: Tell<'_>,
+    ) -> Result<Outcome, RunError> {
+        let first = self.simulation.state().step;
+        if first == 0 {
+            self.checkpoints.write(&self.simulation)?;
+        }
+        tell(Event::LoopBegins {
+            first,
+            steps: self.simulation.steps(),
+        });
+        let checkpoints = &mut self.checkpoints;
+        if let Some(deadline) = &mut deadline {
+            deadline.begin();
+        }
+        let mut trouble = None;
+        let mut warned = false;
+        let mut breakage = Breakage::from(&self.simulation);
+        let warnings = &mut self.report.model.warnings;
+        let cost = Cell::new(checkpoints.cost());
+        let end = deadline.as_ref().map(Deadline::end);
+        // Asked within steps that iterate, which may take longer than any other part of a run.
+        let is_over = || {
+            let late = |end: Instant| Instant::now() + 2 * cost.get() >= end;
+            cancel.is_cancelled() || end.is_some_and(late)
+        };
+        let interrupt = Interrupt::when(&is_over);
+        let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
+            let state = simulation.state();
+            if let (Some(found), false) = (simulation.instability(), warned) {
+                warned = true;
+                tell(Event::Warning(&found.to_string()));
+            }
+            tell(Event::Step {
+                step: state.step,
+                t: state.t,
+            });
+            if let Some(warning) = breakage.look(simulation) {
+                tell(Event::Warning(&warning));
+                warnings.push(warning);
+            }
+            let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
+            if cancel.is_cancelled() || deadline.as_mut().is_some_and(late) {
+                return Control::Stop;
+            }
+            if checkpoints.is_due(simulation)
+                && let Err(error) = checkpoints.write(simulation)
+            {
+                trouble = Some(error);
+                return Control::Stop;
+            }
+            cost.set(checkpoints.cost());
+            Control::Continue
+        });
+        tell(Event::LoopEnds);
+        if let Some(error) = trouble {
+            return Err(error);
+        }
+        let outcome = outcome.map_err(|error| self.sorted(error))?;
+        if outcome == Outcome::Stopped {
+            self.checkpoints.write(&self.simulation)?;
+        }
+        Ok(outcome)
+    }
+
+    /// The failure of the run, with what is left of it.
+    fn sorted(&self, error: SimulationError) -> RunError {
+        RunError::of_run(error, || {
+            let mut left = match self.checkpoints.write_failed(&self.simulation) {
+                Ok(path) => format!("the failing state is in {}", path.display()),
+                Err(error) => format!("the failing state could not be kept ({error})"),
+            };
+            if let Some(step) = self.checkpoints.last_step() {
+                let folder = self.folder.path().display();
+                left += &format!(
+                    "; the last good checkpoint, from which `pericles resume {folder}` would go on, is that of step {step}"
+                );
+            }
+            left
+        })
+    }
+
+    fn close(&mut self, outcome: Outcome, cancel: &Cancel) -> Result<Ending, RunError> {
+        let history = self.folder.file("history.csv");
+        let mut audit = Audit::of(&self.simulation, &self.start, &history, &self.report.model)?;
+        audit.warnings = watch::warnings(&self.simulation, &audit);
+        audit
+            .warnings
+            .extend(animations::gaps(&self.folder.file("pictures")));
+        self.report.audit = Some(audit);
+        self.report.stop_reason = self.simulation.stop_reason().map(ToString::to_string);
+        let ending = match outcome {
+            Outcome::Finished => Ending::Finished,
+            Outcome::Stopped if cancel.is_cancelled() => Ending::Cancelled,
+            Outcome::Stopped => Ending::Deadline,
+        };
+        self.report.status = match ending {
+            Ending::Finished => Status::Finished,
+            Ending::Cancelled | Ending::Deadline => Status::Stopped,
+        };
+        self.write_report()?;
+        Ok(ending)
+    }
+}
+
+/// Whether `run.json` says so. A report that cannot be read says nothing: the checkpoints decide.
+fn is_finished(folder: &OutputFolder) -> bool {
+    let status = || -> Option<String> {
+        let text = std::fs::read_to_string(folder.file("run.json")).ok()?;
+        let report: serde_json::Value = serde_json::from_str(&text).ok()?;
+        Some(report.get("status")?.as_str()?.to_owned())
+    };
+    status().as_deref() == Some("finished")
+}
+
+/// What may make a resumed run differ from an uninterrupted one.
+fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
+    let mut doubts: Vec<String> = stored
+        .refused
+        .iter()
+        .map(|error| format!("{error}; the checkpoint before it is used"))
+        .collect();
+    let metadata = &stored.metadata;
+    let version = env!("CARGO_PKG_VERSION");
+    if metadata.version != version {
+        doubts.push(format!(
+            "the run was begun by version {} and goes on with version {version}: it may not be the same bit for bit",
+            metadata.version
+        ));
+    }
+    if metadata.instruction_set != facts.instruction_set {
+        doubts.push(format!(
+            "the run was begun with instruction set {} and goes on with {}: it may not be the same bit for bit",
+            metadata.instruction_set, facts.instruction_set
+        ));
+    }
+    let files = deck.files();
+    if let (Some(file), true) = (files.first(), metadata.deck.inputs.is_empty()) {
+        let file = file.display();
+        doubts.push(format!(
+            "the version that began the run did not record the content of {file}: whether it has changed since is not known"
+        ));
+    }
+    doubts
+}
+
+/// Field files that the series lists and that are missing or cut short. The run needs none of them to go on, but its results lack them.
+///
+/// # Errors
+/// A series that cannot be read.
+fn incomplete(folder: &OutputFolder) -> Result<Option<String>, RunError> {
+    let series = folder.file("fields.pvd");
+    if !series.exists() {
+        return Ok(None);
+    }
+    let states = PvdSeries::read(&series)?;
+    let broken: Vec<_> = (states.iter())
+        .filter(|(_, file)| !VtuFile::is_whole(folder.file(file)))
+        .collect();
+    Ok(broken.first().map(|(time, first)| {
+        format!(
+            "{} of the {} field files of the run so far are missing or cut short, the first of them {} at t = {}: the series will have gaps there",
+            broken.len(),
+            states.len(),
+            first.display(),
+            quantity(*time, "s")
+        )
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_may_move_to_another_thread() {
+        fn is_send<T: Send>() {}
+        is_send::<Simulation>();
+        is_send::<Run>();
+    }
+}

@@ -1,0 +1,109 @@
+//! What a sweep is: a deck, the values of its keys, and the runs that their combinations make.
+
+use serde::{Deserialize, Serialize};
+
+use super::axis::Axis;
+use crate::deck_text::DeckText;
+
+/// What `sweep.json` holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Record {
+    pub(super) deck: DeckText,
+    pub(super) axes: Vec<Axis>,
+}
+
+/// One combination of values.
+pub(super) struct Member {
+    /// Its folder's name.
+    pub(super) name: String,
+    /// One value per axis.
+    pub(super) values: Vec<String>,
+    /// The deck with these values.
+    pub(super) deck: DeckText,
+}
+
+impl Record {
+    /// All combinations, the last axis running fastest.
+    pub(super) fn members(&self) -> Vec<Member> {
+        let mut combinations = vec![Vec::new()];
+        for axis in &self.axes {
+            let extended = combinations.iter().flat_map(|values: &Vec<String>| {
+                axis.values.iter().map(move |value| {
+                    let mut values = values.clone();
+                    values.push(value.clone());
+                    values
+                })
+            });
+            combinations = extended.collect();
+        }
+        let mut members: Vec<Member> = Vec::new();
+        for values in combinations {
+            let mut name = self.name(&values);
+            // Characters that names cannot have may have told two of them apart.
+            if members.iter().any(|member| member.name == name) {
+                name += &format!("-{}", members.len() + 1);
+            }
+            members.push(self.member(name, values));
+        }
+        members
+    }
+
+    fn name(&self, values: &[String]) -> String {
+        let parts: Vec<String> = (self.axes.iter().zip(values))
+            .map(|(axis, value)| format!("{}={value}", axis.name()))
+            .collect();
+        let plain = |c: char| {
+            if c.is_alphanumeric() || "+-.=,".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
+        parts.join(",").chars().map(plain).collect()
+    }
+
+    fn member(&self, name: String, values: Vec<String>) -> Member {
+        let mut deck = self.deck.clone();
+        let sets = self.axes.iter().zip(&values);
+        deck.overrides
+            .extend(sets.map(|(axis, value)| format!("{}={value}", axis.key)));
+        Member { name, values, deck }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inputs::Inputs;
+
+    #[test]
+    fn every_combination_has_a_folder_of_its_own() {
+        let record = Record {
+            deck: DeckText {
+                file: "a.toml".into(),
+                source: String::new(),
+                overrides: vec!["time.end=1".into()],
+                inputs: Inputs::default(),
+            },
+            axes: vec![
+                "body.spacing=1 mm,1/mm".parse().unwrap(),
+                "m=3,4".parse().unwrap(),
+            ],
+        };
+        let members = record.members();
+        let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "spacing=1_mm,m=3",
+                "spacing=1_mm,m=4",
+                "spacing=1_mm,m=3-3",
+                "spacing=1_mm,m=4-4"
+            ]
+        );
+        assert_eq!(
+            members[1].deck.overrides,
+            ["time.end=1", "body.spacing=1 mm", "m=4"]
+        );
+    }
+}

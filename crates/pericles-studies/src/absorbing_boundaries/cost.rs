@@ -1,0 +1,312 @@
+//! What absorbing ends cost: time and memory against the number of steps, beside simply enlarging the body.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+use std::time::Instant;
+
+use pericles::family::{BondList, VolumeCorrection};
+use pericles::material::LinearBond;
+use pericles::operator::{BondForce, Breaking, DamageMeasure};
+use pericles::space::{Grid, Shape};
+use pericles::time::{State, VelocityVerlet};
+use pericles::{Control, PericlesError, PointScalar, Simulation, System};
+use pericles_run::RunError;
+use pericles_waves::absorbing::history::{
+    BlockedHistory, DirectHistory, ExponentialHistory, History, HistoryCost,
+};
+use pericles_waves::absorbing::{
+    AbsorbingEnd, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
+    OuterLayer, Side, contour_kernels,
+};
+
+use super::paper::PAPER;
+use crate::row::Row;
+use crate::study::{Context, Study};
+
+pub(super) const COST: Study = Study {
+    id: "absorbing-boundaries/cost",
+    paper: PAPER,
+    title: "Time and memory of absorbing ends against a larger body",
+    run: rows,
+};
+
+/// A homogeneous bar −10 … 10 with a bell in the middle, E = ρ = 1.
+struct Case {
+    name: &'static str,
+    reach: usize,
+    spacing: f64,
+    /// C(ξ).
+    micromodulus: fn(f64) -> f64,
+    dt: f64,
+    /// Numbers of steps, and those only `--full` takes.
+    steps: &'static [usize],
+    long: &'static [usize],
+    /// Asked of the exponentials.
+    tolerance: f64,
+    /// Nodes that fields need to decay beyond the light cone.
+    margin: usize,
+}
+
+const CASES: [Case; 3] = [
+    Case {
+        name: "K = 7, dt = 0.01",
+        reach: 7,
+        spacing: 0.1,
+        micromodulus: gaussian,
+        dt: 0.01,
+        steps: &[2048, 8192],
+        long: &[32_768, 131_072],
+        tolerance: 1e-9,
+        margin: 150,
+    },
+    Case {
+        name: "K = 7, dt = 0.1",
+        reach: 7,
+        spacing: 0.1,
+        micromodulus: gaussian,
+        dt: 0.1,
+        steps: &[2048],
+        long: &[8192, 16_384],
+        tolerance: 1e-9,
+        margin: 150,
+    },
+    Case {
+        name: "K = 20, dt = 0.02",
+        reach: 20,
+        spacing: 0.05,
+        micromodulus: constant,
+        dt: 0.02,
+        steps: &[2048],
+        long: &[8192],
+        tolerance: 1e-6,
+        margin: 500,
+    },
+];
+
+/// 4E/(δ³√π) exp(−ξ²/δ²), δ = 0.25.
+fn gaussian(xi: f64) -> f64 {
+    const DELTA: f64 = 0.25;
+    4.0 / (DELTA.powi(3) * PI.sqrt()) * (-(xi / DELTA).powi(2)).exp()
+}
+
+/// 3E/δ³, δ = 1.
+fn constant(_: f64) -> f64 {
+    3.0
+}
+
+/// Direct sums of more steps take long, and minutes beyond.
+const MOST_DIRECT: usize = 2048;
+const MOST_DIRECT_LONG: usize = 8192;
+/// Steps of the test for growth.
+const ENDLESS: usize = 1_000_000;
+
+impl Case {
+    fn stencil(&self) -> Result<LatticeStencil, RunError> {
+        let weight = |k| (self.micromodulus)(k as f64 * self.spacing) * self.spacing;
+        let weights: Vec<f64> = (1..=self.reach).map(weight).collect();
+        Ok(LatticeStencil::new(&weights).map_err(PericlesError::from)?)
+    }
+
+    /// With this many nodes more on each side.
+    fn body(&self, margin: usize) -> Result<(System, State), RunError> {
+        let half = (10.0 / self.spacing).round() as usize + margin;
+        let nodes = 2 * half + 1;
+        let grid = Grid {
+            shape: Shape::Box {
+                origin: [-(half as f64 + 0.5) * self.spacing, 0.0, 0.0],
+                size: vec![nodes as f64 * self.spacing],
+            },
+            spacing: self.spacing,
+            section: 1.0,
+            holes: Vec::new(),
+        };
+        let cloud = Arc::new(grid.points()?);
+        let horizon = (self.reach as f64 + 0.5) * self.spacing;
+        let bonds = BondList::new(&cloud, horizon, VolumeCorrection::None)?;
+        let breaking = Breaking {
+            critical_stretch: f64::INFINITY,
+            no_fail: &[],
+        };
+        let micromodulus = self.micromodulus;
+        let force = BondForce::<LinearBond, 1>::with_stiffness(
+            Arc::clone(&cloud),
+            bonds,
+            |xi| micromodulus(xi[0].abs()) * xi[0].abs(),
+            breaking,
+            DamageMeasure::default(),
+        );
+        let density = PointScalar::Uniform(1.0);
+        let system = System::new(Arc::clone(&cloud), Box::new(force), density)?;
+        let mut state = State::at_rest(cloud.len());
+        for (u, x) in state.u.iter_mut().zip(cloud.axis(0)) {
+            *u = (-x * x).exp();
+        }
+        Ok((system, state))
+    }
+
+    /// Displacements at the end of a run, and its seconds; without histories the ends are free.
+    fn run(
+        &self,
+        steps: usize,
+        margin: usize,
+        histories: Vec<(Side, Box<dyn History>)>,
+    ) -> Result<(Vec<f64>, f64), RunError> {
+        let (mut system, state) = self.body(margin)?;
+        for (side, history) in histories {
+            let end = OuterLayer::of(&system, side, &state, &[])
+                .and_then(|layer| AbsorbingEnd::new(layer, history, self.dt))
+                .map_err(PericlesError::from)?;
+            system.add_boundary(Box::new(end));
+        }
+        let mut simulation = Simulation::new(
+            system,
+            Box::new(VelocityVerlet),
+            state,
+            self.dt,
+            steps as u64,
+        );
+        let began = Instant::now();
+        simulation
+            .run(|_| Control::Continue)
+            .map_err(|error| RunError::of_run(error, String::new))?;
+        Ok((simulation.state().u.clone(), began.elapsed().as_secs_f64()))
+    }
+
+    fn with_ends<H: History + 'static>(
+        &self,
+        steps: usize,
+        make: impl Fn() -> H,
+    ) -> Result<Measured, RunError> {
+        let began = Instant::now();
+        let histories: Vec<(Side, Box<dyn History>)> = [Side::Left, Side::Right]
+            .map(|side| (side, Box::new(make()) as Box<dyn History>))
+            .into();
+        let bytes = histories.iter().map(|(_, history)| history.bytes()).sum();
+        let setup = began.elapsed().as_secs_f64();
+        let (u, seconds) = self.run(steps, 0, histories)?;
+        Ok(Measured {
+            u,
+            seconds: seconds + setup,
+            bytes,
+        })
+    }
+}
+
+/// A run with two absorbing ends.
+struct Measured {
+    u: Vec<f64>,
+    seconds: f64,
+    bytes: usize,
+}
+
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
+    let mut rows = Vec::new();
+    for case in &CASES {
+        let long = if context.full { case.long } else { &[] };
+        for &steps in case.steps.iter().chain(long) {
+            rows.extend(compared(case, steps, context.full)?);
+        }
+    }
+    if context.full {
+        rows.extend(endless(&CASES[0])?);
+    }
+    Ok(rows)
+}
+
+/// The ways to the same displacements, one after the other.
+fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, RunError> {
+    let stencil = case.stencil()?;
+    let label = |what: &str| format!("{}, N = {steps}: {what}", case.name);
+    let time = |what: &str, seconds: f64| Row::new(label(what), "s", Some(seconds));
+    // What comes back from the ends of the larger body has travelled to them and back.
+    let cone = 0.5 * stencil.fastest() * case.dt * steps as f64;
+    let (large, seconds_large) = case.run(steps, cone as usize + case.margin, Vec::new())?;
+    let extra = (large.len() - case.run(0, 0, Vec::new())?.0.len()) / 2;
+    let apart = |u: &[f64]| {
+        let pairs = large[extra..].iter().zip(u);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let (_, interior) = case.run(steps, 0, Vec::new())?;
+    let mut rows = vec![
+        time("body alone", interior),
+        time("larger body", seconds_large).note(format!("{} nodes", large.len())),
+    ];
+
+    let began = Instant::now();
+    let step = LatticeStep::verlet(case.dt);
+    let kernels = GhostKernels::shift(contour_kernels(&stencil, step, steps));
+    let seconds_kernels = began.elapsed().as_secs_f64();
+    let blocked = case.with_ends(steps, || BlockedHistory::new(kernels.clone()))?;
+    let mega = |bytes: usize| format!("{:.2} MB for both ends", 1e-6 * bytes as f64);
+    rows.push(time("kernels", seconds_kernels));
+    rows.push(time("by blocks, kernels cached", blocked.seconds).note(mega(blocked.bytes)));
+    let all = seconds_kernels + blocked.seconds;
+    rows.push(
+        time("by blocks, with kernels", all)
+            .note(format!("{:.2} of the larger body", all / seconds_large)),
+    );
+    let error = apart(&blocked.u);
+    rows.push(Row::new(label("by blocks, error"), "", Some(error)).within(0.0, 1e-12));
+    let most = if full { MOST_DIRECT_LONG } else { MOST_DIRECT };
+    if steps <= most {
+        let direct = case.with_ends(steps, || DirectHistory::new(kernels.clone()))?;
+        rows.push(time("direct sums, kernels cached", direct.seconds).note(mega(direct.bytes)));
+        let error = apart(&direct.u);
+        rows.push(Row::new(label("direct sums, error"), "", Some(error)).within(0.0, 1e-12));
+    }
+
+    let began = Instant::now();
+    let fit = ExponentialKernels::fit(
+        &stencil,
+        LatticeStep::verlet(case.dt),
+        steps,
+        case.tolerance,
+    );
+    let seconds_fit = began.elapsed().as_secs_f64();
+    match fit {
+        Ok(fit) => {
+            let terms = fit.terms();
+            let made = case.with_ends(steps, || ExponentialHistory::new(fit.clone()))?;
+            rows.push(time("fit of exponentials", seconds_fit).note(format!(
+                "{terms} terms of rank one, residual {:.1e}",
+                fit.residual
+            )));
+            let all = seconds_fit + made.seconds;
+            rows.push(time("by exponentials, with the fit", all).note(format!(
+                "{:.2} of the larger body; {}",
+                all / seconds_large,
+                mega(made.bytes)
+            )));
+            let error = apart(&made.u);
+            let row = Row::new(label("by exponentials, error"), "", Some(error));
+            rows.push(row.within(0.0, case.tolerance));
+        }
+        Err(AbsorbingError::Fit { residual, fits, .. }) => {
+            let note = format!("refused after {fits} fits: best residual {residual:.1e}");
+            rows.push(time("fit of exponentials", seconds_fit).note(note));
+        }
+        Err(error) => return Err(PericlesError::from(error).into()),
+    }
+    let form = HistoryCost::estimate(&stencil, step, steps).cheapest(false);
+    rows.push(Row::new(label("chosen"), "", None).note(format!("{form:?}")));
+    Ok(rows)
+}
+
+/// A million steps near the stability limit: nothing may grow.
+fn endless(case: &Case) -> Result<Vec<Row>, RunError> {
+    let case = Case { dt: 0.249, ..*case };
+    let stencil = case.stencil()?;
+    let began = Instant::now();
+    let step = LatticeStep::verlet(case.dt);
+    let kernels = GhostKernels::shift(contour_kernels(&stencil, step, ENDLESS));
+    let seconds_kernels = began.elapsed().as_secs_f64();
+    let made = case.with_ends(ENDLESS, || BlockedHistory::new(kernels.clone()))?;
+    let largest = made.u.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
+    let label = |what: &str| format!("K = 7, dt = 0.249, N = {ENDLESS}: {what}");
+    Ok(vec![
+        Row::new(label("kernels"), "s", Some(seconds_kernels)),
+        Row::new(label("by blocks"), "s", Some(made.seconds))
+            .note(format!("{:.0} MB for both ends", 1e-6 * made.bytes as f64)),
+        Row::new(label("largest displacement left"), "", Some(largest)).within(0.0, 1e-11),
+    ])
+}

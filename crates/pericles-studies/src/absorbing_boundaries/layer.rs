@@ -1,0 +1,228 @@
+//! What damping layers reflect, against angle and wavelength.
+//!
+//! A plane wave of a plate repeats along y but for a phase, u(x, y) = u(x) exp(i k_y y), so that a chain of nodes along x stands for the plate: bonds to the rows above and below carry the
+//! phase. With u_y = i w the chain's equations for (u_x, w) are real. A longitudinal packet that runs one way only, as a sum of the chain's own waves, meets the layer and the held edge behind
+//! it; the energy that is left when it has come back, over that of the packet, is the square of the reflection, waves of the other kind included.
+
+use std::f64::consts::{PI, TAU};
+
+use pericles::boundary::DampingProfile;
+use pericles_io::{Axis, Curve, LineChart};
+use pericles_run::RunError;
+
+use super::paper::PAPER;
+use crate::row::Row;
+use crate::study::{Context, Study};
+
+pub(super) const DAMPING_LAYER: Study = Study {
+    id: "absorbing-boundaries/damping-layer",
+    paper: PAPER,
+    title: "Reflection of a damping layer in a plate against angle and wavelength",
+    run: rows,
+};
+
+/// Bonds reach three spacings; lengths are in spacings, times in those of a longitudinal wave over one.
+const REACH: isize = 3;
+const DT: f64 = 0.5;
+/// Depth of the layer.
+const THICKNESS: f64 = 60.0;
+/// Of the amplitude, asked for head on.
+const ASKED: f64 = 1e-3;
+const LENGTHS: [f64; 3] = [10.0, 20.0, 40.0];
+/// Degrees from the normal.
+const ANGLES: [f64; 5] = [0.0, 30.0, 45.0, 60.0, 70.0];
+
+/// A symmetric 2 × 2 matrix: xx, xy, yy.
+type Tensor = [f64; 3];
+
+struct Bond {
+    offset: [f64; 2],
+    tensor: Tensor,
+}
+
+/// The bonds of a plate's node, k ξ⊗ξ/|ξ|³, scaled to longitudinal speed one.
+fn bonds() -> Vec<Bond> {
+    let mut bonds = Vec::new();
+    for p in -REACH..=REACH {
+        for q in -REACH..=REACH {
+            let square = p * p + q * q;
+            if square > 0 && square <= REACH * REACH {
+                let [x, y] = [p as f64, q as f64];
+                let scale = (square as f64).powf(-1.5);
+                let tensor = [x * x, x * y, y * y].map(|t| scale * t);
+                let offset = [x, y];
+                bonds.push(Bond { offset, tensor });
+            }
+        }
+    }
+    // ω² = ½ Σ k_xx p² θ² of long waves along x.
+    let stiffness = |bond: &Bond| 0.5 * bond.tensor[0] * bond.offset[0].powi(2);
+    let square: f64 = bonds.iter().map(stiffness).sum();
+    for bond in &mut bonds {
+        bond.tensor = bond.tensor.map(|t| t / square);
+    }
+    bonds
+}
+
+/// Frequency and polarisation of the fast wave with these wave numbers.
+fn longitudinal(bonds: &[Bond], [kx, ky]: [f64; 2]) -> (f64, [f64; 2]) {
+    let mut d = [0.0; 3];
+    for Bond { offset, tensor } in bonds {
+        let share = 1.0 - (kx * offset[0] + ky * offset[1]).cos();
+        for (d, t) in d.iter_mut().zip(tensor) {
+            *d += share * t;
+        }
+    }
+    let (mean, half) = (0.5 * (d[0] + d[2]), 0.5 * (d[0] - d[2]));
+    let angle = 0.5 * d[1].atan2(half);
+    let omega = (mean + half.hypot(d[1])).sqrt();
+    (omega, [angle.cos(), angle.sin()])
+}
+
+/// The nodes along x of a plate with waves exp(i k_y y); beyond both ends it is held.
+struct Chain {
+    /// For p = −3 … 3: Σ_q k cos(k_y q) of xx and yy, Σ_q k sin(k_y q) of xy.
+    coupling: Vec<Tensor>,
+    /// Σ k over all bonds; xy vanishes.
+    own: Tensor,
+    damping: Vec<f64>,
+    /// (u_x, w) of each node.
+    u: Vec<[f64; 2]>,
+    /// dt v, of the middle of the last step.
+    increment: Vec<[f64; 2]>,
+}
+
+impl Chain {
+    /// With a packet of waves around (k_x, k_y) that runs towards the layer at the right end.
+    fn new(bonds: &[Bond], [kx, ky]: [f64; 2]) -> Self {
+        // The packet's width, so that 8 % of its wave number are in it.
+        let width = 1.5 * TAU / kx;
+        let centre = 4.0 * width;
+        let nodes = (2.0 * centre + THICKNESS) as usize;
+        let mut coupling = vec![[0.0; 3]; 2 * REACH as usize + 1];
+        let mut own = [0.0; 3];
+        for Bond { offset, tensor } in bonds {
+            let (sine, cosine) = (ky * offset[1]).sin_cos();
+            let at = &mut coupling[(offset[0] + REACH as f64) as usize];
+            for (k, factor) in [cosine, sine, cosine].into_iter().enumerate() {
+                at[k] += factor * tensor[k];
+                own[k] += tensor[k];
+            }
+        }
+        let profile = DampingProfile::of_reflection(THICKNESS, ASKED, 2.0, 1.0);
+        let depth = |i: usize| i as f64 + 0.5 - (nodes as f64 - THICKNESS);
+        let mut chain = Self {
+            coupling,
+            own,
+            damping: (0..nodes).map(|i| profile.at(depth(i))).collect(),
+            u: vec![[0.0; 2]; nodes],
+            increment: vec![[0.0; 2]; nodes],
+        };
+        // Waves that fit into twice the chain, Gaussian about k_x.
+        let spacing = PI / nodes as f64;
+        let spread = 1.0 / width;
+        let first = ((kx - 5.0 * spread) / spacing).max(1.0) as usize;
+        for n in first..=((kx + 5.0 * spread) / spacing) as usize {
+            let k = n as f64 * spacing;
+            let amplitude = (-0.5 * ((k - kx) / spread).powi(2)).exp();
+            let (omega, direction) = longitudinal(bonds, [k, ky]);
+            // The scheme's own frequency.
+            let turn = 2.0 * (0.5 * omega * DT).asin();
+            for i in 0..nodes {
+                let phase = k * (i as f64 - centre);
+                let parts = [f64::cos, f64::sin];
+                for c in 0..2 {
+                    let scale = amplitude * direction[c];
+                    let now = scale * parts[c](phase);
+                    chain.u[i][c] += now;
+                    chain.increment[i][c] += now - scale * parts[c](phase + turn);
+                }
+            }
+        }
+        chain
+    }
+
+    fn acceleration(&self, i: usize) -> [f64; 2] {
+        let mut a = [-self.own[0] * self.u[i][0], -self.own[2] * self.u[i][1]];
+        for (k, [xx, xy, yy]) in self.coupling.iter().enumerate() {
+            let place = (i + k).checked_sub(REACH as usize);
+            let Some([x, w]) = place.and_then(|j| self.u.get(j)) else {
+                continue;
+            };
+            a[0] += xx * x - xy * w;
+            a[1] += xy * x + yy * w;
+        }
+        a
+    }
+
+    /// A step of velocity Verlet with the damping of the step before.
+    fn step(&mut self) {
+        let accelerations: Vec<[f64; 2]> =
+            (0..self.u.len()).map(|i| self.acceleration(i)).collect();
+        for (i, a) in accelerations.iter().enumerate() {
+            for c in 0..2 {
+                let increment = &mut self.increment[i][c];
+                *increment += DT * DT * a[c] - self.damping[i] * DT * *increment;
+                self.u[i][c] += *increment;
+            }
+        }
+    }
+
+    /// What the scheme conserves without damping: ½ |d/dt|² − ½ u·A u', with u' the displacement before.
+    fn energy(&self) -> f64 {
+        let node = |i: usize| -> f64 {
+            let a = self.acceleration(i);
+            (0..2)
+                .map(|c| {
+                    let d = self.increment[i][c];
+                    0.5 * (d / DT).powi(2) - 0.5 * a[c] * (self.u[i][c] - d)
+                })
+                .sum()
+        };
+        (0..self.u.len()).map(node).sum()
+    }
+}
+
+/// The share of the amplitude that comes back from a wave of this length at this angle.
+fn reflection(bonds: &[Bond], length: f64, degrees: f64) -> f64 {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let wave = [cosine, sine].map(|part| part * TAU / length);
+    let mut chain = Chain::new(bonds, wave);
+    let before = chain.energy();
+    // To the edge and back to where it came from, at the speed of long waves.
+    let way = 2.0 * (chain.u.len() as f64 - 6.0 * TAU / wave[0]);
+    let steps = (way / (cosine * DT)) as usize;
+    for _ in 0..steps {
+        chain.step();
+    }
+    (chain.energy() / before).max(0.0).sqrt()
+}
+
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
+    let bonds = bonds();
+    let mut rows = Vec::new();
+    let mut chart = LineChart::new(
+        Axis::new("angle from the normal", "°"),
+        Axis::new("reflected share of the amplitude", "").logarithmic(),
+    )
+    .title("damping layer of 60 spacings, asked for 0.001 head on");
+    for length in LENGTHS {
+        let mut found = Vec::new();
+        for degrees in ANGLES {
+            let share = reflection(&bonds, length, degrees);
+            let ratio = THICKNESS / length;
+            let case = format!("{ratio} wavelengths deep, {degrees}°: reflected amplitude");
+            found.push(share);
+            let row = Row::new(case, "", Some(share));
+            // Three wavelengths deep and up to 45° the layer keeps what it is asked for.
+            let kept = ratio >= 3.0 && degrees <= 45.0;
+            rows.push(if kept { row.within(0.0, ASKED) } else { row });
+        }
+        let name = format!("{} wavelengths deep", THICKNESS / length);
+        chart = chart.curve(Curve::line(name, &ANGLES, &found));
+    }
+    if let Some(path) = context.figure("damping-layer.png") {
+        chart.write(path)?;
+    }
+    Ok(rows)
+}

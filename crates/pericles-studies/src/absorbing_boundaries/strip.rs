@@ -1,0 +1,210 @@
+//! A strip that is periodic across and goes on for ever along: exact ends by Fourier modes.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+use pericles::family::VolumeCorrection;
+use pericles::space::{Grid, PointCloud, Shape};
+use pericles::time::{State, VelocityVerlet};
+use pericles::{Control, PericlesError, PointScalar, Simulation, System};
+use pericles_io::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart};
+use pericles_run::RunError;
+use pericles_waves::absorbing::Side;
+use pericles_waves::absorbing::strip::{StripEnd, StripLattice};
+use pericles_waves::linear::ConvolutionForce;
+
+use super::paper::PAPER;
+use crate::row::Row;
+use crate::study::{Context, Study};
+
+pub(super) const STRIP: Study = Study {
+    id: "absorbing-boundaries/strip",
+    paper: PAPER,
+    title: "An infinite strip, periodic across: ends by Fourier modes against a larger body",
+    run: rows,
+};
+
+/// Rows across; lengths are in spacings.
+const ROWS: usize = 32;
+/// Columns from the middle to an end.
+const HALF: usize = 40;
+const HORIZON: f64 = 3.01;
+const DT: f64 = 0.4;
+const STEPS: usize = 400;
+/// Columns that fields need to decay beyond the light cone.
+const MARGIN: usize = 60;
+
+/// A plate with some columns more on each side, and a bell beside its middle that is pushed upwards.
+fn strip(margin: usize) -> Result<(System, State), RunError> {
+    let half = HALF + margin;
+    let grid = Grid {
+        shape: Shape::Box {
+            origin: [-(half as f64) - 0.5, 0.0, 0.0],
+            size: vec![(2 * half + 1) as f64, ROWS as f64],
+        },
+        spacing: 1.0,
+        section: 1.0,
+        holes: Vec::new(),
+    };
+    let cloud = Arc::new(grid.points()?);
+    // Bonds k ξ⊗ξ/|ξ|³ with k such that long waves along x have about speed one.
+    let force = ConvolutionForce::<2>::with_stiffness(
+        Arc::clone(&cloud),
+        HORIZON,
+        VolumeCorrection::None,
+        |_| 0.06,
+        [false, true],
+    )?;
+    let n = cloud.len();
+    let system = System::new(
+        Arc::clone(&cloud),
+        Box::new(force),
+        PointScalar::Uniform(1.0),
+    )?;
+    let mut state = State::at_rest(2 * n);
+    for i in 0..n {
+        let [x, y] = [0, 1].map(|axis| cloud.axis(axis)[i]);
+        let bell = (-((x + 6.0).powi(2) + (y - 13.0).powi(2)) / 16.0).exp();
+        state.u[i] = bell;
+        state.v[n + i] = 0.2 * bell;
+    }
+    Ok((system, state))
+}
+
+/// States after every so many steps, and the seconds of the run.
+fn run(
+    (system, state): (System, State),
+    every: usize,
+) -> Result<(Vec<(State, f64)>, f64), RunError> {
+    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, DT, STEPS as u64);
+    let began = Instant::now();
+    let mut states = Vec::new();
+    let mut note = |now: &Simulation| {
+        if now.state().step.is_multiple_of(every as u64) {
+            let energies = now.snapshot().energies();
+            states.push((now.state().clone(), energies.kinetic + energies.elastic));
+        }
+    };
+    note(&simulation);
+    simulation
+        .run(|now| {
+            note(now);
+            Control::Continue
+        })
+        .map_err(|error| RunError::of_run(error, String::new))?;
+    // The last state of a run is not asked about.
+    note(&simulation);
+    Ok((states, began.elapsed().as_secs_f64()))
+}
+
+fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
+    const EVERY: usize = 10;
+    let (mut system, state) = strip(0)?;
+    let began = Instant::now();
+    let mut memory = 0;
+    for side in [Side::Left, Side::Right] {
+        let lattice = StripLattice::of(&system, side).map_err(PericlesError::from)?;
+        let kernels = lattice.kernels(DT, STEPS);
+        let end = StripEnd::new(lattice, side, state.u.len(), &kernels);
+        memory += end.bytes();
+        system.add_boundary(Box::new(end));
+    }
+    let seconds_kernels = began.elapsed().as_secs_f64();
+    let cloud = Arc::clone(system.cloud());
+    let (small, seconds) = run((system, state), EVERY)?;
+
+    let fastest = StripLattice::of(&strip(0)?.0, Side::Left).map_err(PericlesError::from)?;
+    let cone = 0.5 * fastest.fastest() * DT * STEPS as f64;
+    let (large, state) = strip(cone as usize + MARGIN)?;
+    let inside = inner_entries(&large, &cloud);
+    let points = large.points();
+    let (large, seconds_large) = run((large, state), EVERY)?;
+    let mut worst = 0.0_f64;
+    for ((small, _), (large, _)) in small.iter().zip(&large) {
+        for (entry, &place) in inside.iter().enumerate() {
+            let u = (small.u[entry] - large.u[place]).abs();
+            let v = (small.v[entry] - large.v[place]).abs();
+            worst = worst.max(u).max(v);
+        }
+    }
+    draw(context, &cloud, &small)?;
+    let left = small[small.len() - 1].1 / small[0].1;
+    Ok(vec![
+        Row::new(
+            "largest error of displacement and velocity",
+            "",
+            Some(worst),
+        )
+        .within(0.0, 1e-10)
+        .note(format!(
+            "{STEPS} steps, against {points} points in place of {}",
+            cloud.len()
+        )),
+        Row::new("share of the energy that is left", "", Some(left))
+            .note("slow short waves stay longest"),
+        Row::new("kernels of both ends", "s", Some(seconds_kernels)).note(format!(
+            "{} modes, {:.1} MB of histories",
+            ROWS / 2 + 1,
+            1e-6 * memory as f64
+        )),
+        Row::new("run with ends", "s", Some(seconds)),
+        Row::new("larger body", "s", Some(seconds_large)),
+    ])
+}
+
+/// Where the entries of the small body are in the large one.
+fn inner_entries(large: &System, small: &PointCloud) -> Vec<usize> {
+    let cloud = large.cloud();
+    let place = |cloud: &PointCloud, i: usize| {
+        [0, 1].map(|axis| (2.0 * cloud.axis(axis)[i]).round() as i64)
+    };
+    let numbers: HashMap<_, _> = (0..cloud.len()).map(|i| (place(cloud, i), i)).collect();
+    let entry = |c: usize| {
+        let numbers = &numbers;
+        (0..small.len()).map(move |i| c * cloud.len() + numbers[&place(small, i)])
+    };
+    entry(0).chain(entry(1)).collect()
+}
+
+fn draw(
+    context: &Context<'_>,
+    cloud: &PointCloud,
+    states: &[(State, f64)],
+) -> Result<(), RunError> {
+    let n = cloud.len();
+    let positions: Vec<f64> = [0, 1]
+        .iter()
+        .flat_map(|&axis| cloud.axis(axis).to_vec())
+        .collect();
+    for (name, k) in [("strip-start.png", 0), ("strip-leaving.png", 10)] {
+        let Some(path) = context.figure(name) else {
+            return Ok(());
+        };
+        let state = &states[k].0;
+        FieldPicture::new(2, &positions, &state.u[..n], CellSize::Uniform(1.0))
+            .label("u_x", "")
+            .without_units()
+            .colours(ColourMap::Diverging)
+            .range(-0.3, 0.3)
+            .title(format!(
+                "a strip without ends, periodic across, at t = {}",
+                state.t
+            ))
+            .write(path)?;
+    }
+    if let Some(path) = context.figure("strip-energy.png") {
+        let (t, share): (Vec<f64>, Vec<f64>) = states
+            .iter()
+            .map(|(state, energy)| (state.t, energy / states[0].1))
+            .unzip();
+        LineChart::new(
+            Axis::new("t", ""),
+            Axis::new("energy in the strip over that at the start", "").logarithmic(),
+        )
+        .title("energy leaves a strip without ends")
+        .curve(Curve::line("", &t, &share))
+        .write(path)?;
+    }
+    Ok(())
+}

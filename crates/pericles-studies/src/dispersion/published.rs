@@ -1,0 +1,73 @@
+//! Tables of published numbers, and the words in them.
+
+use pericles_dispersion::tuning::{Combination, Method};
+use pericles_run::RunError;
+
+/// The paper of the topic.
+pub(super) const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
+
+/// The rows of a table of published numbers: cells by column, comments and header left out.
+pub(super) fn published(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    lines.skip(1).map(|line| line.split(',').collect())
+}
+
+/// A number of such a table; none where it is empty.
+pub(super) fn number(row: &[&str], column: usize) -> Option<f64> {
+    row.get(column)?.parse().ok()
+}
+
+/// The numbers of one cell.
+pub(super) fn numbers(row: &[&str], column: usize) -> Vec<f64> {
+    let cell = row.get(column).copied().unwrap_or_default();
+    cell.split(' ').filter_map(|x| x.parse().ok()).collect()
+}
+
+/// Half a unit of the last digit given, and a little.
+pub(super) fn rounding(row: &[&str], column: usize) -> f64 {
+    let cell = row.get(column).copied().unwrap_or_default();
+    let places = cell.split_once('.').map_or(0, |(_, digits)| digits.len());
+    0.6 * 10f64.powi(-(places as i32))
+}
+
+pub(super) fn method(name: &str) -> Result<Method, RunError> {
+    let named = Method::ALL.map(|method| (method.name(), method));
+    known("method of tuning", name, &named)
+}
+
+pub(super) fn combination(name: &str) -> Result<Combination, RunError> {
+    let named = Combination::ALL.map(|combination| (combination.name(), combination));
+    known("combination of branches", name, &named)
+}
+
+/// The value that a word of a study's data names.
+pub(super) fn known<T: Copy>(
+    kind: &'static str,
+    name: &str,
+    all: &[(&str, T)],
+) -> Result<T, RunError> {
+    let found = all.iter().find(|(word, _)| *word == name);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
+        RunError::unknown(
+            kind,
+            name,
+            &words,
+            &format!("allowed: {}", words.join(", ")),
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn misspelt_words_of_the_data_are_refused() {
+        assert_eq!(method("galerkin").unwrap(), Method::Galerkin);
+        let refused = method("galerkyn").unwrap_err().to_string();
+        assert_eq!(refused, "there is no method of tuning \"galerkyn\"");
+        assert!(combination("seperated").is_err());
+        assert!(combination("").is_err());
+    }
+}

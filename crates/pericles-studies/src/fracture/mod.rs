@@ -1,0 +1,19 @@
+//! Cracks in glass plates: branching of a notch, and an inclined crack under biaxial tension.
+//!
+//! Alebrahim, Packo, Zaccariotto, Galvanetto, Improved wave dispersion properties in 1D and 2D bond-based peridynamic media, Computational Particle
+//! Mechanics (2022). Original influence function (α = 1), δ = 3 Δx = 0.75 mm, plane strain, full node volumes.
+//!
+//! Definitions. The crack is the set of points with damage above 0.35 that is connected to the pre-crack; its front is looked at every 0.5 µs. Speeds are
+//! least-squares slopes over a window of time, short enough to follow the crack and long enough not to see single points.
+
+mod branching;
+mod figures;
+mod front;
+mod inclined;
+mod looks;
+mod record;
+
+use crate::study::Study;
+
+/// The studies of this topic.
+pub(super) const STUDIES: [Study; 2] = [branching::STUDY, inclined::STUDY];

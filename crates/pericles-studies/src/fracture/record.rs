@@ -1,0 +1,205 @@
+//! Runs a deck and keeps what the studies measure at every look.
+
+use std::mem;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pericles::observe::{
+    CrackTracker, Energies, Field, ObserveError, Observer, Schedule, Snapshot,
+};
+use pericles::space::{PointCloud, PointSet};
+use pericles::{Archive, Control, Saved, Simulation};
+use pericles_deck::Deck;
+use pericles_run::{Event, Facts, RunError};
+
+use super::looks::{LOOK, THRESHOLD};
+use crate::row::Row;
+use crate::study::Context;
+
+/// A symmetry of a body: each point's partner, and the signs of the displacement's components there.
+pub(super) struct Symmetry {
+    partner: Vec<u32>,
+    sign: [f64; 2],
+}
+
+impl Symmetry {
+    /// Reflection of a full rectangular grid in its horizontal midline.
+    pub(super) fn up_down(cloud: &PointCloud, columns: usize) -> Self {
+        let n = cloud.len();
+        let partner = |i: usize| (n - columns * (i / columns + 1) + i % columns) as u32;
+        Self {
+            partner: (0..n).map(partner).collect(),
+            sign: [1.0, -1.0],
+        }
+    }
+
+    /// Half a turn of a full rectangular grid about its middle.
+    pub(super) fn half_turn(cloud: &PointCloud) -> Self {
+        let n = cloud.len();
+        Self {
+            partner: (0..n).map(|i| (n - 1 - i) as u32).collect(),
+            sign: [-1.0, -1.0],
+        }
+    }
+
+    /// The largest difference of damage between partners, and that of displacement relative to the largest displacement.
+    fn defect(&self, damage: &[f64], u: &[f64]) -> (f64, f64) {
+        let n = damage.len();
+        let (mut of_damage, mut of_u, mut largest) = (0f64, 0f64, 0f64);
+        for (i, &j) in self.partner.iter().enumerate() {
+            let j = j as usize;
+            of_damage = of_damage.max((damage[i] - damage[j]).abs());
+            for c in 0..2 {
+                of_u = of_u.max((u[c * n + i] - self.sign[c] * u[c * n + j]).abs());
+                largest = largest.max(u[c * n + i].abs());
+            }
+        }
+        (of_damage, if largest > 0.0 { of_u / largest } else { 0.0 })
+    }
+}
+
+/// One look at the crack.
+pub(super) struct Look {
+    pub(super) t: f64,
+    /// Points of the crack.
+    pub(super) crack: PointSet,
+    /// Distance of its farthest point from the pre-crack, m.
+    pub(super) advance: f64,
+    pub(super) energies: Energies,
+    pub(super) broken_bonds: u64,
+    /// See [`Symmetry::defect`].
+    pub(super) damage_defect: f64,
+    pub(super) displacement_defect: f64,
+}
+
+/// A finished run.
+pub(super) struct Recorded {
+    pub(super) looks: Vec<Look>,
+    pub(super) simulation: Simulation,
+    pub(super) facts: Facts,
+}
+
+impl Recorded {
+    /// The place of a point, m.
+    pub(super) fn place(&self, point: u32) -> [f64; 2] {
+        let [x, y, _] = self.simulation.system().cloud().point(point as usize);
+        [x, y]
+    }
+
+    /// The first look at which the crack has grown by more than two spacings.
+    pub(super) fn start(&self) -> Option<&Look> {
+        let grown = 2.0 * self.facts.spacing;
+        self.looks.iter().find(|look| look.advance > grown)
+    }
+
+    /// The worst of the energy account, and what broke.
+    pub(super) fn energy_rows(&self) -> Vec<Row> {
+        let worst = |over: fn(&Look) -> f64| {
+            self.looks
+                .iter()
+                // Rows before 1 µs, and those without the energy it is compared with, say nothing.
+                .filter(|look| look.t > 1e-6 && over(look) > 0.0)
+                .map(|look| look.energies.balance().abs() / over(look))
+                .reduce(f64::max)
+        };
+        let last = self.looks.last();
+        vec![
+            Row::new(
+                "energy balance over external work, worst after 1 µs",
+                "",
+                worst(|look| look.energies.work),
+            )
+            .within(0.0, 2e-3),
+            Row::new(
+                "energy balance over dissipated energy, worst after 1 µs",
+                "",
+                worst(|look| look.energies.dissipated),
+            )
+            .within(0.0, 0.03),
+            Row::new(
+                "dissipated energy",
+                "J",
+                last.map(|look| look.energies.dissipated),
+            ),
+            Row::new(
+                "bonds broken",
+                "",
+                last.map(|look| look.broken_bonds as f64),
+            ),
+        ]
+    }
+}
+
+/// Runs a deck with one pre-crack.
+pub(super) fn record(
+    deck: &Deck,
+    symmetry: impl FnOnce(&PointCloud) -> Symmetry,
+    context: &Context<'_>,
+) -> Result<Recorded, RunError> {
+    let model = deck.build()?;
+    let facts = Facts::of(deck, &model);
+    let recorder = Recorder {
+        tracker: CrackTracker::new(&model.cloud, model.cracks.clone(), THRESHOLD),
+        symmetry: symmetry(&model.cloud),
+        looks: Arc::default(),
+    };
+    let looks = Arc::clone(&recorder.looks);
+    let mut simulation = model.simulation();
+    simulation.observe(Schedule::Interval(LOOK), Box::new(recorder));
+    (context.tell)(Event::LoopBegins {
+        first: 0,
+        steps: simulation.steps(),
+    });
+    simulation
+        .run(|run| {
+            (context.tell)(Event::Step {
+                step: run.state().step,
+                t: run.state().t,
+            });
+            Control::Continue
+        })
+        .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
+    (context.tell)(Event::LoopEnds);
+    let looks = mem::take(&mut *looks.lock().unwrap_or_else(PoisonError::into_inner));
+    Ok(Recorded {
+        looks,
+        simulation,
+        facts,
+    })
+}
+
+struct Recorder {
+    tracker: CrackTracker,
+    symmetry: Symmetry,
+    looks: Arc<Mutex<Vec<Look>>>,
+}
+
+impl Observer for Recorder {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError> {
+        let (state, system) = (snapshot.state(), snapshot.system());
+        let damage = snapshot.field(Field::Damage);
+        let tips = self.tracker.tips(system.cloud(), damage);
+        let advance = tips.iter().flatten().map(|tip| tip.advance);
+        let (damage_defect, displacement_defect) = self.symmetry.defect(damage, &state.u);
+        let look = Look {
+            t: state.t,
+            crack: self.tracker.connected(0, damage),
+            advance: advance.fold(0.0, f64::max),
+            energies: snapshot.energies(),
+            broken_bonds: system.operator().broken_bonds(),
+            damage_defect,
+            displacement_defect,
+        };
+        let mut looks = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        looks.push(look);
+        Ok(())
+    }
+}
+
+/// Studies are not resumed.
+impl Saved for Recorder {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> pericles::Result<()> {
+        Ok(())
+    }
+}

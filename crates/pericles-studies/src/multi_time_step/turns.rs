@@ -1,0 +1,144 @@
+//! Schemes that take turns on one body, timed.
+
+use std::time::Instant;
+
+use pericles::space::PointSet;
+use pericles::time::{
+    Fine, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
+    RungeKutta, State, VelocityVerlet,
+};
+use pericles::{Interrupt, PericlesError, System};
+use pericles_deck::Model;
+use pericles_run::RunError;
+
+use super::problem::{Method, Problem, tableau};
+
+/// A body with its state, on which schemes take turns.
+pub(super) struct Bench {
+    pub(super) system: System,
+    pub(super) state: State,
+    pub(super) dt: f64,
+}
+
+impl Bench {
+    /// The body of a problem; the coarse step is ω dt = 1.
+    pub(super) fn new(problem: &Problem) -> Result<Self, RunError> {
+        let Model {
+            mut system,
+            mut state,
+            mut integrator,
+            frequency,
+            dt,
+            ..
+        } = problem.model(Method::Verlet, &[])?;
+        integrator.start(&mut system, &mut state);
+        Ok(Self {
+            dt: frequency.map_or(dt, |frequency| 1.0 / frequency.estimate),
+            system,
+            state,
+        })
+    }
+
+    /// Points of the body.
+    pub(super) fn points(&self) -> u64 {
+        self.system.points() as u64
+    }
+
+    /// Two steps with the defaults.
+    pub(super) fn options(&self, ratio: u32, fine: &PointSet) -> MultiTimeStepOptions {
+        MultiTimeStepOptions {
+            ratio,
+            fine: Fine::Fixed(vec![fine.clone()]),
+            predictor: Predictor::Structured,
+            interpolant: Interpolant::Hermite,
+        }
+    }
+
+    /// Seconds for `steps` steps of a length.
+    fn time(
+        &mut self,
+        integrator: &mut dyn Integrator,
+        dt: f64,
+        steps: u32,
+    ) -> Result<f64, PericlesError> {
+        let began = Instant::now();
+        for _ in 0..steps {
+            let t_next = self.state.t + dt;
+            integrator.step(
+                &mut self.system,
+                &mut self.state,
+                t_next,
+                Interrupt::never(),
+            )?;
+        }
+        Ok(began.elapsed().as_secs_f64())
+    }
+
+    /// Points evaluated by `steps` steps after the starting steps.
+    pub(super) fn evaluations(
+        &mut self,
+        integrator: &mut dyn Integrator,
+        steps: u32,
+    ) -> Result<u64, PericlesError> {
+        self.time(integrator, self.dt, 2)?;
+        let before = self.system.evaluated_points();
+        self.time(integrator, self.dt, steps)?;
+        Ok(self.system.evaluated_points() - before)
+    }
+}
+
+/// Seconds per coarse step of schemes that took turns.
+pub(super) struct Turns {
+    /// RK4 with two steps.
+    pub(super) two: f64,
+    /// RK4 with the fine step everywhere.
+    pub(super) uniform: f64,
+    /// Velocity Verlet with the fine step everywhere.
+    pub(super) verlet: f64,
+    /// r-RESPA with two steps.
+    pub(super) respa: f64,
+}
+
+impl Turns {
+    /// So many rounds of so many coarse steps each.
+    pub(super) fn take(
+        bench: &mut Bench,
+        ratio: u32,
+        fine: &PointSet,
+        [rounds, steps]: [u32; 2],
+    ) -> Result<Self, RunError> {
+        let options = bench.options(ratio, fine);
+        let regions = options.fine.clone();
+        let rk4 = tableau(4)?;
+        let mut two = MultiTimeStep::new(&rk4, options, &bench.system)?;
+        let mut uniform = RungeKutta::new(&rk4, &bench.system);
+        let mut respa = Respa::new(ratio, regions, &bench.system)?;
+        let (dt, h) = (bench.dt, bench.dt / f64::from(ratio));
+        // Cold caches, starting steps, and r-RESPA's own parts of the acceleration.
+        bench.time(&mut two, dt, 2)?;
+        let mut times: [Vec<f64>; 4] = Default::default();
+        for _ in 0..rounds {
+            let round = [
+                bench.time(&mut two, dt, steps)?,
+                bench.time(&mut uniform, h, steps * ratio)?,
+                bench.time(&mut VelocityVerlet, h, steps * ratio)?,
+                {
+                    respa.start(&mut bench.system, &mut bench.state);
+                    bench.time(&mut respa, dt, steps)?
+                },
+            ];
+            for (times, seconds) in times.iter_mut().zip(round) {
+                times.push(seconds / f64::from(steps));
+            }
+        }
+        // The least of the rounds: what else the machine does only adds to a time.
+        let [two, uniform, verlet, respa] =
+            times.map(|times| times.into_iter().fold(f64::INFINITY, f64::min));
+        Ok(Self {
+            two,
+            uniform,
+            verlet,
+            respa,
+        })
+    }
+}
