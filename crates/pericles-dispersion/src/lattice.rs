@@ -1,5 +1,6 @@
 //! The bonds of one point of an infinite lattice, and its plane waves.
 
+use crate::DispersionError;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::space::PointCloud;
@@ -113,7 +114,7 @@ impl BondLattice {
         constants: &BondConstants,
     ) -> Result<Self> {
         if cloud.lattice().is_none() {
-            return Err(PericlesError::NoLattice);
+            return Err(DispersionError::NoLattice.into());
         }
         let spacing = vec![cloud.spacing(); cloud.dimension()];
         Self::of_material(&spacing, cloud.section(), material, constants)

@@ -37,6 +37,7 @@ mod branches;
 mod content;
 mod continuum;
 mod contour;
+mod error;
 mod lattice;
 mod modes;
 mod phase;
@@ -49,6 +50,7 @@ pub use branches::{BranchPoint, ContourPoint, PolarSpeeds, long_wave_speeds, pol
 pub use content::{space_content, time_content};
 pub use continuum::KernelWaves;
 pub use contour::{Contour, Segment};
+pub use error::DispersionError;
 pub use lattice::{BondLattice, LatticeBond};
 pub use modes::{Mode, verlet_frequency};
 pub use phase::{PhaseErrors, Resolved};

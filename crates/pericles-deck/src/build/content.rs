@@ -3,6 +3,7 @@
 use pericles::boundary::{MotionKind, TimeFunction};
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
+use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
     BondLattice, KernelWaves, PhaseErrors, Resolved, space_content, stability, time_content,
 };
@@ -68,9 +69,9 @@ impl Deck {
     pub fn bond_lattice(&self, model: &Model) -> Result<BondLattice, DeckError> {
         let material = &self.material.bonds;
         self.lattice_of(model, material, &model.constants)
-            .map_err(|error| match error {
-                pericles::PericlesError::NoLattice => self.at("body", error),
-                other => self.at(self.horizon_key(), other),
+            .map_err(|error| match error.extension() {
+                Some(DispersionError::NoLattice) => self.at("body", error),
+                _ => self.at(self.horizon_key(), error),
             })
     }
 

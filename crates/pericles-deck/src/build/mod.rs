@@ -37,6 +37,7 @@ use pericles::{PericlesError, Simulation, StopWhen, System};
 use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
 use pericles_waves::absorbing::{EndReport, Side};
+use pericles_waves::linear::NoConvolution;
 
 use self::assemble::Assembled;
 use crate::deck::Deck;
@@ -266,9 +267,8 @@ impl Deck {
     fn at_material(&self, error: PericlesError) -> DeckError {
         let path = match &error {
             PericlesError::BadInfluence { .. } => "material.influence",
-            PericlesError::BadConvolution { .. }
-            | PericlesError::FormNotUsable { .. }
-            | PericlesError::OneStencil => "material.bonds",
+            PericlesError::FormNotUsable { .. } | PericlesError::OneStencil => "material.bonds",
+            _ if error.extension::<NoConvolution>().is_some() => "material.bonds",
             PericlesError::HorizonTooSmall { .. } | PericlesError::HorizonTooLarge { .. } => {
                 self.horizon_key()
             }

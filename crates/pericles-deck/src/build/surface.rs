@@ -8,7 +8,7 @@ use pericles::cache::Cache;
 use pericles::operator::ForceOperator;
 use pericles::space::PointCloud;
 use pericles_manifold::force::SurfaceBody;
-use pericles_manifold::surface::{Surface, SurfaceChecks};
+use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceError};
 
 use super::{FileError, Resources, Sets};
 use crate::body::{SurfaceShape, VertexAreas};
@@ -77,8 +77,10 @@ impl Deck {
             .pairs(surface, deck.material.horizon, deck.method, cache)
             .map_err(|error| match error {
                 PericlesError::HorizonTooSmall { .. } => self.at("material.horizon", error),
-                PericlesError::Folded { .. } => self.at("geodesics.ball", error),
-                _ => self.at("geodesics", error),
+                _ => match error.extension() {
+                    Some(SurfaceError::Folded { .. }) => self.at("geodesics.ball", error),
+                    _ => self.at("geodesics", error),
+                },
             })?;
         let no_fail = self.union_of(sets, &deck.no_fail)?;
         let stiffness = self.stiffness_of(&deck.inclusions, cloud, sets)?;

@@ -1,5 +1,6 @@
 //! A run from noise, and the lines of its spectrum.
 
+use crate::DispersionError;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -177,11 +178,12 @@ fn box_waves(lattice: &BondLattice, contour: &Contour, nodes: usize) -> Result<V
     let mut start = 0.0;
     for segment in &contour.segments {
         let Some(polarisations) = &segment.polarisation else {
-            return Err(PericlesError::TuningChoice {
+            return Err(DispersionError::TuningChoice {
                 choice: "a measured spectrum",
                 with: "along a contour whose polarisations symmetry does not fix",
                 allowed: "allowed: the border of the irreducible zone",
-            });
+            }
+            .into());
         };
         let (from, to) = (number(segment.from), number(segment.to));
         let steps = (0..3).map(|c| (to[c] - from[c]).abs()).max().unwrap_or(0);

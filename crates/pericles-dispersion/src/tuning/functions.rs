@@ -1,11 +1,12 @@
 //! Functions of |ξ| that stand for tables.
 
+use crate::DispersionError;
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
 use pericles::kernel::{ClassTable, InfluenceFunction};
-use pericles::{PericlesError, Result, positive};
+use pericles::{Result, positive};
 
 /// The influence function printed by Alebrahim et al. (2022, eq. 50) for N = 3: a₀ + Σ a_j cos(1.1 j |ξ|/D) on a grid of the given spacing, m. Its digits are
 /// rounded, so that it carries 1.9 % less modulus than α ≡ 1 should (lattice sum 0.9813); the calibration "lattice" mends that.
@@ -54,9 +55,10 @@ pub fn fit_cosines(
             wavenumber,
             coefficients: coefficients.iter().copied().collect(),
         }),
-        _ => Err(PericlesError::Undetermined {
+        _ => Err(DispersionError::Undetermined {
             rank,
             unknowns: terms + 1,
-        }),
+        }
+        .into()),
     }
 }

@@ -5,9 +5,10 @@
 //! program. The bounds it finds active are then fixed and the rest is solved again by orthogonal
 //! factors, so that the result carries no more error than the equations themselves.
 
+use crate::DispersionError;
 use nalgebra::{DMatrix, DVector};
 
-use pericles::{PericlesError, Result};
+use pericles::Result;
 
 use super::bounded::bounded;
 use super::least_squares::{Refusal, least_squares};
@@ -243,18 +244,18 @@ impl Problem {
     }
 
     /// The error to show for a refusal.
-    pub fn refused(&self, refusal: Refusal, ratio: f64) -> PericlesError {
+    pub fn refused(&self, refusal: Refusal, ratio: f64) -> DispersionError {
         let classes = self.rows.ncols();
         match refusal {
-            Refusal::Inconsistent(miss) => PericlesError::Anisotropic {
+            Refusal::Inconsistent(miss) => DispersionError::Anisotropic {
                 classes,
                 ratio,
                 miss,
             },
             Refusal::Undetermined { rank, unknowns } => {
-                PericlesError::Undetermined { rank, unknowns }
+                DispersionError::Undetermined { rank, unknowns }
             }
-            Refusal::Infeasible => PericlesError::InfeasibleBound {
+            Refusal::Infeasible => DispersionError::InfeasibleBound {
                 bound: self.lower.unwrap_or(f64::NEG_INFINITY),
                 classes,
                 largest: self.largest_bound(),
@@ -264,7 +265,9 @@ impl Problem {
 
     /// Solves it, with the error to show.
     pub fn solution(&self, ratio: f64) -> Result<Solution> {
-        self.solve().map_err(|refusal| self.refused(refusal, ratio))
+        Ok(self
+            .solve()
+            .map_err(|refusal| self.refused(refusal, ratio))?)
     }
 }
 
@@ -315,7 +318,7 @@ mod tests {
             panic!("1.5 is too large")
         };
         let error = problem.refused(refusal, 1.0);
-        let PericlesError::InfeasibleBound { largest, .. } = error else {
+        let DispersionError::InfeasibleBound { largest, .. } = error else {
             panic!("{error}")
         };
         assert!((largest - 3.0 / 2.1).abs() < 1e-8, "{largest}");

@@ -1,5 +1,6 @@
 //! Tuning a model.
 
+use crate::DispersionError;
 use nalgebra::{DMatrix, DVector};
 
 use crate::vector::{Vector, dot};
@@ -134,11 +135,12 @@ impl ScalingModel {
             });
         }
         let refuse = |choice, with, allowed| {
-            Err(PericlesError::TuningChoice {
+            Err(DispersionError::TuningChoice {
                 choice,
                 with,
                 allowed,
-            })
+            }
+            .into())
         };
         let plain = tuning.combination == Combination::Separated;
         match tuning.method {

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{GeodesicMethod, GeodesicPairs, geodesic_pairs_cached};
-use crate::surface::Surface;
+use crate::surface::{Surface, SurfaceError};
 use pericles::cache::Cache;
 use pericles::family::pairs_where;
 use pericles::{PericlesError, Result};
@@ -57,7 +57,7 @@ fn euclidean(surface: &Surface, delta: f64, near: &GeodesicPairs) -> Result<Geod
         }
         for &b in &neighbour[row[0]..row[1]] {
             let b = b as usize;
-            let along = near.between(a, b).ok_or_else(|| PericlesError::Folded {
+            let along = near.between(a, b).ok_or_else(|| SurfaceError::Folded {
                 vertices: [a, b].map(|vertex| surface.user_number(vertex)),
                 chord: surface.chord(a, b),
                 reach: LONGEST * delta,
@@ -101,6 +101,9 @@ mod tests {
         let flat = Surface::ellipsoid(3, [1.0, 1.0, 0.1]).unwrap();
         let pairs = Ball::Euclid.pairs(&flat, 0.3, GeodesicMethod::Edge, &NoCache);
         let error = pairs.unwrap_err();
-        assert!(matches!(error, PericlesError::Folded { .. }), "{error}");
+        assert!(
+            matches!(error.extension(), Some(SurfaceError::Folded { .. })),
+            "{error}"
+        );
     }
 }

@@ -154,4 +154,17 @@ pub enum SurfaceError {
         /// Triangles of the two largest.
         sizes: [usize; 2],
     },
+    /// A ball in space that holds parts of a surface that are far apart along it.
+    #[error(
+        "vertices {} and {} are {chord} m apart in space, within the horizon, but more than {reach} m along the surface: the Euclidean ball joins opposite walls; take the geodesic ball or a shorter horizon",
+        .vertices[0], .vertices[1]
+    )]
+    Folded {
+        /// Numbers of the vertices as they were given.
+        vertices: [usize; 2],
+        /// The straight line between them, m.
+        chord: f64,
+        /// The longest path that counts, m.
+        reach: f64,
+    },
 }

@@ -96,9 +96,22 @@ fn require_unbreakable(constants: &BondConstants) -> Result<()> {
     Ok(())
 }
 
+/// An operator that cannot be applied as a convolution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("convolution: {reason}")]
+pub struct NoConvolution {
+    /// Why, and what is allowed.
+    pub reason: String,
+}
+
+impl From<NoConvolution> for PericlesError {
+    fn from(error: NoConvolution) -> Self {
+        Self::Extension(Box::new(error))
+    }
+}
+
 /// The error of what is no convolution.
 fn refuse<T>(reason: impl Into<String>) -> Result<T> {
-    Err(PericlesError::BadConvolution {
-        reason: reason.into(),
-    })
+    let reason = reason.into();
+    Err(NoConvolution { reason }.into())
 }

@@ -41,7 +41,10 @@ mod tests {
             assert!(error.abs() < 1e-14, "{power}: {error:e}");
         }
         // Degree 64, zero at all nodes and positive elsewhere.
-        let beyond = |x: f64| RULE.iter().map(move |(node, _)| (x * x - node * node).powi(2));
+        let beyond = |x: f64| {
+            RULE.iter()
+                .map(move |(node, _)| (x * x - node * node).powi(2))
+        };
         assert_eq!(integral(-1.0, 1.0, |x| beyond(x).product()), 0.0);
     }
 }

@@ -1,11 +1,14 @@
 //! The semi-discrete equation of motion: everything an integrator steps.
 
+mod stored;
+mod supports;
+
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::accounts::{Completed, Ledger, LoadStep, Path};
-use crate::archive::{Archive, Counter, Saved, Values};
+use crate::archive::Counter;
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Accepted, ForceOperator, On};
@@ -171,45 +174,6 @@ impl System {
     /// Dimension of the body.
     pub fn dimension(&self) -> usize {
         self.cloud.dimension()
-    }
-
-    /// Sets prescribed displacements of time t, and what boundaries set, before a force evaluation.
-    pub fn constrain(&mut self, t: f64, u: &mut [f64], v: &mut [f64]) {
-        self.place_on(t, &On::All, u);
-        for boundary in &mut self.boundaries {
-            boundary.before_force(t, u, v);
-        }
-    }
-
-    /// Sets prescribed velocities of time t.
-    pub fn constrain_velocity(&self, t: f64, v: &mut [f64]) {
-        self.drive_on(t, &On::All, v);
-    }
-
-    /// Sets prescribed mean velocities of the step from t to t + dt.
-    pub fn constrain_mean_velocity(&self, t: f64, dt: f64, v: &mut [f64]) {
-        self.drive_mean_on(t, dt, &On::All, v);
-    }
-
-    /// Sets prescribed displacements of time t for the points named by `on`.
-    pub fn place_on(&self, t: f64, on: &On<'_>, u: &mut [f64]) {
-        for motion in &self.motions {
-            motion.place(t, on, self.points(), u);
-        }
-    }
-
-    /// Sets prescribed velocities of time t for the points named by `on`.
-    pub fn drive_on(&self, t: f64, on: &On<'_>, v: &mut [f64]) {
-        for motion in &self.motions {
-            motion.drive(t, on, self.points(), v);
-        }
-    }
-
-    /// Sets prescribed mean velocities of the step from t to t + dt for the points named by `on`.
-    pub fn drive_mean_on(&self, t: f64, dt: f64, on: &On<'_>, v: &mut [f64]) {
-        for motion in &self.motions {
-            motion.drive_mean(t, dt, on, self.points(), v);
-        }
     }
 
     /// Acceleration at a stage: internal force and loads over density; prescribed where motion is prescribed. Entries of other points stay.
@@ -384,20 +348,6 @@ impl System {
         self.hold(out);
     }
 
-    /// Zeros prescribed entries.
-    pub fn hold(&self, vector: &mut [f64]) {
-        for motion in &self.motions {
-            motion.project(self.points(), vector);
-        }
-    }
-
-    /// Zeros the entries that are prescribed at time t.
-    pub fn hold_at(&self, t: f64, vector: &mut [f64]) {
-        for motion in self.motions.iter().filter(|motion| motion.holds(t)) {
-            motion.zero(self.points(), vector);
-        }
-    }
-
     /// Books the way from one equilibrium to another that ended at time t and took dt: loads and supports act as the mean of both ends, without
     /// inertia. With dt = 0 they do not change on the way. `work` is for accelerations.
     pub(crate) fn book_equilibrium(
@@ -488,53 +438,5 @@ impl System {
                 motion.account(t, dt, n, acceleration, chord, (&density, volumes));
             self.ledger.book(work, impulse);
         }
-    }
-}
-
-impl Saved for System {
-    fn save(&self, archive: &mut Archive) {
-        self.operator.save(archive);
-        for (k, motion) in self.motions.iter().enumerate() {
-            archive.put(
-                format!("motion/{k}/reaction"),
-                Values::F64(motion.reactions().to_vec()),
-            );
-        }
-        self.boundaries
-            .iter()
-            .for_each(|boundary| boundary.save(archive));
-        let Ledger {
-            work,
-            exchanged,
-            impulse: [x, y, z],
-        } = self.ledger;
-        archive.put("ledger", Values::F64(vec![work, exchanged, x, y, z]));
-        archive.put("evaluated", Values::U64(vec![self.evaluated.get()]));
-        archive.put("coarse breaks", Values::U64(vec![self.coarse_breaks.get()]));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.operator.restore(archive)?;
-        for (k, motion) in self.motions.iter_mut().enumerate() {
-            archive.f64_into(&format!("motion/{k}/reaction"), motion.reactions_mut())?;
-        }
-        for boundary in &mut self.boundaries {
-            boundary.restore(archive)?;
-        }
-        let mut ledger = [0.0; 5];
-        archive.f64_into("ledger", &mut ledger)?;
-        let [work, exchanged, x, y, z] = ledger;
-        self.ledger = Ledger {
-            work,
-            exchanged,
-            impulse: [x, y, z],
-        };
-        let mut evaluated = [0];
-        archive.u64_into("evaluated", &mut evaluated)?;
-        self.evaluated = evaluated[0].into();
-        let mut coarse_breaks = [0];
-        archive.u64_into("coarse breaks", &mut coarse_breaks)?;
-        self.coarse_breaks = coarse_breaks[0].into();
-        Ok(())
     }
 }

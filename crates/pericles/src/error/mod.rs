@@ -1,6 +1,9 @@
 //! The one error type of the library.
 
+mod text;
+
 use crate::units::{precise, quantity};
+use text::{inner_iteration, listed, no_equilibrium, spacings_that_fit};
 
 /// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -112,19 +115,6 @@ pub enum PericlesError {
         /// The largest number.
         most: f64,
     },
-    /// A ball in space that holds parts of a surface that are far apart along it.
-    #[error(
-        "vertices {} and {} are {chord} m apart in space, within the horizon, but more than {reach} m along the surface: the Euclidean ball joins opposite walls; take the geodesic ball or a shorter horizon",
-        .vertices[0], .vertices[1]
-    )]
-    Folded {
-        /// Numbers of the vertices as they were given.
-        vertices: [usize; 2],
-        /// The straight line between them, m.
-        chord: f64,
-        /// The longest path that counts, m.
-        reach: f64,
-    },
     /// Shape, region or crack of another dimension than the body.
     #[error("{what} needs a body of dimension {needed}, this one has dimension {dimension}")]
     WrongDimension {
@@ -158,54 +148,6 @@ pub enum PericlesError {
     NoSuchField {
         /// The field.
         field: &'static str,
-    },
-    /// Plane waves were asked for on a body without a grid.
-    #[error("the points lie on no regular grid: plane waves are known for grids only")]
-    NoLattice,
-    /// The bonds of a lattice cannot carry waves that are equally fast in all directions.
-    #[error(
-        "the {classes} class(es) of bonds within {ratio} spacings cannot give an isotropic medium: the long waves' speeds miss theirs by {miss:e} \
-         (relative); a horizon ratio of at least √2 is needed in two and three dimensions, and the Poisson's ratio of the model"
-    )]
-    Anisotropic {
-        /// Classes of bonds.
-        classes: usize,
-        /// Horizon over spacing.
-        ratio: f64,
-        /// Relative residual of the constraints.
-        miss: f64,
-    },
-    /// A lower bound that leaves no solution.
-    #[error(
-        "no coefficients of at least {bound} give the right wave speeds; with {classes} classes of bonds the largest possible bound is {largest}"
-    )]
-    InfeasibleBound {
-        /// The bound asked for.
-        bound: f64,
-        /// Classes of bonds.
-        classes: usize,
-        /// The largest bound for which there is a solution.
-        largest: f64,
-    },
-    /// A combination of choices for tuning that does not exist.
-    #[error("{choice} cannot be had {with}; {allowed}")]
-    TuningChoice {
-        /// What was asked for.
-        choice: &'static str,
-        /// Together with what.
-        with: &'static str,
-        /// What is allowed.
-        allowed: &'static str,
-    },
-    /// A tuning problem without a unique solution.
-    #[error(
-        "the tuning problem has no unique solution: {rank} independent equations for {unknowns} unknowns; another method or a smaller horizon helps"
-    )]
-    Undetermined {
-        /// Rank of the equations.
-        rank: usize,
-        /// Free unknowns.
-        unknowns: usize,
     },
     /// An influence function that cannot be used here.
     #[error("influence function: {reason}")]
@@ -252,12 +194,6 @@ pub enum PericlesError {
     #[error("the stored state does not fit: {reason}")]
     BadArchive {
         /// What is missing or has another size.
-        reason: String,
-    },
-    /// An operator that cannot be applied as a convolution.
-    #[error("convolution: {reason}")]
-    BadConvolution {
-        /// Why, and what is allowed.
         reason: String,
     },
     /// A body that cannot repeat.
@@ -414,9 +350,8 @@ pub enum PericlesError {
     },
     /// A boundary that the scheme of the run cannot take along.
     #[error(
-        "absorbing end: a boundary of this run is made for {}, not for {scheme}{}",
-        listed(needed),
-        why_not(scheme)
+        "absorbing end: a boundary of this run is made for {}, not for {scheme}",
+        listed(needed)
     )]
     BoundaryScheme {
         /// The scheme of the run.
@@ -468,20 +403,18 @@ pub enum PericlesError {
     },
 }
 
-/// Result with [`PericlesError`].
-pub type Result<T> = std::result::Result<T, PericlesError>;
-
-/// The end of a message: spacings that divide all sides.
-fn spacings_that_fit(fitting: &[f64]) -> String {
-    let spacings: Vec<String> = fitting.iter().map(|dx| precise(*dx, "m")).collect();
-    match spacings.is_empty() {
-        true => String::new(),
-        false => format!(
-            "; with these sides spacings of {} fit",
-            spacings.join(" and ")
-        ),
+impl PericlesError {
+    /// The refusal of an extension, if it is one of this type.
+    pub fn extension<E: std::error::Error + 'static>(&self) -> Option<&E> {
+        match self {
+            Self::Extension(error) => error.downcast_ref(),
+            _ => None,
+        }
     }
 }
+
+/// Result with [`PericlesError`].
+pub type Result<T> = std::result::Result<T, PericlesError>;
 
 /// Checks that a quantity is positive and finite.
 pub fn positive(quantity: &'static str, value: f64) -> Result<f64> {
@@ -489,82 +422,5 @@ pub fn positive(quantity: &'static str, value: f64) -> Result<f64> {
         Ok(value)
     } else {
         Err(PericlesError::NotPositive { quantity, value })
-    }
-}
-fn no_equilibrium(t: f64, iterations: u32, residual: f64, tolerance: f64) -> String {
-    if residual.is_finite() {
-        format!(
-            "at t = {t:.4e} s the forces out of balance are {residual:.3e} of those that act after {iterations} iterations; the tolerance is {tolerance:.1e}"
-        )
-    } else {
-        format!(
-            "at t = {t:.4e} s the forces grow without bound after {iterations} iterations, as where a body becomes much stiffer within a load step"
-        )
-    }
-}
-
-/// The message of [`PericlesError::InnerIteration`].
-fn inner_iteration(
-    t: f64,
-    iterations: u32,
-    change: f64,
-    tolerance: f64,
-    dt: f64,
-    omega: f64,
-    safe: Option<f64>,
-) -> String {
-    let evaluations = match iterations {
-        1 => "1 evaluation".to_owned(),
-        several => format!("{several} evaluations"),
-    };
-    let state = if change.is_finite() {
-        format!(
-            "after {evaluations} the velocity still changes by {change:.3e} m/s (allowed: {tolerance:.3e} m/s)"
-        )
-    } else {
-        format!("the iteration diverged within {evaluations}: velocities are NaN or infinite")
-    };
-    let step = match safe {
-        Some(safe) => format!(
-            "dt = {dt:.4e} s with a highest frequency of {omega:.4e} 1/s: give dt ≤ {safe:.4e} s, or "
-        ),
-        None => String::new(),
-    };
-    let more = match iterations {
-        1 => {
-            "give iterations = 2 or more, because one evaluation has nothing to be compared with, "
-        }
-        _ => "give more iterations, ",
-    };
-    format!(
-        "at t = {t:.6e} s the inner iteration did not converge: {state}. {}or solver = \"newton-krylov\"",
-        capital(&format!("{step}{more}"))
-    )
-}
-
-/// A sentence with a capital letter where it begins with a verb.
-fn capital(sentence: &str) -> String {
-    match sentence.strip_prefix("give") {
-        Some(rest) => format!("Give{rest}"),
-        None => sentence.to_owned(),
-    }
-}
-
-/// The names with commas and an "or".
-fn listed(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_string(),
-        [all @ .., last] => format!("{} or {last}", all.join(", ")),
-    }
-}
-
-/// The reason behind a scheme that one may expect to work.
-fn why_not(scheme: &str) -> &'static str {
-    match scheme {
-        "trigonometric" => {
-            ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
-        }
-        _ => "",
     }
 }
