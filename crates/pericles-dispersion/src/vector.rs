@@ -7,11 +7,13 @@ pub type Vector = [f64; 3];
 pub type SquareMatrix = [[f64; 3]; 3];
 
 /// The inner product.
+#[inline]
 pub(super) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The vector of length one with the same direction.
+#[inline]
 pub(super) fn unit(a: Vector) -> Vector {
     let norm = dot(a, a).sqrt();
     a.map(|x| x / norm)

@@ -1,6 +1,6 @@
 //! The force of a surface: a sphere of 10 242 vertices, 6.4 million directed bonds, for each power and instruction set.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p pericles --bench surface`: CPU time per directed bond, and the rate at which the bonds are read, beside the rate at which
+//! `RAYON_NUM_THREADS=1 cargo bench -p pericles-manifold --bench surface`: CPU time per directed bond, and the rate at which the bonds are read, beside the rate at which
 //! this machine reads as many bytes and does nothing else. All cases are taken in turn, round after round, so that they meet the same load.
 
 #[path = "../../pericles/benches/clock/mod.rs"]

@@ -8,21 +8,20 @@
 //! the power function.
 //!
 //! A bond costs a load of 12 bytes and of its neighbour's row: about 1.1 ns for p = 2 and 1.2 ns for p = 3 with AVX-512 (Xeon of family 6, model 207, one thread; reading 12 bytes a bond and nothing else takes 1.1), where the
-//! memory is the limit. `cargo bench -p pericles --bench surface` measures it beside the memory's bandwidth. Surfaces can be taken apart by zones
+//! memory is the limit. `cargo bench -p pericles-manifold --bench surface` measures it beside the memory's bandwidth. Surfaces can be taken apart by zones
 //! ([`ZonedForce`](pericles::operator::ZonedForce)), so schemes with two time steps serve them too.
 //!
 //! ```
 //! use std::sync::Arc;
-//! use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
-//! use pericles::material::{PowerMaterial, SurfaceBond};
-//! use pericles_manifold::force::SurfaceBody;
 //! use pericles::operator::ForceOperator;
-//! use pericles::space::PointCloud;
+//! use pericles_manifold::force::SurfaceBody;
+//! use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
 //! use pericles_manifold::surface::{AreaRule, Surface};
+//! use pericles_manifold::{PowerMaterial, SurfaceBond};
 //!
 //! let sphere = Surface::icosphere(3, 1.0)?;
 //! let pairs = geodesic_pairs(&sphere, 0.5, GeodesicMethod::Edge)?;
-//! let cloud = Arc::new(PointCloud::of_surface(&sphere, sphere.vertex_areas(AreaRule::Barycentric))?);
+//! let cloud = Arc::new(sphere.points(sphere.vertex_areas(AreaRule::Barycentric))?);
 //! let material = PowerMaterial {
 //!     density: 1.0, kappa: 1.0, alpha: 0.5, p: 3.0, horizon: 0.5,
 //!     bond: SurfaceBond::Displacement, self_cell: false, critical_stretch: f64::INFINITY,
@@ -36,11 +35,11 @@
 mod assemble;
 mod bonds;
 mod breaking;
-mod force;
 mod kernels;
 mod law;
+mod surface_force;
 
 pub use assemble::SurfaceBody;
 pub use bonds::SurfaceBonds;
-pub use force::SurfaceForce;
 pub use law::{AnyExponent, ChordBond, DisplacementBond, Exponent, HalfInteger, SurfaceLaw};
+pub use surface_force::SurfaceForce;

@@ -1,7 +1,7 @@
 //! What a product costs, estimated from the sizes alone.
 //!
 //! Nothing is timed when the program runs: the route decides how results are rounded, and equal runs must give equal results. The constants
-//! were measured on one core of an AMD EPYC (AVX-512, 1 MiB L2 a core, 32 MiB L3) with `cargo bench -p pericles --bench linear`; only their
+//! were measured on one core of an AMD EPYC (AVX-512, 1 MiB L2 a core, 32 MiB L3) with `cargo bench --bench linear` in `benches/criterion`; only their
 //! ratios matter, and those move little from machine to machine.
 
 /// Measured time of a real transform forth and back with the product between, ns per point, at lengths 2^6, 2^7, … 2^22. The steps are

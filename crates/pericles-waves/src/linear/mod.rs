@@ -38,7 +38,8 @@
 //! any book on digital signal processing, such as Oppenheim & Schafer's.
 //!
 //! ```
-//! use pericles::operator::{Ends, LinearOperator, Toeplitz};
+//! use pericles::operator::LinearOperator;
+//! use pericles_waves::linear::{Ends, Toeplitz};
 //! // The second difference with free ends: a linear field has no force inside.
 //! let line = Toeplitz::stencil(5, &[1.0], Ends::Free).unwrap();
 //! let mut force = [0.0; 5];
