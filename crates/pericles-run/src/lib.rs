@@ -20,7 +20,7 @@
 //!
 //! // The folder is made once nothing in the deck can be wrong any more.
 //! let modelled = Modelled::of(&deck, &Means::default(), &mut |_| {})?;
-//! let folder = OutputFolder::create("plate".as_ref(), false)?;
+//! let folder = OutputFolder::create("plate", false)?;
 //! let mut run = Run::begin(&deck, text, modelled, folder)?;
 //!
 //! let cancel = Cancel::new();
