@@ -60,7 +60,7 @@ pub mod sweep;
 pub mod units;
 mod watch;
 
-pub use audit::{Audit, Start};
+pub use audit::Audit;
 pub use cancel::Cancel;
 pub use deadline::Deadline;
 pub use deck_text::DeckText;
@@ -68,7 +68,7 @@ pub use error::RunError;
 pub use event::{Event, Tell};
 pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
 pub use inputs::Inputs;
-pub use mirror::{MirrorError, Symmetries};
+pub use mirror::MirrorError;
 pub use modelled::{Caching, Means, Modelled, readers};
 pub use observers::picture_of;
 pub use report::{Report, Span, Status};
