@@ -87,7 +87,7 @@ impl Audit {
     ///
     /// # Errors
     /// A history that cannot be read.
-    pub fn of(
+    pub(crate) fn of(
         simulation: &Simulation,
         start: &Start,
         history: &Path,

@@ -1,4 +1,4 @@
-//! `--wall-time`: stopping while there is time for a checkpoint.
+//! Deadlines: stopping while there is time for a checkpoint.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,7 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// So long from now; none without a limit, or with one that no clock can count.
+    /// A deadline so long from now; none without a limit, or with one that no clock can count.
     pub fn from_now(limit: Option<Duration>) -> Option<Self> {
         let now = Instant::now();
         Some(Self {
@@ -23,17 +23,17 @@ impl Deadline {
     }
 
     /// The first step begins.
-    pub fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.before = Instant::now();
     }
 
     /// The time by which the run must have stopped.
-    pub fn end(&self) -> Instant {
+    pub(crate) fn end(&self) -> Instant {
         self.end
     }
 
     /// Whether another step, output included, and a checkpoint may no longer fit in; to be asked once after every step.
-    pub fn is_near(&mut self, checkpoint: Duration) -> bool {
+    pub(crate) fn is_near(&mut self, checkpoint: Duration) -> bool {
         let now = Instant::now();
         self.longest_step = self.longest_step.max(now - self.before);
         self.before = now;

@@ -13,7 +13,7 @@ pub struct DeckText {
     pub file: String,
     /// Its text.
     pub source: String,
-    /// The overrides from the command line.
+    /// The overrides, `key=value`.
     pub overrides: Vec<String>,
     /// The files that the deck names.
     #[serde(default, skip_serializing_if = "Inputs::is_empty")]

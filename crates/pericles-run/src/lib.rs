@@ -20,7 +20,7 @@
 //!
 //! // The folder is made once nothing in the deck can be wrong any more.
 //! let modelled = Modelled::of(&deck, &Means::default(), &mut |_| {})?;
-//! let folder = OutputFolder::create("plate".as_ref(), false)?;
+//! let folder = OutputFolder::create("plate", false)?;
 //! let mut run = Run::begin(&deck, text, modelled, folder)?;
 //!
 //! let cancel = Cancel::new();
@@ -60,7 +60,7 @@ pub mod sweep;
 pub mod units;
 mod watch;
 
-pub use audit::{Audit, Start};
+pub use audit::Audit;
 pub use cancel::Cancel;
 pub use deadline::Deadline;
 pub use deck_text::DeckText;
@@ -68,7 +68,7 @@ pub use error::RunError;
 pub use event::{Event, Tell};
 pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
 pub use inputs::Inputs;
-pub use mirror::{MirrorError, Symmetries};
+pub use mirror::MirrorError;
 pub use modelled::{Caching, Means, Modelled, readers};
 pub use observers::picture_of;
 pub use report::{Report, Span, Status};

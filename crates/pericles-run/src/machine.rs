@@ -1,4 +1,4 @@
-//! The machine a run runs on.
+//! The machine that a run uses: its name, its memory.
 
 use std::path::Path;
 

@@ -83,7 +83,7 @@ struct DeckRecord {
 
 impl Report {
     /// A report of a run that begins at `first_step`.
-    pub fn new(deck: &Deck, text: DeckText, facts: Facts, first_step: u64) -> Self {
+    pub(crate) fn new(deck: &Deck, text: DeckText, facts: Facts, first_step: u64) -> Self {
         Self {
             status: Status::Running,
             error: None,
@@ -118,7 +118,7 @@ impl Report {
     }
 
     /// Notes how far the run came and how fast.
-    pub fn note_progress(&mut self, simulation: &Simulation, wall_seconds: f64) {
+    pub(crate) fn note_progress(&mut self, simulation: &Simulation, wall_seconds: f64) {
         let state = simulation.state();
         let first_step = self.progress.first_step;
         let updates = (state.step - first_step) as f64 * self.model.directed_bonds as f64;
@@ -136,7 +136,7 @@ impl Report {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), RunError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), RunError> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');
         Ok(write_atomically(path, |file| {

@@ -71,12 +71,12 @@ impl Curves<'_> {
             }
             table.append(&cells)?;
         }
-        Ok(table.flush()?)
+        table.flush()
     }
 
     /// The picture: lattice as lines, continuum dashed.
     pub fn draw(&self, path: &Path, title: &str) -> Result<(), IoError> {
-        Ok(self.chart(title).write(path)?)
+        self.chart(title).write(path)
     }
 
     /// What is along the axis.
@@ -160,7 +160,7 @@ pub fn write_polar(
             .unzip();
         chart = chart.curve(Curve::line(*name, &x, &y));
     }
-    Ok(chart.write(picture)?)
+    chart.write(picture)
 }
 
 /// The classes of bonds with one column of coefficients for each table.
@@ -181,7 +181,7 @@ pub fn write_classes(
         cells.extend(tables.iter().map(|(_, alpha)| Cell::from(alpha[number])));
         csv.append(&cells)?;
     }
-    Ok(csv.flush()?)
+    csv.flush()
 }
 
 /// One bond of each pair ±ξ, for lattices whose axes are not alike.
@@ -195,5 +195,5 @@ pub fn write_bonds(path: &Path, lattice: &BondLattice) -> Result<(), IoError> {
         cells.extend([bond.length, bond.stiffness].map(Cell::from));
         csv.append(&cells)?;
     }
-    Ok(csv.flush()?)
+    csv.flush()
 }

@@ -36,7 +36,7 @@ pub fn write_spectrum(
             .unzip();
         chart = chart.curve(Curve::points(format!("{name}, measured"), &x, &y));
     }
-    Ok(chart.write(folder("peaks.png"))?)
+    chart.write(folder("peaks.png"))
 }
 
 fn write_peaks(
@@ -60,7 +60,7 @@ fn write_peaks(
         }
         table.append(&cells)?;
     }
-    Ok(table.flush()?)
+    table.flush()
 }
 
 /// Power on a grid of waves and bands of lines.
@@ -116,7 +116,7 @@ impl Map {
                 table.append(&[wave.abscissa.into(), omega.into(), (*power).into()])?;
             }
         }
-        Ok(table.flush()?)
+        table.flush()
     }
 
     /// Decibels below the largest power of each wave, and the time-discrete curve of the analysis on it.

@@ -109,7 +109,14 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             _ => tables.push((n, vec![(name, table.alpha)])),
         }
     }
-    for (n, list) in &tables {
+    write_figures(context, &tables)?;
+    rows.extend(states()?);
+    Ok(rows)
+}
+
+/// Writes the coefficients by N, and draws the methods over each other.
+fn write_figures(context: &Context<'_>, tables: &[(f64, NamedTables)]) -> Result<(), RunError> {
+    for (n, list) in tables {
         let model = model(StressState::PlaneStrain, *n)?;
         write_tables(context, &model, &format!("coefficients-{n}"), list)?;
         for (file, kind, bounded) in [
@@ -127,8 +134,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             write_comparison(context, &model, &file, &format!("plates, N = {n}"), &tables)?;
         }
     }
-    rows.extend(states()?);
-    Ok(rows)
+    Ok(())
 }
 
 /// α = 1: errors and anisotropy of long waves.

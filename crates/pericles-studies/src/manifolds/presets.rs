@@ -1,4 +1,4 @@
-//! The decks of the studies.
+//! The decks of the studies of this topic.
 
 use pericles_deck::Deck;
 use pericles_run::RunError;
@@ -6,7 +6,7 @@ use pericles_run::RunError;
 /// The paper of the topic.
 pub(super) const PAPER: &str = "Coclite et al. 2022";
 
-/// A deck inside the program.
+/// A deck inside the library.
 #[derive(Clone, Copy)]
 pub(super) struct Preset {
     pub(super) name: &'static str,

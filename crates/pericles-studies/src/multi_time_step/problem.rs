@@ -8,7 +8,7 @@ use pericles_run::RunError;
 /// The paper of the topic.
 pub(super) const PAPER: &str = "Liu et al. 2024, arXiv 2401.04966";
 
-/// A deck inside the program, with what decks cannot say.
+/// A deck inside the library, with what decks cannot say.
 pub(super) struct Problem {
     pub(super) file: &'static str,
     pub(super) text: &'static str,
