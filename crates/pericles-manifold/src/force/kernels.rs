@@ -111,7 +111,7 @@ fn force_rows_body<T: Lanes, L: SurfaceLaw>(
 ) {
     let u = bonds.checked(u);
     // No closure here: one that is not inlined would take the baseline's instructions.
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
         let mut total = [T::splat(0.0); 3];
@@ -139,7 +139,7 @@ fn energy_rows_body<T: Lanes, L: SurfaceLaw>(
     out: &mut [&mut [f64]; 1],
 ) {
     let u = bonds.checked(u);
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
         let mut total = T::splat(0.0);
@@ -163,7 +163,7 @@ fn tangent_rows_body<T: Lanes, L: SurfaceLaw>(
     out: &mut [&mut [f64]; 3],
 ) {
     let (u, direction) = (bonds.checked(u), bonds.checked(direction));
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
         let direction_here: [T; 3] = Bonds::here(direction, i);

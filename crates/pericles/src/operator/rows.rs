@@ -44,7 +44,7 @@ impl<'a> Rows<'a> {
 
     /// Number of wanted points.
     #[inline(always)]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         match &self.which {
             Which::Range(range) => range.len(),
             Which::Set(set) => set.len(),

@@ -122,7 +122,7 @@ fn force_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
 ) {
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let intact = &intact[groups_of(bonds.list, i, rows.first)];
         let fast = fast_force::<T, L, D>(bonds, u, i, intact);
@@ -144,7 +144,7 @@ fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     tally: &mut Tally,
 ) {
     let watch = T::splat(rule.threshold * WATCH);
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let intact = &mut intact[groups_of(bonds.list, i, rows.first)];
         // Once more if bonds have broken: a loop, so that the compiler has one copy of its body.
@@ -167,7 +167,7 @@ fn energy_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; 1],
 ) {
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let here = bonds.here::<T, D>(i, u);
         let groups = groups_of(bonds.list, i, rows.first);
@@ -191,7 +191,7 @@ fn tangent_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
 ) {
-    for k in 0..rows.len() {
+    for k in 0..rows.count() {
         let i = rows.at(k);
         let here = bonds.here::<T, D>(i, u);
         let direction_here: [T; D] = vector(|c| T::splat(direction[i][c]));
