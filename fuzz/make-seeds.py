@@ -120,9 +120,9 @@ def points():
 
 
 def checkpoint():
-    entry = {"name": "u", "type": "u8", "len": 4, "stored": 0, "crc32": 0, "codec": "shuffle+zstd"}
-    # A frame of zstd that holds its bytes as they are.
-    frame = bytes.fromhex("28b52ffd") + bytes([0x20, 4]) + bytes([0x21, 0, 0]) + b"abcd"
+    entry = {"name": "u", "type": "u8", "len": 4, "stored": 0, "crc32": 0, "codec": "shuffle+lz4"}
+    # An LZ4 frame that holds its bytes as they are: header, one block marked as uncompressed, end mark.
+    frame = bytes.fromhex("04224d18604082") + struct.pack("<I", 4 | 1 << 31) + b"abcd" + bytes(4)
     header = {"metadata": {"step": 1}, "sections": [dict(entry, stored=len(frame)), dict(entry, name="v", stored=len(frame))]}
     write("checkpoint", "two", json.dumps(header, separators=(",", ":")).encode() + b"\n" + frame + frame)
     write("checkpoint", "none", '{"metadata":null,"sections":[]}\n')

@@ -12,7 +12,7 @@
 //! | … | the sections in the order of the header, without gaps, up to the end of the file |
 //!
 //! A section's bytes are shuffled (all first bytes of some 65536 elements, then all second bytes …), which puts the slowly varying
-//! exponents side by side, and compressed with zstd at level 1; `crc32` is that of the `stored` bytes. Every size is checked against
+//! exponents side by side, and compressed as an LZ4 frame; `crc32` is that of the `stored` bytes. Every size is checked against
 //! the length of the file before anything is read, and no section is decoded before its CRC-32 has been checked.
 //!
 //! [`CheckpointFolder`] keeps the last two of them, so that one is left whatever happens to the other.

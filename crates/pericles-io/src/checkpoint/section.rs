@@ -2,14 +2,12 @@
 
 use std::io::{self, Read, Write};
 
+use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use pericles::Values;
 use serde::{Deserialize, Serialize};
 
 /// Elements that are shuffled together; bounds the memory that coding needs.
 const CHUNK: usize = 1 << 16;
-
-/// zstd's level: the fastest that still compresses shuffled numbers well.
-const LEVEL: i32 = 1;
 
 /// The values of one section.
 #[derive(Debug, Clone)]
@@ -87,8 +85,8 @@ impl Kind {
 /// How the bytes are stored, as the header names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Codec {
-    #[serde(rename = "shuffle+zstd")]
-    ShuffleZstd,
+    #[serde(rename = "shuffle+lz4")]
+    ShuffleLz4,
 }
 
 impl Section {
@@ -159,21 +157,21 @@ macro_rules! element {
 element!(f64, u64, u32, u8);
 
 fn encode<T: Element>(values: &[T], out: impl Write) -> io::Result<()> {
-    let mut zstd = zstd::stream::write::Encoder::new(out, LEVEL)?;
+    let mut lz4 = FrameEncoder::new(out);
     let mut shuffled = Vec::with_capacity(CHUNK.min(values.len()) * T::WIDTH);
     for chunk in values.chunks(CHUNK) {
         shuffled.clear();
         for k in 0..T::WIDTH {
             shuffled.extend(chunk.iter().map(|value| value.byte(k)));
         }
-        zstd.write_all(&shuffled)?;
+        lz4.write_all(&shuffled)?;
     }
-    zstd.finish()?;
+    lz4.finish().map_err(io::Error::from)?;
     Ok(())
 }
 
 fn decode<T: Element>(len: u64, stored: impl Read) -> io::Result<Vec<T>> {
-    let mut zstd = zstd::stream::read::Decoder::new(stored)?;
+    let mut lz4 = FrameDecoder::new(stored);
     let mut values = Vec::new();
     let mut shuffled = Vec::new();
     let mut left = len;
@@ -181,11 +179,11 @@ fn decode<T: Element>(len: u64, stored: impl Read) -> io::Result<Vec<T>> {
         // No more than u32 elements, so the number fits everywhere. The vector grows with what is really there, not with `len`.
         let count = left.min(CHUNK as u64) as usize;
         shuffled.resize(count * T::WIDTH, 0);
-        zstd.read_exact(&mut shuffled)?;
+        lz4.read_exact(&mut shuffled)?;
         values.extend((0..count).map(|i| T::from_bytes(|k| shuffled[k * count + i])));
         left -= count as u64;
     }
-    if zstd.read(&mut [0])? > 0 {
+    if lz4.read(&mut [0])? > 0 {
         return Err(io::Error::new(
             io::ErrorKind::InvalidData,
             "more values than announced",
@@ -199,11 +197,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stored_form_is_zstd_of_shuffled_little_endian_bytes() {
+    fn the_stored_form_is_lz4_of_shuffled_little_endian_bytes() {
         let mut stored = Vec::new();
         let section = Section::U32(vec![0x0403_0201, 0x1413_1211, 0x2423_2221]);
         section.encode(&mut stored).unwrap();
-        let plain = zstd::stream::decode_all(&stored[..]).unwrap();
+        let mut plain = Vec::new();
+        let mut frame = FrameDecoder::new(&stored[..]);
+        frame.read_to_end(&mut plain).unwrap();
         assert_eq!(
             plain,
             [1, 0x11, 0x21, 2, 0x12, 0x22, 3, 0x13, 0x23, 4, 0x14, 0x24]
