@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::function::{Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction};
 use pericles::Interrupt;
 use pericles::Saved;
+use pericles::StepKind;
 use pericles::operator::{FunctionOf, On};
 use pericles::parallel::BLOCK;
 use pericles::time::{Integrator, State, refuse_changes_of_support};
@@ -345,6 +346,10 @@ fn subtract(y: &mut [f64], x: &[f64]) {
 impl Integrator for Trigonometric {
     fn name(&self) -> &'static str {
         NAME
+    }
+
+    fn step_kind(&self) -> StepKind {
+        StepKind::Flow
     }
 
     fn order(&self) -> u32 {

@@ -1,5 +1,6 @@
 //! Absorbing ends of a model.
 
+use pericles::StepKind;
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
@@ -47,11 +48,12 @@ impl Deck {
         for (k, boundary) in self.boundaries.iter().enumerate() {
             let path = Path::from("boundary").index(k);
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
-            let scheme = integrator.name();
+            let kind = integrator.step_kind();
             let wrong_scheme = |what, needed| {
                 let error = AbsorbingError::Scheme {
                     what,
-                    scheme,
+                    scheme: integrator.name(),
+                    kind,
                     needed,
                 };
                 self.at("time.scheme", error.into())
@@ -62,14 +64,13 @@ impl Deck {
                 exterior_data,
             } = *boundary
             else {
-                let needed = LatticeScheme::VelocityVerlet.names();
-                if needed.contains(&scheme) {
+                if kind == StepKind::EndOfStep {
                     continue;
                 }
-                return Err(wrong_scheme("a damping layer", needed));
+                return Err(wrong_scheme("a damping layer", &[StepKind::EndOfStep]));
             };
-            let Some(scheme) = LatticeScheme::of(scheme) else {
-                return Err(wrong_scheme("an absorbing end", LatticeScheme::NAMES));
+            let Some(scheme) = LatticeScheme::of(kind) else {
+                return Err(wrong_scheme("an absorbing end", LatticeScheme::KINDS));
             };
             if scheme != LatticeScheme::VelocityVerlet && exterior_data.is_some() {
                 let what = "exterior_data";

@@ -1,8 +1,9 @@
 //! The end of a bar that lets waves leave, stepped by velocity Verlet.
 
 use super::history::History;
-use super::{AbsorbingError, FreeWave, LatticeScheme, OuterLayer};
+use super::{AbsorbingError, FreeWave, OuterLayer};
 use pericles::Result;
+use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange};
 use pericles::operator::Accepted;
 use pericles::{Archive, Saved, Values};
@@ -119,8 +120,8 @@ impl Boundary for AbsorbingEnd {
         }
     }
 
-    fn schemes(&self) -> &'static [&'static str] {
-        LatticeScheme::VelocityVerlet.names()
+    fn step_kinds(&self) -> &'static [StepKind] {
+        &[StepKind::EndOfStep]
     }
 
     fn steps(&self) -> Option<u64> {

@@ -1,18 +1,11 @@
 //! What an absorbing end refuses.
 
-/// The names with commas and an "or".
-fn listed(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_string(),
-        [all @ .., last] => format!("{} or {last}", all.join(", ")),
-    }
-}
+use pericles::{StepKind, schemes_of};
 
 /// The reason behind a scheme that one may expect to work.
-fn why_not(scheme: &str) -> &'static str {
-    match scheme {
-        "trigonometric" => {
+fn why_not(kind: StepKind) -> &'static str {
+    match kind {
+        StepKind::Flow => {
             ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
         }
         _ => "",
@@ -223,16 +216,18 @@ pub enum AbsorbingError {
     /// A scheme that the history is not made for.
     #[error(
         "{what} is made for {}, not for {scheme}{}",
-        listed(needed),
-        why_not(scheme)
+        schemes_of(needed),
+        why_not(*kind)
     )]
     Scheme {
         /// The boundary.
         what: &'static str,
         /// The scheme of the run.
         scheme: &'static str,
-        /// The schemes of the boundary.
-        needed: &'static [&'static str],
+        /// Where it takes the forces.
+        kind: StepKind,
+        /// What the boundary is made for.
+        needed: &'static [StepKind],
     },
     /// What needs an explicit scheme.
     #[error(

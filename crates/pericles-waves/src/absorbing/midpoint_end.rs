@@ -1,8 +1,9 @@
 //! The end of a bar that lets waves leave, stepped by the implicit midpoint rule.
 
 use super::history::History;
-use super::{AbsorbingError, LatticeScheme, LatticeStep, OuterLayer};
+use super::{AbsorbingError, LatticeStep, OuterLayer};
 use pericles::Result;
+use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange, WithinStep};
 use pericles::operator::Accepted;
 use pericles::{Archive, Saved, Values};
@@ -145,8 +146,8 @@ impl Boundary for MidpointEnd {
         self.add_present(acceleration);
     }
 
-    fn schemes(&self) -> &'static [&'static str] {
-        LatticeScheme::Midpoint.names()
+    fn step_kinds(&self) -> &'static [StepKind] {
+        &[StepKind::Middle]
     }
 
     fn steps(&self) -> Option<u64> {

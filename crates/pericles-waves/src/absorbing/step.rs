@@ -1,6 +1,7 @@
 //! How the lattice beyond an end is stepped in time.
 
 use nalgebra::Complex;
+use pericles::StepKind;
 
 use super::roots::factor_at;
 use super::{AbsorbingError, LatticeStencil};
@@ -16,21 +17,15 @@ pub enum LatticeScheme {
 }
 
 impl LatticeScheme {
-    /// The schemes of decks that have a symbol known here.
-    pub const NAMES: &[&str] = &["velocity-verlet", "implicit-midpoint", "trapezoidal"];
+    /// The kinds of steps that have a symbol known here.
+    pub const KINDS: &[StepKind] = &[StepKind::EndOfStep, StepKind::Middle];
 
-    /// That of a scheme by its name in decks; none for those that ends cannot follow.
-    pub fn of(scheme: &str) -> Option<Self> {
-        let all = [Self::VelocityVerlet, Self::Midpoint];
-        all.into_iter().find(|one| one.names().contains(&scheme))
-    }
-
-    /// The schemes of decks that it is the symbol of.
-    pub fn names(self) -> &'static [&'static str] {
-        let (explicit, implicit) = Self::NAMES.split_at(1);
-        match self {
-            Self::VelocityVerlet => explicit,
-            Self::Midpoint => implicit,
+    /// That of a kind of step; none for those that ends cannot follow.
+    pub fn of(kind: StepKind) -> Option<Self> {
+        match kind {
+            StepKind::EndOfStep => Some(Self::VelocityVerlet),
+            StepKind::Middle => Some(Self::Midpoint),
+            StepKind::Flow | StepKind::Stages => None,
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::error::{PericlesError, Result};
 use crate::operator::Accepted;
 use crate::scalar::PointScalar;
 use crate::space::{Face, PointCloud};
+use crate::step_kind::StepKind;
 
 /// How the damping of a layer grows inwards from its inner face to the side of the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,8 +180,8 @@ impl Boundary for DampingLayer {
         }
     }
 
-    fn schemes(&self) -> &'static [&'static str] {
-        &["velocity-verlet"]
+    fn step_kinds(&self) -> &'static [StepKind] {
+        &[StepKind::EndOfStep]
     }
 }
 

@@ -14,6 +14,7 @@ pub use table::TimeTable;
 
 use crate::archive::Saved;
 use crate::operator::Accepted;
+use crate::step_kind::StepKind;
 
 /// What a boundary gave the body over a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -56,8 +57,8 @@ pub trait Boundary: Saved + Send + Sync {
     /// Called after the accelerations of a stage are known; may change them.
     fn after_stage(&mut self, t: f64, u: &[f64], v: &[f64], acceleration: &mut [f64]);
 
-    /// The schemes it works with, by their names in decks; empty if any.
-    fn schemes(&self) -> &'static [&'static str] {
+    /// The kinds of steps it is made for; empty if any.
+    fn step_kinds(&self) -> &'static [StepKind] {
         &[]
     }
 

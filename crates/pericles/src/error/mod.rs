@@ -2,8 +2,9 @@
 
 mod text;
 
+use crate::step_kind::{StepKind, schemes_of};
 use crate::units::{precise, quantity};
-use text::{inner_iteration, listed, no_equilibrium, spacings_that_fit};
+use text::{inner_iteration, no_equilibrium, spacings_that_fit};
 
 /// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -351,13 +352,13 @@ pub enum PericlesError {
     /// A boundary that the scheme of the run cannot take along.
     #[error(
         "absorbing end: a boundary of this run is made for {}, not for {scheme}",
-        listed(needed)
+        schemes_of(needed)
     )]
     BoundaryScheme {
         /// The scheme of the run.
         scheme: &'static str,
-        /// The schemes of the boundary.
-        needed: &'static [&'static str],
+        /// The kinds of steps that the boundary is made for.
+        needed: &'static [StepKind],
     },
     /// A run longer than what a boundary is made for.
     #[error(

@@ -72,12 +72,3 @@ fn capital(sentence: &str) -> String {
         None => sentence.to_owned(),
     }
 }
-
-/// The names with commas and an "or".
-pub(super) fn listed(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_string(),
-        [all @ .., last] => format!("{} or {last}", all.join(", ")),
-    }
-}

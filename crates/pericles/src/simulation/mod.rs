@@ -269,10 +269,11 @@ impl Simulation {
 
     /// Boundaries with memory are made for a scheme and a number of steps.
     fn check_boundaries(&self) -> Result<(), PericlesError> {
-        let (scheme, steps) = (self.integrator.name(), self.steps);
+        let (kind, steps) = (self.integrator.step_kind(), self.steps);
         for boundary in self.system.boundaries() {
-            let needed = boundary.schemes();
-            if !needed.is_empty() && !needed.contains(&scheme) {
+            let needed = boundary.step_kinds();
+            if !needed.is_empty() && !needed.contains(&kind) {
+                let scheme = self.integrator.name();
                 return Err(PericlesError::BoundaryScheme { scheme, needed });
             }
             if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {

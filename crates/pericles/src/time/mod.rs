@@ -39,6 +39,7 @@ use crate::accounts::Completed;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
+use crate::step_kind::StepKind;
 use crate::system::System;
 
 /// The state of a body: structure of arrays, component-major.
@@ -116,6 +117,11 @@ impl Saved for State {
 pub trait Integrator: Saved + Send {
     /// Name as in decks.
     fn name(&self) -> &'static str;
+
+    /// Where within a step it takes the forces: what boundaries with a memory depend on.
+    fn step_kind(&self) -> StepKind {
+        StepKind::Stages
+    }
 
     /// Order of the error in dt.
     fn order(&self) -> u32;

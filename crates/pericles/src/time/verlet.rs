@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::operator::Accepted;
 use crate::parallel::BLOCK;
+use crate::step_kind::StepKind;
 use crate::system::System;
 
 /// v ← v + dt/2 a, u ← u + dt v, a ← a(u), v ← v + dt/2 a (Swope et al. 1982; the Störmer–Verlet method).
@@ -20,6 +21,10 @@ pub struct VelocityVerlet;
 impl Integrator for VelocityVerlet {
     fn name(&self) -> &'static str {
         "velocity-verlet"
+    }
+
+    fn step_kind(&self) -> StepKind {
+        StepKind::EndOfStep
     }
 
     fn order(&self) -> u32 {

@@ -4,9 +4,10 @@ use realfft::num_complex::Complex;
 
 use super::lattice::{Matrix, StripLattice};
 use crate::absorbing::history::{BlockedHistory, History};
-use crate::absorbing::{GhostKernels, LatticeScheme, Side};
+use crate::absorbing::{GhostKernels, Side};
 use crate::linear::LineTransform;
 use pericles::Result;
+use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange};
 use pericles::operator::Accepted;
 use pericles::{Archive, Saved, Values};
@@ -180,8 +181,8 @@ impl Boundary for StripEnd {
         }
     }
 
-    fn schemes(&self) -> &'static [&'static str] {
-        LatticeScheme::VelocityVerlet.names()
+    fn step_kinds(&self) -> &'static [StepKind] {
+        &[StepKind::EndOfStep]
     }
 
     fn steps(&self) -> Option<u64> {

@@ -15,6 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::parallel::{BLOCK, ordered_sum};
 use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
+use crate::step_kind::StepKind;
 use crate::system::System;
 
 /// Where the force of a step is taken.
@@ -360,6 +361,10 @@ fn good_enough(solved: Result<()>, accepted: f64) -> Result<()> {
 impl Integrator for Implicit {
     fn name(&self) -> &'static str {
         self.rule.name()
+    }
+
+    fn step_kind(&self) -> StepKind {
+        StepKind::Middle
     }
 
     fn order(&self) -> u32 {
