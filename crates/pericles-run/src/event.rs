@@ -24,7 +24,7 @@ pub enum Event<'a> {
         /// The last step of the run.
         steps: u64,
     },
-    /// A step has been made.
+    /// A step has been made, and it was not the last.
     Step {
         /// Its number.
         step: u64,
