@@ -42,7 +42,7 @@ pub struct MidpointEnd {
 }
 
 impl MidpointEnd {
-    /// An end whose history gives the ghosts of the layer, with the kernels of [`LatticeScheme::Midpoint`].
+    /// An end whose history gives the ghosts of the layer, with the kernels of [`LatticeScheme::Midpoint`](super::LatticeScheme::Midpoint).
     ///
     /// # Errors
     /// A step that is not positive.
