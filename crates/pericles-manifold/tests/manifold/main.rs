@@ -1,0 +1,4 @@
+//! Tests of the crate in one program: what is generic is compiled once for all of them.
+
+mod manifolds;
+mod surface;

@@ -1,0 +1,15 @@
+//! Tests of the engine in one program: the generic loops are compiled once for all of them.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod dynamics;
+mod fragments;
+mod grid;
+mod guard;
+mod implicit;
+mod list;
+mod multi_time_step;
+mod properties;
+mod single_precision;
+mod statics;
+mod surface_correction;
