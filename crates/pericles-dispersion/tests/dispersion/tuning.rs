@@ -66,8 +66,10 @@ fn method(name: &str) -> Method {
         .unwrap()
 }
 
-const BAR: &str = include_str!("../../../../validation/dispersion-and-fracture/one-dimensional.csv");
-const PLATE: &str = include_str!("../../../../validation/dispersion-and-fracture/two-dimensional.csv");
+const BAR: &str =
+    include_str!("../../../../validation/dispersion-and-fracture/one-dimensional.csv");
+const PLATE: &str =
+    include_str!("../../../../validation/dispersion-and-fracture/two-dimensional.csv");
 
 #[test]
 fn one_dimension() {
