@@ -1,6 +1,6 @@
 //! The bonds of a lattice on a periodic box.
 
-use pericles::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
 use pericles::parallel::{BLOCK, components, components_mut, for_each_block, ordered_sum};
 use pericles::{Archive, Saved};
 use pericles::{PericlesError, Result};
@@ -202,10 +202,6 @@ impl ForceOperator for PeriodicForce {
             .map(|s| 2.0 * s.factor.abs() * s.length * s.length)
             .sum();
         (sum / least).sqrt()
-    }
-
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
-        self.add_force(accepted.t, accepted.u, on, out);
     }
 
     fn tangent_into(&self, t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {

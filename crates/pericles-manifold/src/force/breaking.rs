@@ -9,7 +9,7 @@ use pericles::operator::CoarseBreak;
 use pericles::operator::On;
 use pericles::operator::records::Records;
 use pericles::parallel::BLOCK;
-use pericles::{Archive, Values};
+use pericles::{Archive, BreakingBond, StepEnd, Values};
 use pericles::{PericlesError, Result};
 
 /// What is broken, and what it takes to break the rest. A broken bond has weight zero.
@@ -26,9 +26,7 @@ pub(super) struct Breaking {
 
 /// The end of a step as breaking sees it.
 pub(super) struct Step<'a> {
-    pub u: &'a [f64],
-    /// Mean velocity and length of the step, if the force acted for half of it only.
-    pub path: Option<(&'a [f64], f64)>,
+    pub end: &'a StepEnd<'a>,
     pub areas: &'a [f64],
     pub reference: &'a Records,
     /// Marks of the points whose bonds are decided; all of them if none.
@@ -81,7 +79,7 @@ impl Breaking {
             let (bonds, limits) = (&*bonds, &self.limits);
             let counts = |j: usize| step.partners.is_none_or(|marks| marks[j]);
             let over = move |&(entry, j): &(usize, usize)| {
-                counts(j) && is_over(bonds, entry, step.u, [i, j], limits[entry])
+                counts(j) && is_over(bonds, entry, step.end.u, [i, j], limits[entry])
             };
             let rows = bonds.row(i).filter(over);
             rows.map(move |(entry, j)| (i, entry, j))
@@ -106,24 +104,23 @@ impl Breaking {
             } else {
                 [0.0; 3]
             };
-            let eta = difference(step.u, n, i, j);
-            let mut energy = law.energy(lanes(xi), lanes(eta)).0[0];
-            let force = law.force(lanes(xi), lanes(eta)).map(|force| force.0[0]);
-            if let Some((velocity, dt)) = step.path {
-                let rate = difference(velocity, n, i, j);
-                let power: f64 = (0..3).map(|c| force[c] * rate[c]).sum();
-                energy -= 0.5 * dt * power;
-            }
-            let factor = step.areas[i] * weight;
-            self.dissipated += factor * energy;
+            let eta = difference(step.end.u, n, i, j);
             // A chord's elongation at the critical |η| depends on the direction of η: its energy there is not known.
-            if !L::CHORD {
+            let critical = (!L::CHORD).then(|| {
                 let square: f64 = eta.iter().map(|x| x * x).sum();
                 let part = (self.limits[entry] / square).sqrt();
-                let critical = law.energy(lanes(xi), lanes(eta.map(|x| part * x))).0[0];
-                let coarse = CoarseBreak::of([i, j], force, factor * energy, factor * critical);
-                self.coarse.extend(coarse);
-            }
+                law.energy(lanes(xi), lanes(eta.map(|x| part * x))).0[0]
+            });
+            let bond = BreakingBond {
+                ends: [i, j],
+                force: law.force(lanes(xi), lanes(eta)).map(|force| force.0[0]),
+                energy: law.energy(lanes(xi), lanes(eta)).0[0],
+                critical,
+                weight: step.areas[i] * weight,
+            };
+            let dissipated = step.end.dissipated(&bond);
+            self.dissipated += dissipated;
+            self.coarse.extend(CoarseBreak::of(&bond, dissipated));
             self.cut(bonds, entry);
             let back = bonds.row(j).find(|&(_, other)| other == i);
             if let Some((back, _)) = back {

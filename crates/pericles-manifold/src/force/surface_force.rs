@@ -13,11 +13,11 @@ use pericles::lanes::Row;
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;
-use pericles::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use pericles::operator::{CoarseBreak, each_once};
+use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use pericles::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
 use pericles::space::PointCloud;
-use pericles::{Archive, Saved};
+use pericles::{Archive, Saved, StepEnd};
 
 /// (K u)_i = Σ_j w_ij A_j f(η_ij) over the bonds of a surface: force per area, N/m².
 ///
@@ -110,16 +110,9 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         });
     }
 
-    fn decide(
-        &mut self,
-        u: &[f64],
-        path: Option<(&[f64], f64)>,
-        on: &On<'_>,
-        partners: Option<&[bool]>,
-    ) {
+    fn decide(&mut self, step: &StepEnd<'_>, on: &On<'_>, partners: Option<&[bool]>) {
         let step = Step {
-            u,
-            path,
+            end: step,
             areas: self.cloud.volumes(),
             reference: &self.reference,
             partners,
@@ -170,14 +163,9 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
         (largest * self.law.stiffness_at_rest()).sqrt()
     }
 
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
-        let path = Some((accepted.mean_velocity, accepted.dt));
-        self.decide(accepted.u, path, &on, None);
-        self.add_force(accepted.t, accepted.u, on, out);
-    }
-
-    fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
-        self.decide(u, None, &on, None);
+    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+        self.decide(step, &on, None);
+        self.add_force(step.t, step.u, on, out);
     }
 
     fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
@@ -301,16 +289,15 @@ impl<L: SurfaceLaw> ZonedForce for SurfaceForce<L> {
         self.add_force_of(&bonds, u, &on, out);
     }
 
-    fn accept_and_force_from(
+    fn end_step_from(
         &mut self,
-        accepted: Accepted<'_>,
+        step: &StepEnd<'_>,
         on: On<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
-        let path = Some((accepted.mean_velocity, accepted.dt));
-        self.decide(accepted.u, path, &on, Some(partners));
-        self.add_force_from(accepted.t, accepted.u, on, partners, out);
+        self.decide(step, &on, Some(partners));
+        self.add_force_from(step.t, step.u, on, partners, out);
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

@@ -3,9 +3,9 @@
 use super::history::History;
 use super::{AbsorbingError, FreeWave, OuterLayer};
 use pericles::Result;
+use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange};
-use pericles::operator::Accepted;
 use pericles::{Archive, Saved, Values};
 
 /// Weight of the initial displacement in the history: velocity Verlet starts with half a kick, the trapezoidal rule with half a weight.
@@ -100,16 +100,16 @@ impl AbsorbingEnd {
 }
 
 impl Boundary for AbsorbingEnd {
-    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+    fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
         for (own, &i) in self.own.iter_mut().zip(&self.layer.points) {
-            *own = accepted.u[i];
+            *own = step.u[i];
         }
         self.advance();
         let mut exchange = Exchange::default();
         for (p, &i) in self.layer.points.iter().enumerate() {
             let mean = 0.5 * self.layer.mass * (self.pull[p] + self.pull_before[p]);
-            exchange.work += mean * accepted.mean_velocity[i] * accepted.dt;
-            exchange.impulse[0] += mean * accepted.dt;
+            exchange.work += mean * step.mean_velocity(i) * step.dt;
+            exchange.impulse[0] += mean * step.dt;
         }
         exchange
     }

@@ -3,9 +3,9 @@
 use super::history::History;
 use super::{AbsorbingError, LatticeStep, OuterLayer};
 use pericles::Result;
+use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange, WithinStep};
-use pericles::operator::Accepted;
 use pericles::{Archive, Saved, Values};
 
 /// An absorbing end for the implicit midpoint rule and, its exterior being linear, the trapezoidal rule.
@@ -126,10 +126,10 @@ impl MidpointEnd {
 }
 
 impl Boundary for MidpointEnd {
-    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+    fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
         std::mem::swap(&mut self.own, &mut self.before);
         for (own, &i) in self.own.iter_mut().zip(&self.layer.points) {
-            *own = accepted.u[i];
+            *own = step.u[i];
         }
         let exchange = match self.started {
             true => self.end_step(),

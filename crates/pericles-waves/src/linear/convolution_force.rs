@@ -15,9 +15,7 @@ use pericles::Saved;
 use pericles::family::{Crack, VolumeCorrection};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
-use pericles::operator::{
-    Accepted, ForceOperator, InstructionSet, LatticeSprings, LinearOperator, On,
-};
+use pericles::operator::{ForceOperator, InstructionSet, LatticeSprings, LinearOperator, On};
 use pericles::parallel::{components, components_mut};
 use pericles::space::{Lattice, PointCloud};
 use pericles::{PericlesError, Result};
@@ -310,10 +308,6 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
             (0..self.points()).fold(0.0f64, |largest, i| largest.max(2.0 * row(i) / density(i)));
         // A bound must not fall below the truth by the transforms' rounding.
         (largest * (1.0 + 1e-12)).sqrt()
-    }
-
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
-        self.add(accepted.u, &on, out);
     }
 
     fn tangent_into(&self, _t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {

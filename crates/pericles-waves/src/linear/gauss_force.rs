@@ -10,7 +10,7 @@ use pericles::Saved;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
-use pericles::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
 
@@ -248,10 +248,6 @@ impl ForceOperator for GaussForce {
         let largest =
             (0..self.points()).fold(0.0f64, |largest, i| largest.max(2.0 * row(i) / density(i)));
         (largest * (1.0 + 1e-12)).sqrt()
-    }
-
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
-        self.add_force(accepted.t, accepted.u, on, out);
     }
 
     fn tangent_into(&self, _t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {

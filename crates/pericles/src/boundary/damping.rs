@@ -3,9 +3,9 @@
 use super::{Boundary, Exchange};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
-use crate::operator::Accepted;
 use crate::scalar::PointScalar;
 use crate::space::{Face, PointCloud};
+use crate::step_end::StepEnd;
 use crate::step_kind::StepKind;
 
 /// How the damping of a layer grows inwards from its inner face to the side of the body.
@@ -153,17 +153,16 @@ fn depths(cloud: &PointCloud, face: Face, thickness: f64) -> Vec<f64> {
 }
 
 impl Boundary for DampingLayer {
-    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
+    fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
         std::mem::swap(&mut self.pull, &mut self.pull_before);
         let mut exchange = Exchange::default();
         let count = self.points.len();
         for c in 0..self.dimension {
             for (p, &i) in self.points.iter().enumerate() {
-                let velocity = accepted.mean_velocity[c * self.total + i];
+                let velocity = step.mean_velocity(c * self.total + i);
                 let k = c * count + p;
                 self.pull[k] = -self.damping[p] * velocity;
-                let impulse =
-                    0.5 * self.mass[p] * (self.pull[k] + self.pull_before[k]) * accepted.dt;
+                let impulse = 0.5 * self.mass[p] * (self.pull[k] + self.pull_before[k]) * step.dt;
                 exchange.work += impulse * velocity;
                 exchange.impulse[c] += impulse;
             }

@@ -13,7 +13,7 @@ pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use table::TimeTable;
 
 use crate::archive::Saved;
-use crate::operator::Accepted;
+use crate::step_end::StepEnd;
 use crate::step_kind::StepKind;
 
 /// What a boundary gave the body over a step.
@@ -49,8 +49,8 @@ pub trait Boundary: Saved + Send + Sync {
 
     /// Called once for the initial state and for every accepted one, before [`Boundary::after_stage`] is called for it: here memory goes on. Returns what the
     /// boundary did to the body over the step that ended, which has length 0 at the start.
-    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
-        let _ = accepted;
+    fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
+        let _ = step;
         Exchange::default()
     }
 

@@ -2,6 +2,7 @@
 
 use crate::archive::{Archive, Counter, Values};
 use crate::error::Result;
+use crate::step_end::{BreakingBond, StepEnd};
 
 /// How damage weighs bonds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,7 +32,7 @@ pub(super) struct BreakEvent {
 
 /// A bond that a step too coarse for it broke: the energy booked for it is far from what it stored at its critical stretch.
 ///
-/// The work of its force over the step decides what a breaking bond dissipates ([`ForceOperator::accept_and_force`](super::ForceOperator::accept_and_force)). A bond that was compressed at the
+/// The work of its force over the step decides what a breaking bond dissipates ([`StepEnd::dissipated`]). A bond that was compressed at the
 /// start of the step and is over-stretched at its end has negative work booked, as if breaking made energy; one that was pulled far beyond its critical stretch dissipates many times its energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoarseBreak {
@@ -69,36 +70,28 @@ pub(super) struct BlockDamage {
 }
 
 impl CoarseBreak {
-    /// A bond that broke with this force and dissipated so much, J, where it should be about `critical`; none if that is near enough.
-    pub fn of<const D: usize>(
-        ends: [usize; 2],
-        force: [f64; D],
-        dissipated: f64,
-        critical: f64,
-    ) -> Option<Self> {
+    /// A bond that broke and dissipated so much, J, if that is far from its energy at the critical stretch; none where that energy is not known.
+    pub fn of<const D: usize>(bond: &BreakingBond<D>, dissipated: f64) -> Option<Self> {
+        let critical = bond.weight * bond.critical?;
         let resolved = critical * RESOLVED.start()..=critical * RESOLVED.end();
-        let [i, j] = ends.map(|end| end as u32);
+        let [i, j] = bond.ends.map(|end| end as u32);
         (!resolved.contains(&dissipated)).then(|| Self {
             points: [i.min(j), i.max(j)],
-            along: std::array::from_fn(|c| force.get(c).copied().unwrap_or(0.0)),
+            along: std::array::from_fn(|c| bond.force.get(c).copied().unwrap_or(0.0)),
             missing: critical - dissipated,
         })
     }
 }
 
 impl Tally {
-    /// Books half of a bond's energy `dissipated`, J, for one of its ends; the other arguments are those of [`CoarseBreak::of`].
-    pub fn book<const D: usize>(
-        &mut self,
-        ends: [usize; 2],
-        force: [f64; D],
-        dissipated: f64,
-        critical: f64,
-    ) {
-        self.dissipated += 0.5 * dissipated;
+    /// Books half of what a bond dissipates at the end of a step for one of its ends; returns that half, J.
+    pub fn book<const D: usize>(&mut self, step: &StepEnd<'_>, bond: &BreakingBond<D>) -> f64 {
+        let dissipated = step.dissipated(bond);
+        let half = 0.5 * dissipated;
+        self.dissipated += half;
         self.broken.add(1);
-        self.coarse
-            .extend(CoarseBreak::of(ends, force, dissipated, critical));
+        self.coarse.extend(CoarseBreak::of(bond, dissipated));
+        half
     }
 }
 

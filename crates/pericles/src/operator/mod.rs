@@ -45,19 +45,7 @@ pub use crate::lanes::InstructionSet;
 pub use crate::parallel::On;
 
 use crate::archive::Saved;
-
-/// A state at the end of an accepted step.
-#[derive(Debug, Clone, Copy)]
-pub struct Accepted<'a> {
-    /// Time, s.
-    pub t: f64,
-    /// Displacement, m.
-    pub u: &'a [f64],
-    /// Mean velocity over the step that led here, m/s: (u − u before)/dt.
-    pub mean_velocity: &'a [f64],
-    /// Length of that step, s.
-    pub dt: f64,
-}
+use crate::step_end::StepEnd;
 
 /// The internal force density of a body.
 ///
@@ -81,16 +69,11 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// An upper bound of the highest angular frequency (1/s) about the reference state, for the density ρ (kg/m³) of each point.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64;
 
-    /// Decides breaking at an accepted state and adds the force density there, in one sweep: a bond found over-stretched exerts no
-    /// force in it. For schemes whose step ends on an evaluation.
+    /// Decides breaking at the end of a step and adds the force density there, for the points named by `on`: a bond found over-stretched exerts no force in this evaluation and later ones.
     ///
-    /// The bond's force acted in the first half of the step only, so the energy it dissipates is its energy at breaking minus
-    /// half the work its force would have done in this step. Where that is far from its energy at the critical stretch, [`ForceOperator::take_coarse_breaks`] tells.
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]);
-
-    /// The same decision alone, for schemes that do not end on an evaluation: the bond acted until now and dissipates its whole energy.
-    fn advance_history(&mut self, t: f64, u: &[f64], on: On<'_>) {
-        let _ = (t, u, on);
+    /// What it dissipates is [`StepEnd::dissipated`]. Where that is far from its energy at the critical stretch, [`ForceOperator::take_coarse_breaks`] tells.
+    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+        self.add_force(step.t, step.u, on, out);
     }
 
     /// The derivative of the force density at `u` in the given direction, for Newton–Krylov methods and frequency estimates.

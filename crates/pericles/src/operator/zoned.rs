@@ -1,6 +1,7 @@
 //! What schemes with several time steps in one body ask of a force.
 
-use super::{Accepted, On};
+use super::On;
+use crate::step_end::StepEnd;
 
 /// A force made of bonds between points: who is bonded to whom, the part of the force that some neighbours exert, and where bonds are
 /// about to break.
@@ -14,15 +15,9 @@ pub trait ZonedForce {
     /// [`ForceOperator::add_force`](super::ForceOperator::add_force) of the bonds whose other end is marked in `partners` (one mark per point).
     fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]);
 
-    /// [`ForceOperator::accept_and_force`](super::ForceOperator::accept_and_force) of the bonds whose other end is marked in `partners`; the others are neither
+    /// [`ForceOperator::end_step`](super::ForceOperator::end_step) of the bonds whose other end is marked in `partners`; the others are neither
     /// decided nor summed.
-    fn accept_and_force_from(
-        &mut self,
-        accepted: Accepted<'_>,
-        on: On<'_>,
-        partners: &[bool],
-        out: &mut [f64],
-    );
+    fn end_step_from(&mut self, step: &StepEnd<'_>, on: On<'_>, partners: &[bool], out: &mut [f64]);
 
     /// Marks the points with a bond that is left, may break and is stretched beyond `fraction` of the critical stretch.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]);

@@ -7,20 +7,20 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::accounts::{Completed, Ledger, LoadStep, Path};
+use crate::accounts::Ledger;
 use crate::archive::Counter;
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result, positive};
-use crate::operator::{Accepted, ForceOperator, On};
+use crate::operator::{ForceOperator, On};
 use crate::parallel::{BLOCK, for_each_entry, ordered_sum};
 use crate::scalar::PointScalar;
 use crate::space::PointCloud;
+use crate::step_end::{Path, StepEnd};
 
 /// ρ u_tt = f(u) + b(t) with prescribed motions and boundaries.
 ///
-/// Integrators call [`System::acceleration`] at stages and [`System::accept_and_accelerate`] (schemes whose step ends with half a push) or
-/// [`System::complete_and_accelerate`] (schemes whose forces acted over the whole step) at the end of steps; they hold no physics of their own. Schemes with zones call
-/// [`System::accept_on`] at the end of sub-steps.
+/// Integrators call [`System::acceleration`] at stages and [`System::end_step`] at the end of steps; they hold no physics of their own. Schemes with zones call
+/// [`System::end_step_on`] at the end of sub-steps.
 pub struct System {
     cloud: Arc<PointCloud>,
     operator: Box<dyn ForceOperator>,
@@ -182,45 +182,28 @@ impl System {
         self.finish(t, u, v, &on, out);
     }
 
-    /// The same at the end of a step: decides breaking and books the work and impulse of the step.
-    ///
-    /// `accepted.mean_velocity · dt` must be the change of displacement over the step.
-    pub fn accept_and_accelerate(&mut self, accepted: Accepted<'_>, v: &[f64], out: &mut [f64]) {
-        self.accept_on(accepted, &On::All, out);
-        self.book_step(accepted, out);
-        self.accept_boundaries(accepted);
-        self.finish(accepted.t, accepted.u, v, &On::All, out);
-    }
-
-    /// The same for schemes whose forces acted over the whole step: a bond that breaks dissipates all its energy.
-    pub fn complete_and_accelerate(&mut self, completed: Completed<'_>, out: &mut [f64]) {
-        let Completed { t, dt, u, v } = completed;
-        let whole = Accepted {
-            t,
-            u: u[1],
-            mean_velocity: v[1],
-            dt: 0.0,
-        };
-        self.accept_on(whole, &On::All, out);
-        self.book(Path::Cubic { u, v }, t, dt, out);
-        self.accept_boundaries(whole);
-        self.finish(t, u[1], v[1], &On::All, out);
+    /// The same at the end of a step with velocity `v`: decides breaking, books the work and impulse of the step, and lets boundaries with a memory go on.
+    pub fn end_step(&mut self, step: &StepEnd<'_>, v: &[f64], out: &mut [f64]) {
+        self.end_step_on(step, &On::All, out);
+        self.book_step(step, out);
+        self.accept_boundaries(step);
+        self.finish(step.t, step.u, v, &On::All, out);
     }
 
     /// At the end of a sub-step of the points named by `on`: decides breaking of their bonds and evaluates f/ρ for them. Books nothing, and leaves prescribed
     /// motion to [`System::finish`].
-    pub fn accept_on(&mut self, accepted: Accepted<'_>, on: &On<'_>, out: &mut [f64]) {
+    pub fn end_step_on(&mut self, step: &StepEnd<'_>, on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
-        self.operator.accept_and_force(accepted, on.clone(), out);
-        self.add_loads(accepted.t, on, out);
+        self.operator.end_step(step, on.clone(), out);
+        self.add_loads(step.t, on, out);
         self.divide_by_density(on, out);
     }
 
-    /// [`System::accept_on`] of the bonds whose other end is marked in `partners`; loads are part of it if `with_loads`.
-    pub fn accept_on_from(
+    /// [`System::end_step_on`] of the bonds whose other end is marked in `partners`; loads are part of it if `with_loads`.
+    pub fn end_step_on_from(
         &mut self,
-        accepted: Accepted<'_>,
+        step: &StepEnd<'_>,
         on: &On<'_>,
         partners: &[bool],
         with_loads: bool,
@@ -229,10 +212,10 @@ impl System {
         self.zero(on, out);
         self.count(on);
         if let Some(zoned) = self.operator.as_zoned_mut() {
-            zoned.accept_and_force_from(accepted, on.clone(), partners, out);
+            zoned.end_step_from(step, on.clone(), partners, out);
         }
         if with_loads {
-            self.add_loads(accepted.t, on, out);
+            self.add_loads(step.t, on, out);
         }
         self.divide_by_density(on, out);
     }
@@ -282,30 +265,20 @@ impl System {
         }
     }
 
-    /// Books the work and impulse of a step that ended at `accepted`; `acceleration` are the free accelerations f/ρ of all points there.
-    pub fn book_step(&mut self, accepted: Accepted<'_>, acceleration: &[f64]) {
-        let path = Path::MeanVelocity(accepted.mean_velocity);
-        self.book(path, accepted.t, accepted.dt, acceleration);
-    }
-
     /// Lets boundaries take an accepted state, and books what they did.
-    fn accept_boundaries(&mut self, accepted: Accepted<'_>) {
+    fn accept_boundaries(&mut self, step: &StepEnd<'_>) {
         for boundary in &mut self.boundaries {
-            let exchange = boundary.accept(accepted);
+            let exchange = boundary.accept(step);
             self.ledger.book(exchange.work, exchange.impulse);
         }
     }
 
     /// Notes the reactions of the initial state.
     pub fn start(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
+        let start = StepEnd::start(t, u, v);
         self.free_acceleration(t, u, &On::All, out);
-        self.book(Path::MeanVelocity(v), t, 0.0, out);
-        self.accept_boundaries(Accepted {
-            t,
-            u,
-            mean_velocity: v,
-            dt: 0.0,
-        });
+        self.book_step(&start, out);
+        self.accept_boundaries(&start);
         self.finish(t, u, v, &On::All, out);
     }
 
@@ -348,21 +321,15 @@ impl System {
         self.hold(out);
     }
 
-    /// Books the way from one equilibrium to another that ended at time t and took dt: loads and supports act as the mean of both ends, without
-    /// inertia. With dt = 0 they do not change on the way. `work` is for accelerations.
-    pub(crate) fn book_equilibrium(
-        &mut self,
-        t: f64,
-        dt: f64,
-        load_step: LoadStep<'_>,
-        work: &mut [f64],
-    ) {
-        self.free_acceleration(t, load_step.u[1], &On::All, work);
+    /// Books a load step from one static state to another: loads and supports act as the mean of both ends, without inertia. With a length of zero they do not change on the way.
+    /// `work` is for accelerations.
+    pub(crate) fn book_equilibrium(&mut self, step: &StepEnd<'_>, work: &mut [f64]) {
+        self.free_acceleration(step.t, step.u, &On::All, work);
         let n = self.points();
         for motion in &self.motions {
-            motion.add_acceleration(t, n, work);
+            motion.add_acceleration(step.t, n, work);
         }
-        self.book(Path::Chord(load_step), t, dt, work);
+        self.book_step(step, work);
     }
 
     /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet. `work` is for accelerations.
@@ -421,21 +388,22 @@ impl System {
         }
     }
 
-    fn book(&mut self, path: Path<'_>, t: f64, dt: f64, acceleration: &[f64]) {
+    /// Books the work and impulse of a step; `acceleration` are the free accelerations f/ρ of all points at its end.
+    pub fn book_step(&mut self, step: &StepEnd<'_>, acceleration: &[f64]) {
         let n = self.points();
         let volumes = self.cloud.volumes();
         for load in &self.loads {
-            let (work, impulse) = path.work_of(load, t, dt, self.cloud.dimension(), volumes);
-            self.ledger.book(work, impulse);
+            self.ledger
+                .book_load(step, load, self.cloud.dimension(), volumes);
         }
         let density = |i: usize| self.density.at(i);
+        let chord = match step.path {
+            Path::Chord { u, .. } => Some([u, step.u]),
+            _ => None,
+        };
         for motion in &mut self.motions {
-            let chord = match &path {
-                Path::Chord(load_step) => Some(load_step.u),
-                _ => None,
-            };
             let (work, impulse) =
-                motion.account(t, dt, n, acceleration, chord, (&density, volumes));
+                motion.account(step.t, step.dt, n, acceleration, chord, (&density, volumes));
             self.ledger.book(work, impulse);
         }
     }

@@ -168,10 +168,6 @@ impl Integrator for AdaptiveRungeKutta {
         true
     }
 
-    fn start(&mut self, system: &mut System, state: &mut State) {
-        state.start(system);
-    }
-
     fn step(
         &mut self,
         system: &mut System,

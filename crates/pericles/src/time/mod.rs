@@ -35,10 +35,10 @@ pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
 pub use verlet::VelocityVerlet;
 
-use crate::accounts::Completed;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
+use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
 
@@ -81,15 +81,23 @@ impl State {
     /// Ends a step of length dt at time t with the displacement and velocity in `next`, which then hold those before the step: decides breaking, books work and
     /// impulse, and evaluates the acceleration.
     pub fn complete(&mut self, system: &mut System, [u, v]: &mut [Vec<f64>; 2], t: f64, dt: f64) {
-        let completed = Completed {
+        let end = StepEnd {
             t,
             dt,
-            u: [&self.u, u],
-            v: [&self.v, v],
+            u,
+            path: Path::Cubic {
+                u: &self.u,
+                v: [&self.v, v],
+            },
         };
-        system.complete_and_accelerate(completed, &mut self.a);
+        system.end_step(&end, v, &mut self.a);
         std::mem::swap(&mut self.u, u);
         std::mem::swap(&mut self.v, v);
+        self.close(system, t);
+    }
+
+    /// The last act of every step of motion, once displacement, velocity and acceleration are those of its end, time t: settles the bonds that broke in a step too coarse for them.
+    pub fn close(&mut self, system: &mut System, t: f64) {
         system.settle_breaking(t, &mut self.v);
         self.t = t;
     }
@@ -176,7 +184,9 @@ pub trait Integrator: Saved + Send {
     }
 
     /// Prepares the state at t = 0: prescribed values and initial acceleration.
-    fn start(&mut self, system: &mut System, state: &mut State);
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        state.start(system);
+    }
 
     /// Steps from `state.t` to `t_next`.
     ///

@@ -8,11 +8,10 @@ use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State, Tableau};
-use crate::accounts::Completed;
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::Accepted;
+use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
 /// Choices of [`MultiTimeStep`].
@@ -173,13 +172,16 @@ impl Integrator for MultiTimeStep {
 
         let dt = t_next - state.t;
         let Work { first, u, v, .. } = &mut self.work;
-        let completed = Completed {
+        let end = StepEnd {
             t: t_next,
             dt,
-            u: [&state.u, u],
-            v: [&state.v, v],
+            u,
+            path: Path::Cubic {
+                u: &state.u,
+                v: [&state.v, v],
+            },
         };
-        system.complete_and_accelerate(completed, first);
+        system.end_step(&end, v, first);
         std::mem::swap(&mut state.u, u);
         std::mem::swap(&mut state.v, v);
         std::mem::swap(&mut state.a, first);
@@ -188,8 +190,7 @@ impl Integrator for MultiTimeStep {
             Predictor::Structured => self.history.push(first, dt),
             Predictor::BackwardDifference => self.history.push(v, dt),
         }
-        system.settle_breaking(t_next, &mut state.v);
-        state.t = t_next;
+        state.close(system, t_next);
         state.step += 1;
         Ok(())
     }
@@ -332,13 +333,8 @@ impl Step<'_> {
                     n,
                 );
             }
-            let ended = Accepted {
-                t: t_next,
-                u: stage,
-                mean_velocity: v,
-                dt: 0.0,
-            };
-            system.accept_on(ended, &fine.on(), first);
+            let ended = StepEnd::sub_step(t_next, h, stage);
+            system.end_step_on(&ended, &fine.on(), first);
             system.finish(t_next, stage, v, &fine.on(), first);
         }
     }

@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 
 use super::{InnerIterations, Integrator, State};
-use crate::accounts::LoadStep;
 use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::{Accepted, On};
+use crate::operator::On;
 use crate::parallel::{BLOCK, ordered_sum};
+use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
 /// How motion is damped on the way to an equilibrium.
@@ -258,30 +258,28 @@ impl Relaxation {
         mut residual: f64,
         interrupt: Interrupt<'_>,
     ) -> Result<f64> {
-        self.velocity.fill(0.0);
         loop {
             let broken = system.operator().broken_bonds();
-            let accepted = Accepted {
-                t,
-                u: &state.u,
-                mean_velocity: &self.velocity,
-                dt: 0.0,
-            };
-            system.accept_on(accepted, &On::All, &mut state.a);
+            let end = StepEnd::sub_step(t, 0.0, &state.u);
+            system.end_step_on(&end, &On::All, &mut state.a);
             if system.operator().broken_bonds() == broken {
                 return Ok(residual);
             }
             self.before.copy_from_slice(&state.u);
             let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
             residual = self.relax(system, t, &mut state.u, interrupt)?;
-            let after_breaking = LoadStep {
-                u: [&self.before, &state.u],
-                first: false,
+            let after_breaking = StepEnd {
+                t,
+                dt: 0.0,
+                u: &state.u,
+                path: Path::Chord {
+                    u: &self.before,
+                    first: false,
+                },
             };
-            system.book_equilibrium(t, 0.0, after_breaking, &mut state.a);
+            system.book_equilibrium(&after_breaking, &mut state.a);
             self.damped +=
                 elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
-            self.velocity.fill(0.0);
         }
     }
 }
@@ -343,12 +341,14 @@ impl Integrator for Relaxation {
         };
         self.iterations = 0;
         let mut residual = self.relax(system, t_next, &mut state.u, interrupt)?;
-        let load_step = LoadStep {
-            u: [&before, &state.u],
-            first,
+        let load_step = StepEnd {
+            t: t_next,
+            dt,
+            u: &state.u,
+            path: Path::Chord { u: &before, first },
         };
         let work = system.ledger().work;
-        system.book_equilibrium(t_next, dt, load_step, &mut state.a);
+        system.book_equilibrium(&load_step, &mut state.a);
         if displaced {
             self.damped +=
                 elastic - system.operator().energy(t_next, &state.u) + system.ledger().work - work;

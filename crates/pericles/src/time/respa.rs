@@ -9,7 +9,8 @@ use super::{HighestFrequency, Integrator, State};
 use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::operator::{Accepted, On};
+use crate::operator::On;
+use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
 /// The reversible reference system propagator (Tuckerman, Berne & Martyna 1992), split by bonds.
@@ -86,13 +87,13 @@ impl Respa {
         system.drive_mean_on(t, h, &active.on(), v);
         Sum::new().plus(h, v).add_to(active, n, u);
         system.place_on(t_next, &active.on(), u);
-        let accepted = Accepted {
+        let end = StepEnd {
             t: t_next,
-            u,
-            mean_velocity: v,
             dt: h,
+            u,
+            path: Path::MeanVelocity(v),
         };
-        system.accept_on(accepted, &fine.on(), &mut self.fast);
+        system.end_step_on(&end, &fine.on(), &mut self.fast);
         if !coarse_border.is_empty() {
             // Fast bonds were decided from their fine ends.
             let border = coarse_border.on();
@@ -149,7 +150,7 @@ impl Integrator for Respa {
             self.evaluate(system, state.t, &state.u);
         }
         self.refinement.count(false);
-        let State { t, step, u, v, a } = state;
+        let State { t, u, v, a, .. } = state;
         let (n, dt, ratio) = (system.points(), t_next - *t, self.refinement.ratio);
         let Zones {
             coarse,
@@ -186,16 +187,16 @@ impl Integrator for Respa {
                     *mean = (u - *mean) / dt;
                 }
             });
-        let accepted = Accepted {
+        let end = StepEnd {
             t: t_next,
-            u,
-            mean_velocity: &self.mean,
             dt,
+            u,
+            path: Path::MeanVelocity(&self.mean),
         };
-        system.accept_on(accepted, &coarse_inner.on(), &mut self.slow);
+        system.end_step_on(&end, &coarse_inner.on(), &mut self.slow);
         if !coarse_border.is_empty() {
             let border = coarse_border.on();
-            system.accept_on_from(accepted, &border, is_coarse, true, &mut self.slow);
+            system.end_step_on_from(&end, &border, is_coarse, true, &mut self.slow);
         }
         kick(coarse, &self.slow, 0.5 * dt, n, v);
         system.constrain_velocity(t_next, v);
@@ -203,11 +204,10 @@ impl Integrator for Respa {
         Sum::new().onto(&self.slow, coarse, n, a);
         Sum::new().onto(&self.fast, &self.refinement.zones.fine, n, a);
         Sum::new().plus(1.0, &self.fast).add_to(coarse_border, n, a);
-        system.book_step(accepted, a);
+        system.book_step(&end, a);
         system.finish(t_next, u, v, &On::All, a);
-        system.settle_breaking(t_next, v);
-        *t = t_next;
-        *step += 1;
+        state.close(system, t_next);
+        state.step += 1;
         Ok(())
     }
 }

@@ -128,10 +128,6 @@ impl Integrator for RungeKutta {
         Some(self.limit)
     }
 
-    fn start(&mut self, system: &mut System, state: &mut State) {
-        state.start(system);
-    }
-
     fn step(
         &mut self,
         system: &mut System,

@@ -6,8 +6,8 @@ use super::{Integrator, State};
 use crate::archive::Saved;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::operator::Accepted;
 use crate::parallel::BLOCK;
+use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
 
@@ -41,12 +41,6 @@ impl Integrator for VelocityVerlet {
         -0.25 * dt * dt * system.kinetic_energy(&state.a)
     }
 
-    fn start(&mut self, system: &mut System, state: &mut State) {
-        system.constrain(state.t, &mut state.u, &mut state.v);
-        system.constrain_velocity(state.t, &mut state.v);
-        system.start(state.t, &state.u, &state.v, &mut state.a);
-    }
-
     fn step(
         &mut self,
         system: &mut System,
@@ -54,7 +48,7 @@ impl Integrator for VelocityVerlet {
         t_next: f64,
         _interrupt: Interrupt<'_>,
     ) -> Result<()> {
-        let State { t, step, u, v, a } = state;
+        let State { t, u, v, a, .. } = state;
         let dt = t_next - *t;
         kick(v, a, 0.5 * dt);
         system.constrain_mean_velocity(*t, dt, v);
@@ -66,18 +60,17 @@ impl Integrator for VelocityVerlet {
                 }
             });
         system.constrain(t_next, u, v);
-        let accepted = Accepted {
+        let end = StepEnd {
             t: t_next,
-            u,
-            mean_velocity: v,
             dt,
+            u,
+            path: Path::MeanVelocity(v),
         };
-        system.accept_and_accelerate(accepted, v, a);
+        system.end_step(&end, v, a);
         kick(v, a, 0.5 * dt);
         system.constrain_velocity(t_next, v);
-        system.settle_breaking(t_next, v);
-        *t = t_next;
-        *step += 1;
+        state.close(system, t_next);
+        state.step += 1;
         Ok(())
     }
 }

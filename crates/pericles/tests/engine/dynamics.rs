@@ -8,12 +8,11 @@ use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
 use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, StressState};
 use pericles::observe::Energies;
-use pericles::operator::{
-    Accepted, BondBody, BondForce, DamageMeasure, FastLaw, ForceOperator, On,
-};
+use pericles::operator::{BondBody, BondForce, DamageMeasure, FastLaw, ForceOperator, On};
 use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
 use pericles::{Archive, Control, Outcome, Saved, Simulation, SimulationError, System, Values};
+use pericles::{Path, StepEnd};
 
 const DENSITY: f64 = 7850.0;
 const YOUNG: f64 = 210e9;
@@ -562,23 +561,23 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let n = cloud.len();
     let u: Vec<f64> = (0..2 * n).map(|k| 2e-6 * ((k * k) as f64).sin()).collect();
     let v: Vec<f64> = (0..2 * n).map(|k| ((k * k + 1) as f64).cos()).collect();
-    let accepted = Accepted {
+    let end = StepEnd {
         t: 0.0,
-        u: &u,
-        mean_velocity: &v,
         dt: 1e-8,
+        u: &u,
+        path: Path::MeanVelocity(&v),
     };
     let mut at_once = make();
     let mut force = vec![0.0; 2 * n];
-    at_once.accept_and_force(accepted, On::All, &mut force);
+    at_once.end_step(&end, On::All, &mut force);
     assert!(at_once.broken_bonds() > 100);
 
     // A point's force is taken after all bonds are decided, as a scheme with zones does.
     let mut in_parts = make();
     let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
     let mut unused = vec![0.0; 2 * n];
-    in_parts.accept_and_force(accepted, On::Set(&odd), &mut unused);
-    in_parts.accept_and_force(accepted, On::All, &mut unused);
+    in_parts.end_step(&end, On::Set(&odd), &mut unused);
+    in_parts.end_step(&end, On::All, &mut unused);
     let mut again = vec![0.0; 2 * n];
     in_parts.add_force(0.0, &u, On::All, &mut again);
     assert_eq!(again, force);
@@ -589,7 +588,11 @@ fn breaking_in_parts_equals_breaking_at_once() {
     // Decided without the half-step's work, a bond dissipates its whole energy.
     let mut history = make();
     let before = history.energy(0.0, &u);
-    history.advance_history(0.0, &u, On::All);
+    history.end_step(
+        &StepEnd::sub_step(0.0, 0.0, &u),
+        On::All,
+        &mut vec![0.0; u.len()],
+    );
     let lost = before - history.energy(0.0, &u);
     assert!((history.dissipated() / lost - 1.0).abs() < 1e-12);
     assert_eq!(history.broken_bonds(), at_once.broken_bonds());
@@ -614,7 +617,11 @@ fn no_fail_sets_do_not_break() {
     );
     let n = cloud.len();
     let stretched: Vec<f64> = cloud.positions().iter().map(|x| 0.01 * x).collect();
-    plate.advance_history(0.0, &stretched, On::All);
+    plate.end_step(
+        &StepEnd::sub_step(0.0, 0.0, &stretched),
+        On::All,
+        &mut vec![0.0; stretched.len()],
+    );
     let mut damage = vec![0.0; n];
     plate.damage_into(&mut damage);
     assert!(damage[..200].iter().all(|&d| d == 0.0));

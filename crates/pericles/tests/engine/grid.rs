@@ -9,12 +9,13 @@ use pericles::material::{
     StressState,
 };
 use pericles::operator::{
-    Accepted, BondBody, BondForce, BondForm, DamageMeasure, FastLaw, ForceOperator, GridForce,
+    BondBody, BondForce, BondForm, DamageMeasure, FastLaw, ForceOperator, GridForce,
     InstructionSet, On,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Archive, Control, PericlesError, PointScalar, Saved, Simulation, System, Values};
+use pericles::{Path, StepEnd};
 
 const SPACING: f64 = 0.01;
 
@@ -456,11 +457,11 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let n = cloud.len();
     let u = mixed_strains(&cloud);
     let v: Vec<f64> = (0..3 * n).map(|k| ((k * k + 1) as f64).cos()).collect();
-    let accepted = Accepted {
+    let end = StepEnd {
         t: 0.0,
-        u: &u,
-        mean_velocity: &v,
         dt: 1e-8,
+        u: &u,
+        path: Path::MeanVelocity(&v),
     };
     // Above the fast form's reach, so that both forms meet breaking.
     let material = material(
@@ -471,9 +472,9 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let make = || pair::<BondStretch, 3>(&cloud, &material, &[], &[], DamageMeasure::default());
     let (mut at_once, mut list) = make();
     let mut expected = vec![0.0; 3 * n];
-    at_once.accept_and_force(accepted, On::All, &mut expected);
+    at_once.end_step(&end, On::All, &mut expected);
     let mut by_list = vec![0.0; 3 * n];
-    list.accept_and_force(accepted, On::All, &mut by_list);
+    list.end_step(&end, On::All, &mut by_list);
     assert_close(&expected, &by_list, 1e-12, "force");
     assert_eq!(at_once.broken_bonds(), list.broken_bonds());
     assert!((at_once.dissipated() / list.dissipated() - 1.0).abs() < 1e-12);
@@ -482,15 +483,19 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let (mut in_parts, _) = make();
     let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
     let mut unused = vec![0.0; 3 * n];
-    in_parts.accept_and_force(accepted, On::Set(&odd), &mut unused);
-    in_parts.accept_and_force(accepted, On::Range(0..n), &mut unused);
+    in_parts.end_step(&end, On::Set(&odd), &mut unused);
+    in_parts.end_step(&end, On::Range(0..n), &mut unused);
     assert!(force(&in_parts, &u) == expected);
     assert_eq!(in_parts.broken_bonds(), at_once.broken_bonds());
     assert!((in_parts.dissipated() / at_once.dissipated() - 1.0).abs() < 1e-12);
 
     let (mut history, _) = make();
     let before = history.energy(0.0, &u);
-    history.advance_history(0.0, &u, On::All);
+    history.end_step(
+        &StepEnd::sub_step(0.0, 0.0, &u),
+        On::All,
+        &mut vec![0.0; u.len()],
+    );
     let lost = before - history.energy(0.0, &u);
     assert!((history.dissipated() / lost - 1.0).abs() < 1e-12);
     assert_eq!(history.broken_bonds(), at_once.broken_bonds());

@@ -9,9 +9,10 @@ use pericles::material::{
     BondMaterial, BondStretch, Fracture, GreenBond, LinearBond, LiteralBond, PairForce, StressState,
 };
 use pericles::operator::{
-    Accepted, BondForce, Breaking, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On,
+    BondForce, Breaking, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On,
 };
 use pericles::space::PointCloud;
+use pericles::{Path, StepEnd};
 
 /// Numbers in (−1, 1).
 fn noise(len: usize) -> Vec<f64> {
@@ -181,13 +182,13 @@ fn the_same_bonds_break_on_every_instruction_set() {
             common::listed::<BondStretch, 3>(&cloud, &material, StressState::Spatial, None, &[])
                 .with_instruction_set(set);
         let mut out = vec![0.0; 3 * n];
-        let accepted = Accepted {
+        let end = StepEnd {
             t: 0.0,
-            u: &u,
-            mean_velocity: &still,
             dt: 1e-6,
+            u: &u,
+            path: Path::MeanVelocity(&still),
         };
-        list.accept_and_force(accepted, On::All, &mut out);
+        list.end_step(&end, On::All, &mut out);
         let mut damage = vec![0.0; n];
         list.damage_into(&mut damage);
         (damage, list.broken_bonds(), list.dissipated())

@@ -7,12 +7,11 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{
-    Accepted, BondBody, BondForm, DamageMeasure, ForceOperator, InstructionSet, On,
-};
+use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};
+use pericles::{Path, StepEnd};
 
 const SPACING: f64 = 0.01;
 
@@ -197,17 +196,17 @@ fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
         let cloud = body(cells);
         let u = displacement(&cloud, 0.02, 0.0);
         let v = vec![0.0; u.len()];
-        let accepted = Accepted {
+        let end = StepEnd {
             t: 0.0,
-            u: &u,
-            mean_velocity: &v,
             dt: 1e-6,
+            u: &u,
+            path: Path::MeanVelocity(&v),
         };
         let broken = |form, set, on: On<'_>| {
             let mut operator = operator(&cloud, PairLaw::BondStretch, 0.01, form);
             operator.use_instruction_set(set);
             let mut out = vec![0.0; u.len()];
-            operator.accept_and_force(accepted, on, &mut out);
+            operator.end_step(&end, on, &mut out);
             let mut intact = Vec::new();
             operator.for_each_intact(&mut |i, j| intact.push((i, j)));
             // A force without the bonds that have just gone; bonds seen by one end only would leave a resultant.

@@ -13,7 +13,7 @@ use pericles::operator::{BondBody, BondForm, CompositeBody, DamageMeasure, Force
 use pericles::space::PointCloud;
 use pericles::time::{Damping, Relaxation, RelaxationOptions, State, VelocityVerlet};
 use pericles::{
-    Control, Found, Outcome, PericlesError, PointScalar, Simulation, SimulationError,
+    Control, Found, Outcome, PericlesError, PointScalar, Simulation, SimulationError, StepEnd,
     StopCondition, StopWhen, System,
 };
 
@@ -279,7 +279,11 @@ fn equal_materials_are_one() {
         let u: Vec<f64> = (0..entries)
             .map(|k| 2e-4 * (1.7 * k as f64).sin())
             .collect();
-        operator.advance_history(0.0, &u, On::All);
+        operator.end_step(
+            &StepEnd::sub_step(0.0, 0.0, &u),
+            On::All,
+            &mut vec![0.0; u.len()],
+        );
         let mut force = vec![0.0; entries];
         operator.add_force(0.0, &u, On::All, &mut force);
         (force, operator.broken_bonds(), operator.dissipated())

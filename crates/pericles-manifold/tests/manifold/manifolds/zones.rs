@@ -1,7 +1,8 @@
 //! Forces of a surface taken apart by zones, and two time steps in one surface.
 
-use pericles::operator::{Accepted, On};
+use pericles::operator::On;
 use pericles::time::{Fine, Follow, Integrator, Respa};
+use pericles::{Path, StepEnd};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use super::sphere::*;
@@ -65,18 +66,18 @@ fn breaking_by_partners_decides_their_bonds_only() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let (u, v) = (noise(3 * n, 8), noise(3 * n, 9));
-    let accepted = Accepted {
+    let end = StepEnd {
         t: 0.0,
-        u: &u,
-        mean_velocity: &v,
         dt: 1e-3,
+        u: &u,
+        path: Path::MeanVelocity(&v),
     };
     let [(inside, inner), (outside, outer)] = zones(&sphere);
     for bond in BONDS {
         let material = brittle(bond, 6.0);
         let mut at_once = sphere.operator(&material);
         let mut expected = vec![0.0; 3 * n];
-        at_once.accept_and_force(accepted, On::All, &mut expected);
+        at_once.end_step(&end, On::All, &mut expected);
         let mut parts = sphere.operator(&material);
         let mut sum = vec![0.0; 3 * n];
         let pairs = [
@@ -87,7 +88,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
         ];
         let counts = pairs.map(|(rows, partners)| {
             let zoned = parts.as_zoned_mut().unwrap();
-            zoned.accept_and_force_from(accepted, On::Set(rows), partners, &mut sum);
+            zoned.end_step_from(&end, On::Set(rows), partners, &mut sum);
             parts.broken_bonds()
         });
         assert!(counts[0] > 5 && counts[0] < counts[1] && counts[1] < counts[2]);
@@ -107,7 +108,11 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
     let u: Vec<f64> = noise(3 * n, 8).iter().map(|u| u.powi(3)).collect();
     let (critical, fraction) = (9.5, 0.8);
     let mut weak = sphere.operator(&brittle(SurfaceBond::Displacement, fraction * critical));
-    weak.advance_history(0.0, &u, On::All);
+    weak.end_step(
+        &StepEnd::sub_step(0.0, 0.0, &u),
+        On::All,
+        &mut vec![0.0; u.len()],
+    );
     let mut damage = vec![0.0; n];
     weak.damage_into(&mut damage);
     let expected: Vec<bool> = damage.iter().map(|&damage| damage > 0.0).collect();

@@ -7,9 +7,9 @@ use crate::absorbing::history::{BlockedHistory, History};
 use crate::absorbing::{GhostKernels, Side};
 use crate::linear::LineTransform;
 use pericles::Result;
+use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange};
-use pericles::operator::Accepted;
 use pericles::{Archive, Saved, Values};
 
 /// Weight of the initial displacement in the history, as for bars.
@@ -152,8 +152,8 @@ impl Mode {
 }
 
 impl Boundary for StripEnd {
-    fn accept(&mut self, accepted: Accepted<'_>) -> Exchange {
-        self.transform_in(accepted.u);
+    fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
+        self.transform_in(step.u);
         std::mem::swap(&mut self.pull, &mut self.pull_before);
         let weight = if self.started { 1.0 } else { FIRST };
         self.started = true;
@@ -166,8 +166,8 @@ impl Boundary for StripEnd {
         for (k, (now, before)) in self.pull.iter().zip(&self.pull_before).enumerate() {
             let (depth, component, row) = (k / (2 * rows), k / rows % 2, k % rows);
             let entry = self.entry(component, self.lattice.points[depth][row]);
-            let impulse = 0.5 * self.lattice.mass * (now + before) * accepted.dt;
-            exchange.work += impulse * accepted.mean_velocity[entry];
+            let impulse = 0.5 * self.lattice.mass * (now + before) * step.dt;
+            exchange.work += impulse * step.mean_velocity(entry);
             exchange.impulse[component] += impulse;
         }
         exchange

@@ -15,7 +15,7 @@ use pericles::Saved;
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
-use pericles::operator::{Accepted, ForceOperator, InstructionSet, LinearOperator, On};
+use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
 use pericles::parallel::ordered_sum;
 use pericles::space::PointCloud;
 
@@ -327,10 +327,6 @@ impl ForceOperator for SpectralCubicForce {
             .fold(f64::INFINITY, f64::min);
         let largest = self.linear.iter().fold(0.0f64, |m, x| m.max(*x));
         (largest / least * (1.0 + 1e-12)).sqrt()
-    }
-
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
-        self.add_force(accepted.t, accepted.u, on, out);
     }
 
     fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {

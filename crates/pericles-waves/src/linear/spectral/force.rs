@@ -16,9 +16,7 @@ use super::symbol::Symbol;
 use pericles::Saved;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
-use pericles::operator::{
-    Accepted, Diagonal, ForceOperator, FunctionOf, InstructionSet, LinearOperator, On,
-};
+use pericles::operator::{Diagonal, ForceOperator, FunctionOf, InstructionSet, LinearOperator, On};
 use pericles::parallel::{components, components_mut};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
@@ -339,10 +337,6 @@ impl<const D: usize> ForceOperator for SpectralForce<D> {
             .map(density)
             .fold(f64::INFINITY, f64::min);
         (self.largest / least * (1.0 + 1e-12)).sqrt()
-    }
-
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
-        self.add_force(accepted.t, accepted.u, on, out);
     }
 
     fn tangent_into(&self, _t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {

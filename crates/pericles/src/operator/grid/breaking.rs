@@ -8,9 +8,10 @@ use crate::lanes::LANES;
 use crate::lanes::Lanes;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::fast_law::FastLaw;
+use crate::step_end::{BreakingBond, StepEnd};
 
 /// Breaking as the loops see it.
-pub(super) struct GridBreaking<'a, const D: usize> {
+pub(super) struct GridBreaking<'a> {
     /// Bonds with measure > threshold |ξ|² are over-stretched.
     pub threshold: f64,
     /// The critical stretch.
@@ -21,8 +22,8 @@ pub(super) struct GridBreaking<'a, const D: usize> {
     pub breakable: &'a (dyn Fn(&Chunk, usize) -> u8 + Sync),
     /// The point at a place of the padded rows.
     pub point_at: &'a (dyn Fn(usize) -> usize + Sync),
-    /// Mean velocity of the points and length of the step that ended, where the force acted for only half of it.
-    pub step: Option<([&'a [f64]; D], f64)>,
+    /// The step that ended.
+    pub step: &'a StepEnd<'a>,
     /// Note what breaks, so that the other end can be told.
     pub note_events: bool,
 }
@@ -45,7 +46,7 @@ pub(super) struct ChunkBonds<'a> {
 #[inline(always)]
 pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
     grid: &Grid<'_, N, D>,
-    rule: &GridBreaking<'_, D>,
+    rule: &GridBreaking<'_>,
     bonds: ChunkBonds<'_>,
     tally: &mut Tally,
 ) -> bool {
@@ -86,7 +87,7 @@ pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
 #[inline(never)]
 fn book<L: FastLaw, N: GridNumber, const D: usize>(
     grid: &Grid<'_, N, D>,
-    rule: &GridBreaking<'_, D>,
+    rule: &GridBreaking<'_>,
     chunk: &Chunk,
     offset: &Offset<N, D>,
     over: u8,
@@ -99,23 +100,23 @@ fn book<L: FastLaw, N: GridNumber, const D: usize>(
         let there = here.wrapping_add_signed(offset.shift);
         let difference = |field: &[N]| -> f64 { field[there].into() - field[here].into() };
         let eta: [f64; D] = std::array::from_fn(|c| difference(grid.u[c]) * grid.unit);
-        let (mut energy, force) = (L::energy(xi, eta), L::force(xi, eta));
-        let [i, j] = [here, there].map(|place| (rule.point_at)(place - grid.margin));
-        if let Some((velocity, dt)) = &rule.step {
-            let power: f64 = (0..D)
-                .map(|c| force[c] * (velocity[c][j] - velocity[c][i]))
-                .sum();
-            energy -= 0.5 * dt * power;
-        }
         let stiffness: f64 = offset.stiffness.into();
-        let weight = rule.volume * stiffness;
-        let critical = L::energy(xi, xi.map(|component| rule.critical_stretch * component));
-        tally.book([i, j], force, weight * energy, weight * critical);
+        let bond = BreakingBond {
+            ends: [here, there].map(|place| (rule.point_at)(place - grid.margin)),
+            force: L::force(xi, eta),
+            energy: L::energy(xi, eta),
+            critical: Some(L::energy(
+                xi,
+                xi.map(|component| rule.critical_stretch * component),
+            )),
+            weight: rule.volume * stiffness,
+        };
+        let dissipated = tally.book(rule.step, &bond);
         if rule.note_events {
             tally.events.push(BreakEvent {
                 point: chunk.point,
                 entry: entry + k,
-                dissipated: 0.5 * weight * energy,
+                dissipated,
             });
         }
     }

@@ -19,8 +19,9 @@ use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
-use crate::parallel::{components, components_mut, for_each_part};
+use crate::parallel::{components_mut, for_each_part};
 use crate::space::PointCloud;
+use crate::step_end::StepEnd;
 
 /// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
 ///
@@ -239,11 +240,10 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         });
     }
 
-    /// Breaks over-stretched bonds of the wanted points and, with FORCE, adds the force density of those that are left.
-    pub(super) fn decide<const FORCE: bool>(
+    /// Breaks over-stretched bonds of the wanted points and adds the force density of those that are left.
+    pub(super) fn decide(
         &mut self,
-        u: &[f64],
-        step: Option<(&[f64], f64)>,
+        step: &StepEnd<'_>,
         on: &On<'_>,
         partners: Option<&Partners>,
         out: &mut [f64],
@@ -257,31 +257,31 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             volume: self.cloud.volumes()[0],
             breakable: &|chunk: &Chunk, offset: usize| self.breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),
-            step: step.map(|(velocity, dt)| (components::<D>(velocity, self.cloud.len()), dt)),
+            step,
             note_events: !whole,
         };
         match &self.floats {
-            Some(working) => working.with(&self.layout, u, on, |grid, lanes| {
+            Some(working) => working.with(&self.layout, step.u, on, |grid, lanes| {
                 self.decide_blocks(
                     lanes,
                     partners,
                     &mut blocks,
                     out,
                     |block, intact, out, tally| {
-                        accept_chunks_in_floats::<L, D, FORCE>(
+                        accept_chunks_in_floats::<L, D>(
                             set, grid, &rule, block, intact, out, tally,
                         );
                     },
                 );
             }),
-            None => self.doubles.with(&self.layout, u, on, |grid, lanes| {
+            None => self.doubles.with(&self.layout, step.u, on, |grid, lanes| {
                 self.decide_blocks(
                     lanes,
                     partners,
                     &mut blocks,
                     out,
                     |block, intact, out, tally| {
-                        accept_chunks::<L, D, FORCE>(set, grid, &rule, block, intact, out, tally);
+                        accept_chunks::<L, D>(set, grid, &rule, block, intact, out, tally);
                     },
                 );
             }),

@@ -150,9 +150,9 @@ fn force_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize, const FORCE: bool>(
+fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
-    rule: &GridBreaking<'_, D>,
+    rule: &GridBreaking<'_>,
     block: &ChunkBlock<'_>,
     intact: &mut [u8],
     out: &mut [&mut [f64]; D],
@@ -188,10 +188,8 @@ fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize, const FORCE: bo
                 fast = fast_force::<T, L, D>(grid, places, intact);
             }
         }
-        if FORCE {
-            let sum = chunk_force::<T, L, D>(grid, places, intact, fast);
-            add_to_points(sum, chunks, lanes, block.first_point, out);
-        }
+        let sum = chunk_force::<T, L, D>(grid, places, intact, fast);
+        add_to_points(sum, chunks, lanes, block.first_point, out);
     }
 }
 
@@ -281,10 +279,10 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the wanted points and, with FORCE, adds the force density of those that are left.
-    pub(super) fn accept_chunks [L: FastLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
+    /// Breaks over-stretched bonds of the wanted points and adds the force density of those that are left.
+    pub(super) fn accept_chunks [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
-        rule: &GridBreaking<'_, D>,
+        rule: &GridBreaking<'_>,
         block: &ChunkBlock<'_>,
         intact: &mut [u8],
         out: &mut [&mut [f64]; D],
@@ -294,9 +292,9 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// [`accept_chunks`] in floats.
-    pub(super) fn accept_chunks_in_floats [L: FastLaw, const D: usize, const FORCE: bool] <L, D, FORCE> (
+    pub(super) fn accept_chunks_in_floats [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f32, D>,
-        rule: &GridBreaking<'_, D>,
+        rule: &GridBreaking<'_>,
         block: &ChunkBlock<'_>,
         intact: &mut [u8],
         out: &mut [&mut [f64]; D],

@@ -11,10 +11,11 @@ use crate::lanes::LANES;
 use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    Accepted, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
+    BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
     LinearOperator, On, ZonedForce,
 };
 use crate::parallel::{components_mut, for_each_part, ordered_sum};
+use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
     fn points(&self) -> usize {
@@ -73,20 +74,11 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
             .sqrt()
     }
 
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
         if self.can_break() {
-            let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide::<true>(accepted.u, step, &on, None, out);
+            self.decide(step, &on, None, out);
         } else {
-            self.add_force(accepted.t, accepted.u, on, out);
-        }
-    }
-
-    fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
-        if self.can_break() {
-            // No force is written: any array of the right shape will do for the loop's slices.
-            let mut unused = vec![0.0; D * self.points()];
-            self.decide::<false>(u, None, &on, None, &mut unused);
+            self.add_force(step.t, step.u, on, out);
         }
     }
 

@@ -8,7 +8,8 @@ use super::layout::{Chunk, Partners};
 use crate::lanes::LANES;
 use crate::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
+use crate::operator::{ForceOperator, On, ZonedForce};
+use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {
@@ -80,19 +81,18 @@ impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
         });
     }
 
-    fn accept_and_force_from(
+    fn end_step_from(
         &mut self,
-        accepted: Accepted<'_>,
+        step: &StepEnd<'_>,
         on: On<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
         if self.can_break() {
             let partners = self.partners(partners);
-            let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide::<true>(accepted.u, step, &on, Some(&partners), out);
+            self.decide(step, &on, Some(&partners), out);
         } else {
-            self.add_force_from(accepted.t, accepted.u, on, partners, out);
+            self.add_force_from(step.t, step.u, on, partners, out);
         }
     }
 

@@ -5,9 +5,10 @@ use crate::lanes::LANES;
 use crate::material::{PairClasses, PairForce};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
+use crate::step_end::{BreakingBond, StepEnd};
 
 /// Breaking as the loops see it.
-pub(super) struct BreakRule<'a, const D: usize> {
+pub(super) struct BreakRule<'a> {
     /// Bonds with measure > threshold |ξ|² are over-stretched.
     pub threshold: f64,
     /// The critical stretch, where all bonds have the same.
@@ -17,8 +18,8 @@ pub(super) struct BreakRule<'a, const D: usize> {
     /// Bits of the bonds that may break; all of them if none.
     pub breakable: Option<&'a [u8]>,
     pub volumes: &'a [f64],
-    /// Mean velocity and length of the step that ended, where the force acted for only half of it.
-    pub step: Option<([&'a [f64]; D], f64)>,
+    /// The step that ended.
+    pub step: &'a StepEnd<'a>,
     /// Note what breaks, so that the other end can be told.
     pub note_events: bool,
 }
@@ -38,7 +39,7 @@ impl PairThresholds {
     }
 }
 
-impl<const D: usize> BreakRule<'_, D> {
+impl BreakRule<'_> {
     fn threshold_of(&self, i: usize, j: usize) -> f64 {
         match self.pairs {
             None => self.threshold,
@@ -61,7 +62,7 @@ impl<const D: usize> BreakRule<'_, D> {
 #[inline(never)]
 pub(super) fn break_row<L: PairForce, const D: usize>(
     bonds: &Bonds<'_>,
-    rule: &BreakRule<'_, D>,
+    rule: &BreakRule<'_>,
     u: &Records,
     i: usize,
     intact: &mut [u8],
@@ -84,22 +85,20 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
                 *intact &= !(1 << lane);
                 let entry = group * LANES + lane;
                 let stiffness = bonds.stiffness_of::<D>(entry, [i, j], [u[i][3], u[j][3]]);
-                let (mut energy, force) = (L::energy(xi, eta), L::force(xi, eta));
-                if let Some((velocity, dt)) = &rule.step {
-                    let power: f64 = (0..D)
-                        .map(|c| force[c] * (velocity[c][j] - velocity[c][i]))
-                        .sum();
-                    energy -= 0.5 * dt * power;
-                }
-                let weight = rule.volumes[i] * stiffness;
                 let stretch = rule.critical_stretch_of(i, j);
-                let critical = L::energy(xi, xi.map(|component| stretch * component));
-                tally.book([i, j], force, weight * energy, weight * critical);
+                let bond = BreakingBond {
+                    ends: [i, j],
+                    force: L::force(xi, eta),
+                    energy: L::energy(xi, eta),
+                    critical: Some(L::energy(xi, xi.map(|component| stretch * component))),
+                    weight: rule.volumes[i] * stiffness,
+                };
+                let dissipated = tally.book(rule.step, &bond);
                 if rule.note_events {
                     tally.events.push(BreakEvent {
                         point: i as u32,
                         entry,
-                        dissipated: 0.5 * weight * energy,
+                        dissipated,
                     });
                 }
             }

@@ -17,8 +17,9 @@ use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::{ForceOperator, InstructionSet, On};
-use crate::parallel::{BLOCK, components, components_mut, for_each_block};
+use crate::parallel::{BLOCK, components_mut, for_each_block};
 use crate::space::PointCloud;
+use crate::step_end::StepEnd;
 
 /// f(x_i) = Σ_j c α κ V_j s n over the bonds of a list: force density, N/m³.
 ///
@@ -218,8 +219,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     /// Decides breaking of the wanted points' bonds, those that lead to `partners` if there are any, and adds the force of those that are left.
     pub(super) fn decide(
         &mut self,
-        u: &[f64],
-        step: Option<(&[f64], f64)>,
+        step: &StepEnd<'_>,
         on: &On<'_>,
         partners: Option<&[bool]>,
         out: &mut [f64],
@@ -234,10 +234,10 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             pairs: self.pairs.as_ref(),
             breakable: self.breakable.as_deref(),
             volumes: self.cloud.volumes(),
-            step: step.map(|(velocity, dt)| (components::<D>(velocity, n), dt)),
+            step,
             note_events: !whole,
         };
-        self.with_packed(u, on, |u| {
+        self.with_packed(step.u, on, |u| {
             for_each_block(
                 components_mut::<D>(out, n),
                 &mut blocks,

@@ -136,7 +136,7 @@ const WATCH: f64 = 1.0 - 1e-9;
 #[inline(always)]
 fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     bonds: &Bonds<'_>,
-    rule: &BreakRule<'_, D>,
+    rule: &BreakRule<'_>,
     u: &Records,
     intact: &mut [u8],
     rows: &Rows<'_>,
@@ -228,7 +228,7 @@ for_each_instruction_set! {
     /// Breaks over-stretched bonds of the rows and adds the force density of those that are left.
     pub(super) fn accept_rows [L: FastLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
-        rule: &BreakRule<'_, D>,
+        rule: &BreakRule<'_>,
         u: &Records,
         intact: &mut [u8],
         rows: &Rows<'_>,

@@ -9,10 +9,11 @@ use crate::error::Result;
 use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    Accepted, BondAt, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSprings,
-    LinearOperator, On, ZonedForce, damage,
+    BondAt, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSprings, LinearOperator,
+    On, ZonedForce, damage,
 };
 use crate::parallel::{BLOCK, components, ordered_sum};
+use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
     fn points(&self) -> usize {
@@ -64,20 +65,11 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
         largest.sqrt()
     }
 
-    fn accept_and_force(&mut self, accepted: Accepted<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
         if self.can_break() {
-            let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide(accepted.u, step, &on, None, out);
+            self.decide(step, &on, None, out);
         } else {
-            self.add_force(accepted.t, accepted.u, on, out);
-        }
-    }
-
-    fn advance_history(&mut self, _t: f64, u: &[f64], on: On<'_>) {
-        if self.can_break() {
-            // The force of the same sweep is not wanted.
-            let mut unused = vec![0.0; D * self.points()];
-            self.decide(u, None, &on, None, &mut unused);
+            self.add_force(step.t, step.u, on, out);
         }
     }
 

@@ -6,8 +6,9 @@ use super::force::BondForce;
 use super::kernels::force_rows;
 use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{Accepted, ForceOperator, On, ZonedForce};
+use crate::operator::{ForceOperator, On, ZonedForce};
 use crate::parallel::{BLOCK, components};
+use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> ZonedForce for BondForce<L, D> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
@@ -28,18 +29,17 @@ impl<L: FastLaw, const D: usize> ZonedForce for BondForce<L, D> {
         });
     }
 
-    fn accept_and_force_from(
+    fn end_step_from(
         &mut self,
-        accepted: Accepted<'_>,
+        step: &StepEnd<'_>,
         on: On<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
         if self.can_break() {
-            let step = Some((accepted.mean_velocity, accepted.dt));
-            self.decide(accepted.u, step, &on, Some(partners), out);
+            self.decide(step, &on, Some(partners), out);
         } else {
-            self.add_force_from(accepted.t, accepted.u, on, partners, out);
+            self.add_force_from(step.t, step.u, on, partners, out);
         }
     }
 

@@ -375,10 +375,6 @@ impl Integrator for Implicit {
         None
     }
 
-    fn start(&mut self, system: &mut System, state: &mut State) {
-        state.start(system);
-    }
-
     fn step(
         &mut self,
         system: &mut System,

@@ -5,9 +5,9 @@ use super::equation::{StepEquation, centre, root_masses};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::Accepted;
 use crate::parallel::ordered_sum;
 use crate::solve::{SolveLimits, Work, newton_krylov};
+use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 use crate::time::zone::{Sum, Zone};
 use crate::time::{Integrator, State};
@@ -247,10 +247,6 @@ impl Integrator for DiscreteGradient {
         Some(self.iterations)
     }
 
-    fn start(&mut self, system: &mut System, state: &mut State) {
-        system.start(state.t, &state.u, &state.v, &mut state.a);
-    }
-
     fn step(
         &mut self,
         system: &mut System,
@@ -295,14 +291,14 @@ impl Integrator for DiscreteGradient {
             state.v[k] = 2.0 * mean[k] - state.v[k];
         }
         std::mem::swap(&mut state.u, &mut self.next);
-        let accepted = Accepted {
+        let end = StepEnd {
             t: t_next,
-            u: &state.u,
-            mean_velocity: &self.mean,
             dt,
+            u: &state.u,
+            path: Path::MeanVelocity(&self.mean),
         };
-        system.accept_and_accelerate(accepted, &state.v, &mut state.a);
-        state.t = t_next;
+        system.end_step(&end, &state.v, &mut state.a);
+        state.close(system, t_next);
         state.step += 1;
         Ok(())
     }

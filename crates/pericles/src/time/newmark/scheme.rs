@@ -6,8 +6,9 @@ use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::{Accepted, On};
+use crate::operator::On;
 use crate::solve::{SolveLimits, Work, newton_krylov};
+use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 use crate::time::zone::{Sum, Zone};
 use crate::time::{Integrator, State, highest_frequency};
@@ -262,11 +263,11 @@ impl Newmark {
             .onto(u, &self.zone, n, &mut self.predicted[0]);
         let mean_velocity = &mut self.predicted[0];
         mean_velocity.iter_mut().for_each(|x| *x /= dt);
-        let accepted = Accepted {
+        let end = StepEnd {
             t,
-            u,
-            mean_velocity,
             dt,
+            u,
+            path: Path::MeanVelocity(mean_velocity),
         };
         // The last evaluation of an inner iteration stands for the new state where nothing is decided or measured there.
         let last_stands = !matches!(self.inner, Inner::NewtonKrylov(_))
@@ -274,15 +275,15 @@ impl Newmark {
             && system.motions().is_empty()
             && !system.has_boundaries();
         if last_stands {
-            system.book_step(accepted, found);
+            system.book_step(&end, found);
             a.copy_from_slice(found);
         } else {
-            system.accept_and_accelerate(accepted, v, a);
+            system.end_step(&end, v, a);
         }
         std::mem::swap(&mut state.u, u);
         std::mem::swap(&mut state.v, v);
         std::mem::swap(&mut state.a, a);
-        system.settle_breaking(t, &mut state.v);
+        state.close(system, t);
     }
 }
 
@@ -322,12 +323,6 @@ impl Integrator for Newmark {
             .then_some("gamma above 1/2 dissipates energy by design; gamma = 0.5 does not")
     }
 
-    fn start(&mut self, system: &mut System, state: &mut State) {
-        system.constrain(state.t, &mut state.u, &mut state.v);
-        system.constrain_velocity(state.t, &mut state.v);
-        system.start(state.t, &state.u, &state.v, &mut state.a);
-    }
-
     fn step(
         &mut self,
         system: &mut System,
@@ -352,7 +347,6 @@ impl Integrator for Newmark {
             }
         }
         self.accept(system, state, t_next, dt);
-        state.t = t_next;
         state.step += 1;
         Ok(())
     }

@@ -7,13 +7,14 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{Accepted, BondBody, BondForm, DamageMeasure, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{
     Fine, Follow, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
     State, Tableau,
 };
 use pericles::{Control, PointScalar, Simulation, System};
+use pericles::{Path, StepEnd};
 
 const SPACING: f64 = 0.01;
 const CRITICAL: f64 = 1e-3;
@@ -174,11 +175,11 @@ fn breaking_by_partners_decides_their_bonds_only() {
         let n = body.cloud.len();
         let u = body.displacement(2e-3);
         let v: Vec<f64> = u.iter().rev().map(|u| 1e3 * u).collect();
-        let accepted = Accepted {
+        let end = StepEnd {
             t: 0.0,
-            u: &u,
-            mean_velocity: &v,
             dt: 1e-8,
+            u: &u,
+            path: Path::MeanVelocity(&v),
         };
         let inside: Vec<bool> = (0..n).map(|i| (i * i) % 7 < 3).collect();
         let outside: Vec<bool> = inside.iter().map(|inside| !inside).collect();
@@ -188,7 +189,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
         for form in FORMS {
             let mut at_once = body.operator(form);
             let mut force = vec![0.0; u.len()];
-            at_once.accept_and_force(accepted, On::All, &mut force);
+            at_once.end_step(&end, On::All, &mut force);
             assert!(at_once.broken_bonds() > 5);
             let mut parts = body.operator(form);
             let mut sum = vec![0.0; u.len()];
@@ -200,8 +201,8 @@ fn breaking_by_partners_decides_their_bonds_only() {
                 (&outside, &inside),
             ] {
                 let rows = set(rows);
-                parts.as_zoned_mut().unwrap().accept_and_force_from(
-                    accepted,
+                parts.as_zoned_mut().unwrap().end_step_from(
+                    &end,
                     On::Set(&rows),
                     partners,
                     &mut sum,
@@ -244,7 +245,11 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
             ..body
         };
         let mut weak = lower.operator(BondForm::List);
-        weak.advance_history(0.0, &u, On::All);
+        weak.end_step(
+            &StepEnd::sub_step(0.0, 0.0, &u),
+            On::All,
+            &mut vec![0.0; u.len()],
+        );
         let mut damage = vec![0.0; n];
         weak.damage_into(&mut damage);
         let expected: Vec<bool> = damage.iter().map(|&d| d > 0.0).collect();
