@@ -2,7 +2,6 @@
 
 use pericles::Result;
 use pericles::observe::Snapshot;
-use pericles::parallel::ordered_sum;
 use pericles::{Archive, Saved, Values};
 
 /// e(t) ≤ e(0) exp(νt) + 1/(2ν) ∫₀ᵗ exp(ν(t−s)) ‖b(s)‖² ds with ‖b‖² = Σ V |b|²/ρ (W): what kinetic plus elastic energy e (J) cannot exceed, for any rate ν > 0 (1/s).
@@ -60,7 +59,7 @@ impl EnergyInequality {
         self.load.resize(system.dimension() * n, 0.0);
         system.external_acceleration_into(t, &mut self.load);
         let (load, volumes) = (&self.load, system.cloud().volumes());
-        ordered_sum(load.len(), |k| {
+        system.domain().sum(load.len(), |k| {
             volumes[k % n] * system.density().at(k % n) * load[k] * load[k]
         })
     }

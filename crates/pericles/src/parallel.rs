@@ -1,6 +1,6 @@
 //! Loops over points on all cores whose results do not depend on the number of threads.
 //!
-//! Points are taken in fixed blocks; a block is computed by one thread from start to end, and sums over blocks are added in the blocks' order.
+//! Points are taken in fixed blocks; a block is computed by one thread from start to end. Sums are in [`sum`](crate::sum).
 
 use std::ops::Range;
 
@@ -213,19 +213,6 @@ pub fn components<const D: usize>(array: &[f64], n: usize) -> [&[f64]; D] {
     std::array::from_fn(|c| &array[c * n..(c + 1) * n])
 }
 
-/// Σ term(i) for i < n, with the same rounding for any number of threads.
-pub fn ordered_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let partial: Vec<f64> = (0..n.div_ceil(BLOCK))
-        .into_par_iter()
-        .map(|block| {
-            (block * BLOCK..((block + 1) * BLOCK).min(n))
-                .map(&term)
-                .sum()
-        })
-        .collect();
-    partial.iter().sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -262,18 +249,5 @@ mod tests {
             assert!(found.windows(2).all(|pair| pair[0].end < pair[1].start));
         }
         assert_eq!(runs(&[]).count(), 0);
-    }
-
-    #[test]
-    fn sums_have_the_same_bits_on_any_number_of_threads() {
-        let term = |i: usize| (i as f64 * 0.37).sin() / (1.0 + i as f64);
-        let on = |threads| {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap()
-                .install(|| ordered_sum(100_003, term))
-        };
-        assert_eq!(on(1).to_bits(), on(3).to_bits());
     }
 }

@@ -1,7 +1,8 @@
 //! The bonds of a lattice on a periodic box.
 
 use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
-use pericles::parallel::{BLOCK, components, components_mut, for_each_block, ordered_sum};
+use pericles::parallel::{BLOCK, components, components_mut, for_each_block};
+use pericles::sum::sum;
 use pericles::{Archive, Saved};
 use pericles::{PericlesError, Result};
 
@@ -190,7 +191,7 @@ impl ForceOperator for PeriodicForce {
     }
 
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
-        self.volume * ordered_sum(self.points, |i| self.energy_density(u, i))
+        self.volume * sum(self.points, |i| self.energy_density(u, i))
     }
 
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {

@@ -15,7 +15,7 @@ use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;
 use pericles::operator::{CoarseBreak, each_once};
 use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
-use pericles::parallel::{BLOCK, components_mut, for_each_block, ordered_sum};
+use pericles::parallel::{BLOCK, components_mut, for_each_block};
 use pericles::space::PointCloud;
 use pericles::{Archive, Saved, StepEnd};
 
@@ -147,7 +147,9 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
     fn energy(&self, t: f64, u: &[f64]) -> f64 {
         let mut density = vec![0.0; self.points()];
         self.add_energy_density(t, u, &mut density);
-        ordered_sum(self.points(), |i| density[i] * self.cloud.volumes()[i])
+        let volumes = self.cloud.volumes();
+        let energy = |i: usize| density[i] * volumes[i];
+        self.cloud.domain().sum(self.points(), energy)
     }
 
     /// ω² ≤ max_i (2/ρ_i) Σ_j |w_ij| A_j for p = 2, by Gershgorin's discs; zero for p > 2, where nothing is stiff at rest.

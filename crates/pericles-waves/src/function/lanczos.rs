@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::{MatrixFunction, Product, Term};
 use pericles::Interrupt;
-use pericles::parallel::ordered_sum;
+use pericles::sum::sum;
 use pericles::{PericlesError, Result};
 
 /// g(A) x ≈ ‖x‖ Q g(T) e₁, T the projection of A on the Krylov space of x with the basis Q, orthonormal in the inner product Σ m_i x_i y_i.
@@ -39,7 +39,7 @@ impl Lanczos {
     }
 
     fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
-        ordered_sum(x.len(), |k| self.mass[k] * x[k] * y[k])
+        sum(x.len(), |k| self.mass[k] * x[k] * y[k])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Energies of linear operators from the force: no loop over bonds is needed.
 
-use pericles::parallel::ordered_sum;
+use pericles::sum::sum;
 
 /// The value that displacements are taken relative to: a rigid translation is then exactly zero.
 pub(super) fn origin<const D: usize>(u: &[f64]) -> [f64; D] {
@@ -16,7 +16,7 @@ pub(super) fn elastic_energy<const D: usize>(
     origin: [f64; D],
 ) -> f64 {
     let n = volumes.len();
-    let work = ordered_sum(D * n, |k| {
+    let work = sum(D * n, |k| {
         volumes[k % n] * force[k] * (u[k] - origin[k / n])
     });
     -0.5 * work

@@ -1,7 +1,7 @@
 //! The linearisation of a force about a displacement.
 
 use super::{ForceOperator, LinearOperator, On};
-use crate::parallel::ordered_sum;
+use crate::sum::sum;
 
 /// d ↦ f′(u₀) d, the force density's derivative at u₀; about the reference state of any bond-based law it is the linear law's operator.
 ///
@@ -35,8 +35,8 @@ impl<'a> Linearisation<'a> {
         self.apply_into(&step, &mut linear);
         self.operator.add_force(0.0, u, On::All, &mut force);
         let change = |k: usize| force[k] - self.force[k];
-        let miss = ordered_sum(u.len(), |k| (change(k) - linear[k]).powi(2));
-        let size = ordered_sum(u.len(), |k| change(k).powi(2));
+        let miss = sum(u.len(), |k| (change(k) - linear[k]).powi(2));
+        let size = sum(u.len(), |k| change(k).powi(2));
         if size > 0.0 {
             (miss / size).sqrt()
         } else {

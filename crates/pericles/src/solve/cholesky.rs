@@ -1,6 +1,6 @@
 //! Direct solution of symmetric positive definite systems whose matrix is a band.
 
-use super::{SolveLimits, Solved, Work, add_scaled, norm};
+use super::{SolveLimits, Solved, Work, add_scaled};
 use crate::error::{PericlesError, Result};
 
 /// A = L Lᵀ for a symmetric positive definite A with A_ij = 0 beyond |i − j| = `reach`; a full matrix has the reach n − 1.
@@ -143,8 +143,9 @@ impl BandedCholesky {
         limits: &SolveLimits<'_>,
         work: &mut Work,
     ) -> Result<Solved> {
-        let tolerance = limits.tolerance(norm(right));
-        let [residual, trial, product] = &mut work.krylov;
+        let tolerance = limits.tolerance(work.domain.norm(right));
+        let Work { domain, krylov, .. } = work;
+        let [residual, trial, product] = krylov;
         let mut solved = Solved {
             residual: f64::INFINITY,
             ..Solved::default()
@@ -157,7 +158,7 @@ impl BandedCholesky {
             for ((r, b), p) in residual.iter_mut().zip(right).zip(&*product) {
                 *r = b - p;
             }
-            let (before, found) = (solved.residual, norm(residual));
+            let (before, found) = (solved.residual, domain.norm(residual));
             if found < before {
                 x.copy_from_slice(trial);
                 solved.residual = found;

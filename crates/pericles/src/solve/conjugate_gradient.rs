@@ -1,6 +1,7 @@
 //! The method of conjugate gradients.
 
-use super::{SolveLimits, Solved, Work, add_scaled, dot, norm};
+use super::{SolveLimits, Solved, Work, add_scaled};
+use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 
 /// Solves A x = b for a symmetric positive definite A given by its products `apply(x, out)`, from the `x` given.
@@ -18,7 +19,7 @@ pub fn conjugate_gradient(
     limits: &SolveLimits<'_>,
     work: &mut Work,
 ) -> Result<Solved> {
-    let tolerance = limits.tolerance(norm(right));
+    let tolerance = limits.tolerance(work.domain.norm(right));
     let mut solved = Solved::default();
     // The residual of the recurrence drifts from the true one by rounding; a restart from the true one removes the drift.
     loop {
@@ -29,7 +30,7 @@ pub fn conjugate_gradient(
             x,
             tolerance,
             limits,
-            &mut work.krylov,
+            (&work.domain, &mut work.krylov),
             &mut solved,
         )?;
         let stuck = solved.iterations >= limits.iterations
@@ -77,10 +78,11 @@ pub(super) fn sweep(
     x: &mut [f64],
     tolerance: f64,
     limits: &SolveLimits<'_>,
-    [residual, direction, product]: &mut [Vec<f64>; 3],
+    (domain, [residual, direction, product]): (&Domain, &mut [Vec<f64>; 3]),
     solved: &mut Solved,
 ) -> Result<End> {
     true_residual(apply, right, x, residual, product, solved);
+    solved.residual = domain.norm(residual);
     if solved.residual <= tolerance {
         return Ok(End::Reached);
     }
@@ -91,16 +93,17 @@ pub(super) fn sweep(
         apply(direction, product);
         solved.products += 1;
         solved.iterations += 1;
-        let curvature = dot(direction, product);
+        let curvature = domain.dot(direction, product);
         if curvature.is_nan() || curvature <= 0.0 {
             return Ok(End::Indefinite);
         }
         let length = squared / curvature;
         add_scaled(x, length, direction);
         add_scaled(residual, -length, product);
-        let next = dot(residual, residual);
+        let next = domain.dot(residual, residual);
         if next.sqrt() <= tolerance {
             true_residual(apply, right, x, residual, product, solved);
+            solved.residual = domain.norm(residual);
             return Ok(if solved.residual <= tolerance {
                 End::Reached
             } else {
@@ -130,7 +133,6 @@ fn true_residual(
     for ((r, b), p) in residual.iter_mut().zip(right).zip(&*product) {
         *r = b - p;
     }
-    solved.residual = norm(residual);
 }
 
 #[cfg(test)]

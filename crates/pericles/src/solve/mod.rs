@@ -33,8 +33,8 @@ pub use cholesky::BandedCholesky;
 pub use conjugate_gradient::conjugate_gradient;
 pub use newton::{Nonlinear, newton_krylov};
 
+use crate::domain::Domain;
 use crate::interrupt::Interrupt;
-use crate::parallel::ordered_sum;
 
 /// When an iteration ends.
 #[derive(Debug, Clone, Copy)]
@@ -81,6 +81,8 @@ pub struct Solved {
 /// Vectors that solvers work with, made once for systems of one size.
 #[derive(Debug, Clone)]
 pub struct Work {
+    /// What sums are taken over.
+    domain: Domain,
     /// Conjugate gradients: residual, direction, product.
     krylov: [Vec<f64>; 3],
     /// Newton: residual, right-hand side, correction, trial point.
@@ -88,9 +90,15 @@ pub struct Work {
 }
 
 impl Work {
-    /// For systems of `n` unknowns.
+    /// For systems of `n` unknowns, all of them of this process.
     pub fn new(n: usize) -> Self {
+        Self::on(&Domain::alone(n), n)
+    }
+
+    /// For systems of which this process has `n` unknowns.
+    pub fn on(domain: &Domain, n: usize) -> Self {
         Self {
+            domain: domain.clone(),
             krylov: std::array::from_fn(|_| vec![0.0; n]),
             newton: std::array::from_fn(|_| vec![0.0; n]),
         }
@@ -100,14 +108,6 @@ impl Work {
     pub fn bytes(&self) -> usize {
         (self.krylov.len() + self.newton.len()) * self.krylov[0].len() * size_of::<f64>()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    ordered_sum(a.len(), |i| a[i] * b[i])
-}
-
-fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 /// y += factor x

@@ -1,7 +1,7 @@
 //! Newton's method with conjugate gradients inside.
 
 use super::conjugate_gradient::{End, sweep};
-use super::{SolveLimits, Solved, Work, add_scaled, norm};
+use super::{SolveLimits, Solved, Work, add_scaled};
 use crate::error::{PericlesError, Result};
 
 /// A nonlinear system F(x) = 0 whose derivative is symmetric and positive definite.
@@ -32,12 +32,16 @@ pub fn newton_krylov(
     limits: &SolveLimits<'_>,
     work: &mut Work,
 ) -> Result<Solved> {
-    let Work { krylov, newton } = work;
+    let Work {
+        domain,
+        krylov,
+        newton,
+    } = work;
     let [residual, right, correction, trial] = newton;
     let tolerance = limits.tolerance(scale);
     let mut solved = Solved::default();
     problem.residual_into(x, residual);
-    solved.residual = norm(residual);
+    solved.residual = domain.norm(residual);
     let mut forcing: f64 = 0.1;
     while solved.residual > tolerance {
         let failed = |solved: Solved, cause| PericlesError::NotConverged {
@@ -70,7 +74,7 @@ pub fn newton_krylov(
             correction,
             inner_tolerance,
             &inner,
-            krylov,
+            (&*domain, krylov),
             &mut counted,
         )?;
         solved.products += counted.products;
@@ -85,7 +89,7 @@ pub fn newton_krylov(
             add_scaled(trial, length, correction);
             limits.interrupt.poll()?;
             problem.residual_into(trial, residual);
-            solved.residual = norm(residual);
+            solved.residual = domain.norm(residual);
             if solved.residual < before * (1.0 - 1e-4 * length) {
                 x.copy_from_slice(trial);
                 break;
@@ -152,7 +156,7 @@ mod tests {
         };
         let mut right = vec![0.0; n];
         chain.residual_into(&exact, &mut right);
-        let scale = norm(&right);
+        let scale = crate::domain::Domain::alone(right.len()).norm(&right);
         chain.right = right;
         let mut x = vec![0.0; n];
         let solved = newton_krylov(

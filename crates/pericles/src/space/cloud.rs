@@ -1,6 +1,7 @@
 //! The points of a body.
 
 use super::{Point, Region};
+use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 
 /// Numbers of points, ascending, in the cloud's own order.
@@ -51,6 +52,7 @@ pub struct PointCloud {
     user_numbers: Vec<u32>,
     /// The block of each point; empty if all are in block 1.
     blocks: Vec<u32>,
+    domain: Domain,
 }
 
 impl PointCloud {
@@ -122,6 +124,7 @@ impl PointCloud {
             periodic: false,
             user_numbers: Vec::new(),
             blocks: Vec::new(),
+            domain: Domain::alone(n),
         })
     }
 
@@ -224,6 +227,25 @@ impl PointCloud {
     /// Never true: a cloud has at least one point.
     pub fn is_empty(&self) -> bool {
         self.volumes.is_empty()
+    }
+
+    /// The division of the body among processes.
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// The same points as those of one of several processes.
+    ///
+    /// # Panics
+    /// If the domain owns another number of points.
+    #[must_use]
+    pub fn with_domain(self, domain: Domain) -> Self {
+        assert_eq!(
+            domain.owned_points(),
+            self.len(),
+            "one volume for each own point"
+        );
+        Self { domain, ..self }
     }
 
     /// 1, 2 or 3.

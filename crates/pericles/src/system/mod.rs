@@ -10,9 +10,10 @@ use rayon::prelude::*;
 use crate::accounts::Ledger;
 use crate::archive::Counter;
 use crate::boundary::{Boundary, Load, PrescribedMotion};
+use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{ForceOperator, On};
-use crate::parallel::{BLOCK, for_each_entry, ordered_sum};
+use crate::parallel::{BLOCK, for_each_entry};
 use crate::scalar::PointScalar;
 use crate::space::PointCloud;
 use crate::step_end::{Path, StepEnd};
@@ -105,6 +106,11 @@ impl System {
     /// The points.
     pub fn cloud(&self) -> &Arc<PointCloud> {
         &self.cloud
+    }
+
+    /// The division of the body among processes.
+    pub fn domain(&self) -> &Domain {
+        self.cloud.domain()
     }
 
     /// The internal forces.
@@ -349,7 +355,7 @@ impl System {
     /// Kinetic energy, J.
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         let n = self.points();
-        ordered_sum(n, |i| {
+        self.domain().sum(n, |i| {
             let square: f64 = (0..self.dimension()).map(|c| v[c * n + i].powi(2)).sum();
             0.5 * self.density.at(i) * self.cloud.volumes()[i] * square
         })
@@ -362,7 +368,7 @@ impl System {
             if c >= self.dimension() {
                 return 0.0;
             }
-            ordered_sum(n, |i| {
+            self.domain().sum(n, |i| {
                 self.density.at(i) * self.cloud.volumes()[i] * v[c * n + i]
             })
         })

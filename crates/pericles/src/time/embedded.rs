@@ -84,7 +84,7 @@ impl AdaptiveRungeKutta {
     /// Tries a sub-step: leaves its end in `next` and returns its error over the tolerance.
     fn attempt(&mut self, system: &mut System, state: &State, h: f64) -> f64 {
         let State { t, u, v, a, .. } = state;
-        let n = system.points();
+        let (n, domain) = (system.points(), system.domain().clone());
         let [u_next, v_next] = &mut self.next;
         for i in 1..self.form.len() {
             let (before, later) = self.a.split_at_mut(i - 1);
@@ -114,11 +114,11 @@ impl AdaptiveRungeKutta {
                 n,
                 &mut self.stage,
             );
-            let size = largest(before).max(largest(after));
+            let size = domain.max(largest(before).max(largest(after)));
             if size == 0.0 {
                 0.0
             } else {
-                largest(&self.stage) / (self.tolerance * size)
+                domain.max(largest(&self.stage)) / (self.tolerance * size)
             }
         };
         let error_u = relative(h * h, of_displacement, [u, u_next]);

@@ -7,7 +7,7 @@ use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
-use crate::parallel::{BLOCK, ordered_sum};
+use crate::parallel::BLOCK;
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
@@ -202,10 +202,12 @@ impl Relaxation {
     /// √Σ (V F)² over the entries that `counts` weighs with 1, N.
     fn norm(&self, system: &System, force: &[f64], counts: impl Fn(f64) -> f64 + Sync) -> f64 {
         let (n, volumes) = (system.points(), system.cloud().volumes());
-        ordered_sum(force.len(), |entry| {
-            counts(self.free[entry]) * (force[entry] * volumes[entry % n]).powi(2)
-        })
-        .sqrt()
+        system
+            .domain()
+            .sum(force.len(), |entry| {
+                counts(self.free[entry]) * (force[entry] * volumes[entry % n]).powi(2)
+            })
+            .sqrt()
     }
 
     /// 2 √(dᵀK d / dᵀM d), with K d = F₀ − F for the displacement d since the start.
@@ -215,13 +217,15 @@ impl Relaxation {
         let (n, volumes) = (system.points(), system.cloud().volumes());
         let d = |entry: usize| u[entry] - self.start[entry];
         let weighted = |entry: usize, x: f64| self.free[entry] * volumes[entry % n] * x;
-        let stiffness = ordered_sum(u.len(), |entry| {
+        let stiffness = system.domain().sum(u.len(), |entry| {
             weighted(
                 entry,
                 d(entry) * (self.first_force[entry] - self.force[entry]),
             )
         });
-        let mass = ordered_sum(u.len(), |entry| weighted(entry, d(entry).powi(2)));
+        let mass = system
+            .domain()
+            .sum(u.len(), |entry| weighted(entry, d(entry).powi(2)));
         if stiffness > 0.0 && mass > 0.0 {
             (2.0 * (self.mobility * stiffness / mass).sqrt()).min(MOST)
         } else {

@@ -16,8 +16,8 @@ use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
 use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
-use pericles::parallel::ordered_sum;
 use pericles::space::PointCloud;
+use pericles::sum::sum;
 
 /// f = ∫ a (2ξ²η + 3ξη² + η³) dξ, a = cα/(2|ξ|³): the force density (N/m³) of [`GreenBond`](pericles::material::GreenBond) on a bar whose ends are one.
 ///
@@ -317,7 +317,7 @@ impl ForceOperator for SpectralCubicForce {
         let mut work = self.work.take();
         self.terms(u, ENERGY, &mut work);
         let (force, volumes) = (&work.force, self.cloud.volumes());
-        -ordered_sum(u.len(), |i| volumes[i] * force[i] * (u[i] - origin))
+        -sum(u.len(), |i| volumes[i] * force[i] * (u[i] - origin))
     }
 
     /// The largest ω of all plane waves about the reference, for the smallest density.

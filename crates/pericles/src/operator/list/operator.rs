@@ -12,7 +12,7 @@ use crate::operator::{
     BondAt, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSprings, LinearOperator,
     On, ZonedForce, damage,
 };
-use crate::parallel::{BLOCK, components, ordered_sum};
+use crate::parallel::{BLOCK, components};
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
@@ -45,7 +45,9 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
     fn energy(&self, t: f64, u: &[f64]) -> f64 {
         let mut density = vec![0.0; self.points()];
         self.add_energy_density(t, u, &mut density);
-        ordered_sum(self.points(), |i| density[i] * self.cloud.volumes()[i])
+        let volumes = self.cloud.volumes();
+        let energy = |i: usize| density[i] * volumes[i];
+        self.cloud.domain().sum(self.points(), energy)
     }
 
     /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ|, by Gershgorin's discs of 3×3 blocks.

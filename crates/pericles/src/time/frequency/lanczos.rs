@@ -12,13 +12,14 @@
 //! **Rounding.** Without reorthogonalisation the vectors lose their orthogonality once a Ritz value has converged. The recurrence of the products with v is disturbed by some 1e-16 a step,
 //! far below τ, so that the bound stands; copies of converged values change nothing at the upper end.
 
+use crate::domain::Domain;
 use crate::noise::noise;
-use crate::parallel::ordered_sum;
 
 /// A symmetric matrix M⁻¹K in the inner product of the masses.
 pub(super) struct Problem<'a> {
     pub product: &'a dyn Fn(&[f64], &mut [f64]),
     pub mass: &'a (dyn Fn(usize) -> f64 + Sync),
+    pub domain: &'a Domain,
 }
 
 /// The iteration so far.
@@ -72,7 +73,7 @@ impl<'a> Lanczos<'a> {
         let mut start = noise(entries, 0x9E37_79B9_7F4A_7C15);
         hold(&mut start);
         // σ² is a third for numbers that are uniform in [−1, 1).
-        let norm = ordered_sum(entries, |k| start[k] * start[k]).sqrt();
+        let norm = problem.domain.norm(&start);
         for (k, x) in start.iter_mut().enumerate() {
             *x /= (problem.mass)(k).sqrt();
         }
@@ -85,7 +86,7 @@ impl<'a> Lanczos<'a> {
 
     fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
         let mass = self.problem.mass;
-        ordered_sum(x.len(), |k| mass(k) * x[k] * y[k])
+        self.problem.domain.sum(x.len(), |k| mass(k) * x[k] * y[k])
     }
 
     /// Products so far.
@@ -229,9 +230,11 @@ mod tests {
                 }
             };
             let mass = |k: usize| 1.0 + (k % 7) as f64;
+            let domain = Domain::alone(n);
             let problem = Problem {
                 product: &product,
                 mass: &mass,
+                domain: &domain,
             };
             let mut lanczos = Lanczos::from_noise(problem, n, 1e-9, |_| ()).unwrap();
             let mut last = f64::INFINITY;

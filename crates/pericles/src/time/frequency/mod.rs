@@ -156,6 +156,7 @@ impl<'a> Search<'a> {
         work(Problem {
             product: &product,
             mass: &mass,
+            domain: self.system.domain(),
         })
     }
 

@@ -13,7 +13,7 @@ use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
-use crate::parallel::{BLOCK, ordered_sum};
+use crate::parallel::BLOCK;
 use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
 use crate::step_kind::StepKind;
 use crate::system::System;
@@ -99,7 +99,7 @@ impl Implicit {
             change: array(),
             force: array(),
             next: [array(), array()],
-            work: Work::new(entries),
+            work: Work::on(system.domain(), entries),
         })
     }
 
@@ -163,7 +163,7 @@ impl Implicit {
         };
         let work = &mut self.work;
         let solved = solver.solve(system, &self.mass, tau, &self.right, free, (&limits, work));
-        let solved = good_enough(solved, ACCEPTED * norm(&self.right));
+        let solved = good_enough(solved, ACCEPTED * system.domain().norm(&self.right));
         each(&mut self.half, free, |half, free| *half += free);
         solved
     }
@@ -200,9 +200,12 @@ impl Implicit {
             *a = total * a.abs() + right.abs()
         });
         each(size, &self.mass, |size, m| *size *= m);
-        let scale = norm(size).max(of_step);
+        let scale = system.domain().norm(size).max(of_step);
         let mass = &self.mass;
-        let displacement = ordered_sum(u.len(), |k| (mass[k] * u[k]).powi(2)).sqrt();
+        let displacement = system
+            .domain()
+            .sum(u.len(), |k| (mass[k] * u[k]).powi(2))
+            .sqrt();
         let rounding = ROUNDING * quarter * self.stiffest * displacement;
         let limits = SolveLimits {
             interrupt,
@@ -244,10 +247,12 @@ impl Implicit {
             system.vibration_into(moved, &self.half, pull);
         }
         let (load, pull, mass) = (&*load, &*pull, &self.mass);
-        ordered_sum(load.len(), |k| {
-            (mass[k] * (share * load[k].abs() + quarter * pull[k].abs())).powi(2)
-        })
-        .sqrt()
+        system
+            .domain()
+            .sum(load.len(), |k| {
+                (mass[k] * (share * load[k].abs() + quarter * pull[k].abs())).powi(2)
+            })
+            .sqrt()
     }
 }
 
@@ -344,10 +349,6 @@ fn each(y: &mut [f64], x: &[f64], set: impl Fn(&mut f64, f64) + Sync) {
     y.par_chunks_mut(BLOCK)
         .zip(x.par_chunks(BLOCK))
         .for_each(|(y, x)| y.iter_mut().zip(x).for_each(|(y, x)| set(y, *x)));
-}
-
-fn norm(x: &[f64]) -> f64 {
-    ordered_sum(x.len(), |k| x[k] * x[k]).sqrt()
 }
 
 /// Rounding may keep a solver above what was asked for, but not above `accepted`.

@@ -1,6 +1,6 @@
 //! Anderson acceleration of a fixed-point iteration.
 
-use crate::parallel::ordered_sum;
+use crate::domain::Domain;
 
 /// x ← g(x), with g(x) replaced by the combination of the last few images whose residual g − x is smallest (Walker & Ni 2011, in differences).
 ///
@@ -37,7 +37,7 @@ impl Anderson {
     }
 
     /// Puts the next iterate in place of `image`, which is g(x) for the iterate `x`.
-    pub(super) fn next(&mut self, x: &[f64], image: &mut [f64]) {
+    pub(super) fn next(&mut self, domain: &Domain, x: &[f64], image: &mut [f64]) {
         let depth = self.residuals.len();
         if self.seen > 0 {
             let slot = (self.seen - 1) % depth;
@@ -53,7 +53,7 @@ impl Anderson {
         }
         let known = self.seen.min(depth);
         self.seen += 1;
-        let weights = self.weights(known);
+        let weights = self.weights(domain, known);
         for (weight, difference) in weights.iter().zip(&self.images[..known]) {
             for (image, difference) in image.iter_mut().zip(difference) {
                 *image -= weight * difference;
@@ -62,15 +62,14 @@ impl Anderson {
     }
 
     /// argmin ‖f − ΔF w‖ by Cholesky's factorisation of the normal equations, with directions left out that depend on others.
-    fn weights(&self, known: usize) -> [f64; MOST] {
-        let dot = |a: &[f64], b: &[f64]| ordered_sum(a.len(), |i| a[i] * b[i]);
+    fn weights(&self, domain: &Domain, known: usize) -> [f64; MOST] {
         let mut matrix = [[0.0; MOST]; MOST];
         let mut right = [0.0; MOST];
         for i in 0..known {
             for j in 0..=i {
-                matrix[i][j] = dot(&self.residuals[i], &self.residuals[j]);
+                matrix[i][j] = domain.dot(&self.residuals[i], &self.residuals[j]);
             }
-            right[i] = dot(&self.residuals[i], &self.last_residual);
+            right[i] = domain.dot(&self.residuals[i], &self.last_residual);
         }
         let mut used = [false; MOST];
         for i in 0..known {
@@ -130,7 +129,7 @@ mod tests {
         let mut anderson = Anderson::new(5, n);
         for _ in 0..6 {
             let mut image = g(&x);
-            anderson.next(&x, &mut image);
+            anderson.next(&Domain::alone(n), &x, &mut image);
             x = image;
         }
         for i in 0..n {

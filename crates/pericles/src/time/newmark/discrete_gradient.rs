@@ -5,7 +5,6 @@ use super::equation::{StepEquation, centre, root_masses};
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::parallel::ordered_sum;
 use crate::solve::{SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
@@ -78,7 +77,7 @@ impl DiscreteGradient {
             tolerance,
             zone: Zone::all(system.points()),
             root_mass: root_masses(system),
-            work: Work::new(entries),
+            work: Work::on(system.domain(), entries),
             vectors: std::array::from_fn(|_| array()),
             known: array(),
             scaled: array(),
@@ -100,7 +99,7 @@ impl DiscreteGradient {
         interrupt: Interrupt<'_>,
     ) -> Result<Attempt> {
         let theta = 0.5 * step.dt * step.dt;
-        let scale = ordered_sum(self.scaled.len(), |k| self.scaled[k].powi(2)).sqrt();
+        let scale = system.domain().norm(&self.scaled);
         let limits = SolveLimits {
             absolute: 0.1 * self.tolerance * step.reach,
             relative: ROUNDING,
@@ -134,20 +133,24 @@ impl DiscreteGradient {
         let moved = |k: usize| next[k] - state.u[k];
         let means: [f64; 3] = std::array::from_fn(|c| {
             if c < system.dimension() {
-                centre(root_mass, c, n, &moved)
+                centre(system.domain(), root_mass, c, n, &moved)
             } else {
                 0.0
             }
         });
         let volumes = system.cloud().volumes();
-        let work = ordered_sum(next.len(), |k| volumes[k % n] * force[k] * moved(k));
-        let shape = ordered_sum(next.len(), |k| {
+        let work = system
+            .domain()
+            .sum(next.len(), |k| volumes[k % n] * force[k] * moved(k));
+        let shape = system.domain().sum(next.len(), |k| {
             (root_mass[k] * (moved(k) - means[k / n])).powi(2)
         });
         let elastic = system.operator().energy(step.t, next);
         let missing = elastic - step.elastic + work;
         let velocity = |k: usize| 2.0 * moved(k) / step.dt - state.v[k];
-        let twice = ordered_sum(next.len(), |k| (root_mass[k] * velocity(k)).powi(2));
+        let twice = system
+            .domain()
+            .sum(next.len(), |k| (root_mass[k] * velocity(k)).powi(2));
         Ok(Attempt {
             balanced: if shape > 0.0 { missing / shape } else { 0.0 },
             missing: missing - c * shape,
@@ -259,7 +262,10 @@ impl Integrator for DiscreteGradient {
         system.external_acceleration_into(state.t, &mut self.mean);
         system.external_acceleration_into(t_next, &mut self.next);
         let (first, last, root) = (&self.mean, &self.next, &self.root_mass);
-        let pushed = ordered_sum(root.len(), |k| (root[k] * (first[k] + last[k])).powi(2)).sqrt();
+        let pushed = system
+            .domain()
+            .sum(root.len(), |k| (root[k] * (first[k] + last[k])).powi(2))
+            .sqrt();
         let kinetic = system.kinetic_energy(&state.v);
         Sum::new()
             .plus(dt, &state.v)

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::domain::Domain;
 use crate::operator::On;
-use crate::parallel::{BLOCK, ordered_sum};
+use crate::parallel::BLOCK;
 use crate::solve::Nonlinear;
 use crate::system::System;
 
@@ -40,7 +41,7 @@ impl StepEquation<'_> {
             if phi == 0.0 || c >= self.system.dimension() {
                 return 0.0;
             }
-            centre(self.root_mass, c, n, &from)
+            centre(self.system.domain(), self.root_mass, c, n, &from)
         });
         let density = self.system.density();
         out.par_chunks_mut(BLOCK).enumerate().for_each(|(b, out)| {
@@ -74,13 +75,14 @@ impl StepEquation<'_> {
 
 /// The mass-weighted mean of component c.
 pub(super) fn centre(
+    domain: &Domain,
     root_mass: &[f64],
     c: usize,
     n: usize,
     x: &(impl Fn(usize) -> f64 + Sync),
 ) -> f64 {
     let mass = |i: usize| root_mass[c * n + i].powi(2);
-    ordered_sum(n, |i| mass(i) * x(c * n + i)) / ordered_sum(n, mass)
+    domain.sum(n, |i| mass(i) * x(c * n + i)) / domain.sum(n, mass)
 }
 
 impl StepEquation<'_> {

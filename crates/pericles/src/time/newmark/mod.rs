@@ -24,7 +24,6 @@ pub use discrete_gradient::DiscreteGradient;
 pub use scheme::Newmark;
 
 use crate::error::{PericlesError, Result};
-use crate::parallel::ordered_sum;
 use crate::system::System;
 
 /// How the equation of a step is solved.
@@ -67,11 +66,11 @@ impl VelocityNorm {
     /// The norm of `factor` times a component-major vector.
     fn of(self, system: &System, factor: f64, x: &[f64]) -> f64 {
         let n = system.points();
-        let volumes = system.cloud().volumes();
+        let (domain, volumes) = (system.domain(), system.cloud().volumes());
         let scaled = match self {
-            Self::Sum => ordered_sum(x.len(), |k| x[k] * x[k]).sqrt(),
-            Self::Weighted => ordered_sum(x.len(), |k| volumes[k % n] * x[k] * x[k]).sqrt(),
-            Self::Largest => x.iter().fold(0.0_f64, |most, x| most.max(x.abs())),
+            Self::Sum => domain.norm(x),
+            Self::Weighted => domain.sum(x.len(), |k| volumes[k % n] * x[k] * x[k]).sqrt(),
+            Self::Largest => domain.max(x.iter().fold(0.0_f64, |most, x| most.max(x.abs()))),
         };
         factor.abs() * scaled
     }

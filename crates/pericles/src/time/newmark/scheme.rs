@@ -73,7 +73,7 @@ impl Newmark {
                         &mut (0..system.points()).map(|i| system.density().at(i).sqrt()),
                     ),
                     root_mass,
-                    work: Work::new(entries),
+                    work: Work::on(system.domain(), entries),
                     vectors: std::array::from_fn(|_| array()),
                     known: array(),
                     scaled: array(),
@@ -147,7 +147,7 @@ impl Newmark {
                     for (a, found) in a.iter_mut().zip(&*found) {
                         *a = found - *a;
                     }
-                    anderson.next(a, found);
+                    anderson.next(system.domain(), a, found);
                     a.copy_from_slice(found);
                 }
                 _ => a.copy_from_slice(found),

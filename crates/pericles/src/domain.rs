@@ -1,0 +1,206 @@
+//! The points that a process owns, and how it reaches those of others.
+//!
+//! A body may be divided among several processes. Each owns some of the points, contiguous and component-major in every vector that integrators, observers and boundaries see; of the points of others it holds
+//! copies, *ghosts*, as far as its own points interact with them. Ghost values live in a buffer of their own and are known to forces alone: a force asks its domain for them ([`Domain::ghosts`]) before each of
+//! its passes. Sums, maxima and counts over points go through the domain too, so that nothing else knows how many processes there are. One process that owns everything ([`Alone`]) is the normal case.
+//!
+//! The number of a point in the whole body is its place in the order of [`PointCloud`](crate::space::PointCloud), whatever the division: rows of bonds and groups of eight follow these numbers, so that a
+//! point's force has the same bits for every division.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::sum::BinnedSum;
+
+/// What processes that share a body can say to each other. There is no sum of floating-point numbers: it would depend on the number of processes.
+pub trait Comm: Send + Sync {
+    /// Number of this process.
+    fn rank(&self) -> usize;
+
+    /// Number of processes.
+    fn size(&self) -> usize;
+
+    /// Sends `sent[k]` to process `peers[k]` and fills `received[k]` with what that process sends to this one.
+    fn exchange(&self, peers: &[usize], sent: &[Vec<f64>], received: &mut [Vec<f64>]);
+
+    /// Replaces each number by its sum over all processes.
+    fn sum(&self, numbers: &mut [i128]);
+
+    /// Replaces each number by the largest of all processes.
+    fn max(&self, numbers: &mut [f64]);
+}
+
+/// One process that owns all points.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Alone;
+
+impl Comm for Alone {
+    fn rank(&self) -> usize {
+        0
+    }
+
+    fn size(&self) -> usize {
+        1
+    }
+
+    fn exchange(&self, _peers: &[usize], _sent: &[Vec<f64>], _received: &mut [Vec<f64>]) {}
+
+    fn sum(&self, _numbers: &mut [i128]) {}
+
+    fn max(&self, _numbers: &mut [f64]) {}
+}
+
+/// A process that owns ghosts of this one, or the other way round.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Peer {
+    /// Its number.
+    pub rank: usize,
+    /// Own points that are ghosts there, by their numbers in the whole body.
+    pub sent: Vec<u32>,
+    /// Ghosts that it owns, in the same order.
+    pub received: Range<usize>,
+}
+
+/// The points of a process.
+#[derive(Clone)]
+pub struct Domain {
+    owned: usize,
+    ghosts: usize,
+    peers: Vec<Peer>,
+    comm: Arc<dyn Comm>,
+}
+
+impl fmt::Debug for Domain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            owned,
+            ghosts,
+            peers,
+            comm,
+        } = self;
+        let size = comm.size();
+        let rank = comm.rank();
+        write!(
+            f,
+            "{owned} points of process {rank} of {size}, {ghosts} ghosts of {} others",
+            peers.len()
+        )
+    }
+}
+
+/// A vector on the points of a process: component c of own point i is `owned[c * n + i]`, of ghost g `ghosts[c * m + g]`, with n own points and m ghosts.
+#[derive(Debug, Clone, Copy)]
+pub struct Field<'a> {
+    /// Own points.
+    pub owned: &'a [f64],
+    /// Ghosts.
+    pub ghosts: &'a [f64],
+}
+
+impl Domain {
+    /// All points of a body.
+    pub fn alone(points: usize) -> Self {
+        Self {
+            owned: points,
+            ghosts: 0,
+            peers: Vec::new(),
+            comm: Arc::new(Alone),
+        }
+    }
+
+    /// The points of one of several processes.
+    pub fn new(owned: usize, peers: Vec<Peer>, comm: Arc<dyn Comm>) -> Self {
+        let ghosts = peers.iter().map(|peer| peer.received.len()).sum();
+        Self {
+            owned,
+            ghosts,
+            peers,
+            comm,
+        }
+    }
+
+    /// Number of own points.
+    pub fn owned_points(&self) -> usize {
+        self.owned
+    }
+
+    /// Number of ghosts.
+    pub fn ghost_points(&self) -> usize {
+        self.ghosts
+    }
+
+    /// The values of ghosts, as their owners hold them, of a component-major vector on points. Every process must ask at the same time.
+    pub fn ghosts(&self, owned: &[f64]) -> Vec<f64> {
+        if self.peers.is_empty() {
+            return Vec::new();
+        }
+        let components = owned.len() / self.owned.max(1);
+        let ranks: Vec<usize> = self.peers.iter().map(|peer| peer.rank).collect();
+        let message = |peer: &Peer| -> Vec<f64> {
+            let of = |c: usize| {
+                peer.sent
+                    .iter()
+                    .map(move |&i| owned[c * self.owned + i as usize])
+            };
+            (0..components).flat_map(of).collect()
+        };
+        let sent: Vec<Vec<f64>> = self.peers.iter().map(message).collect();
+        let mut received = vec![Vec::new(); self.peers.len()];
+        self.comm.exchange(&ranks, &sent, &mut received);
+        let mut ghosts = vec![0.0; components * self.ghosts];
+        for (peer, values) in self.peers.iter().zip(&received) {
+            for (c, values) in values.chunks(peer.received.len().max(1)).enumerate() {
+                let from = c * self.ghosts + peer.received.start;
+                ghosts[from..from + values.len()].copy_from_slice(values);
+            }
+        }
+        ghosts
+    }
+
+    /// Σ term(k) for k < n and over all processes, the same for every order and division; see [`sum`](crate::sum).
+    pub fn sum(&self, n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+        let own = BinnedSum::of(n, term);
+        if self.comm.size() == 1 {
+            return own.value();
+        }
+        let mut top = [f64::from(own.top())];
+        self.comm.max(&mut top);
+        let top = top[0] as i32;
+        let mut integers = own.integers(top);
+        self.comm.sum(&mut integers);
+        BinnedSum::of_integers(top, integers).value()
+    }
+
+    /// Σ a_k b_k.
+    pub fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.sum(a.len(), |k| a[k] * b[k])
+    }
+
+    /// √Σ a_k².
+    pub fn norm(&self, a: &[f64]) -> f64 {
+        self.dot(a, a).sqrt()
+    }
+
+    /// The largest of a number of all processes; not a number if it is none on any of them.
+    pub fn max(&self, value: f64) -> f64 {
+        // The maximum of a communicator is that of numbers.
+        let mut numbers = [
+            if value.is_nan() { f64::INFINITY } else { value },
+            f64::from(u8::from(value.is_nan())),
+        ];
+        self.comm.max(&mut numbers);
+        if numbers[1] > 0.0 {
+            f64::NAN
+        } else {
+            numbers[0]
+        }
+    }
+
+    /// The sum of a count over all processes.
+    pub fn count(&self, own: u64) -> u64 {
+        let mut numbers = [i128::from(own)];
+        self.comm.sum(&mut numbers);
+        u64::try_from(numbers[0]).unwrap_or(u64::MAX)
+    }
+}

@@ -1,0 +1,401 @@
+//! Sums whose result depends on nothing but the terms: not on their order, not on threads, not on how points are divided among processes.
+//!
+//! Floating-point addition rounds, and what it rounds depends on the order. Here each term is cut into integer multiples of fixed units, 2^(40 b) for integers b, and the integers are added, which is exact
+//! and so free of order (Demmel & Nguyen, *Parallel reproducible summation*, IEEE Trans. Comput. 64, 2015; Ahrens, Demmel & Nguyen, ACM TOMS 46, 2020). The three units nearest to the largest term are
+//! kept; what lies below is less than 2⁻⁸⁰ of the largest term for each term, so that sums are more accurate than plain ones.
+
+use rayon::prelude::*;
+
+use crate::lanes::{InstructionSet, for_each_instruction_set};
+use crate::parallel::BLOCK;
+
+/// Bits of a bin: its unit is 2^(40 b).
+const WIDTH: i32 = 40;
+/// Bins that are kept.
+const KEPT: usize = 3;
+/// Terms that are cut side by side.
+const LANES: usize = 8;
+/// Bins beyond ±[`SAFE`] are reached by terms scaled by 2^(40 · [`SHIFT`]) or its inverse, so that no unit over- or underflows.
+const SAFE: i32 = 22;
+const SHIFT: i32 = 12;
+
+/// A sum in progress. Two of them can be merged in any order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BinnedSum {
+    /// Number b of the highest bin; the lowest possible number while there are no terms but zeros.
+    top: i32,
+    /// Multiples of 2^(40 (top − k)).
+    bins: [i128; KEPT],
+    /// How many terms are +∞, −∞ and not a number.
+    special: [i128; 3],
+}
+
+impl Default for BinnedSum {
+    /// A sum of no terms.
+    fn default() -> Self {
+        Self {
+            top: i32::MIN,
+            bins: [0; KEPT],
+            special: [0; 3],
+        }
+    }
+}
+
+impl BinnedSum {
+    /// Σ term(i) for i < n, on all cores.
+    pub fn of(n: usize, term: impl Fn(usize) -> f64 + Sync) -> Self {
+        let set = InstructionSet::detect();
+        (0..n.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|block| {
+                let first = block * BLOCK;
+                let count = BLOCK.min(n - first);
+                let mut terms = [0.0; BLOCK];
+                for (k, slot) in terms[..count].iter_mut().enumerate() {
+                    *slot = term(first + k);
+                }
+                Self::of_block(set, &mut terms)
+            })
+            .reduce(Self::default, Self::merged)
+    }
+
+    /// Of at most a block of terms, filled up with zeros.
+    fn of_block(set: InstructionSet, terms: &mut [f64; BLOCK]) -> Self {
+        let mut sum = Self::default();
+        let mut largest = Largest::default();
+        largest_of(set, terms, &mut largest);
+        if largest.special {
+            for term in terms.iter_mut().filter(|term| !term.is_finite()) {
+                let kind = if term.is_nan() {
+                    2
+                } else {
+                    usize::from(*term < 0.0)
+                };
+                sum.special[kind] += 1;
+                *term = 0.0;
+            }
+            largest = Largest::default();
+            largest_of(set, terms, &mut largest);
+        }
+        if largest.magnitude == 0.0 {
+            return sum;
+        }
+        sum.top = bin_of(largest.magnitude);
+        let shift = if sum.top < -SAFE {
+            SHIFT
+        } else if sum.top > SAFE {
+            -SHIFT
+        } else {
+            0
+        };
+        if shift != 0 {
+            let factor = power_of_two(WIDTH * shift);
+            terms.iter_mut().for_each(|term| *term *= factor);
+        }
+        let units = std::array::from_fn(|k| power_of_two(WIDTH * (sum.top + shift - k as i32)));
+        let mut cut = [[0.0; LANES]; KEPT];
+        cut_into(set, terms, &units, &mut cut);
+        for ((bin, lanes), unit) in sum.bins.iter_mut().zip(&cut).zip(units) {
+            // All are multiples of the unit below 2^53 of it: the sum of the lanes and the quotient are exact.
+            *bin = (lanes.iter().sum::<f64>() / unit) as i128;
+        }
+        sum
+    }
+
+    /// The sum of the terms of both.
+    pub fn merged(mut self, mut other: Self) -> Self {
+        let top = self.top.max(other.top);
+        self.lower(top);
+        other.lower(top);
+        for (bin, more) in self.bins.iter_mut().zip(other.bins) {
+            *bin += more;
+        }
+        for (count, more) in self.special.iter_mut().zip(other.special) {
+            *count += more;
+        }
+        self
+    }
+
+    /// Number of the highest bin.
+    pub(crate) fn top(&self) -> i32 {
+        self.top
+    }
+
+    /// The integers of a sum with this highest bin, not below its own: those of several sums with one highest bin may be added.
+    pub(crate) fn integers(mut self, top: i32) -> [i128; KEPT + 3] {
+        self.lower(top);
+        let mut integers = [0; KEPT + 3];
+        integers[..KEPT].copy_from_slice(&self.bins);
+        integers[KEPT..].copy_from_slice(&self.special);
+        integers
+    }
+
+    /// The sum of these integers.
+    pub(crate) fn of_integers(top: i32, integers: [i128; KEPT + 3]) -> Self {
+        Self {
+            top,
+            bins: std::array::from_fn(|k| integers[k]),
+            special: std::array::from_fn(|k| integers[KEPT + k]),
+        }
+    }
+
+    /// Takes a higher bin as the highest: what falls below the lowest that is kept is dropped.
+    fn lower(&mut self, top: i32) {
+        let steps = top.saturating_sub(self.top).min(KEPT as i32) as usize;
+        self.bins.rotate_right(steps);
+        self.bins[..steps].fill(0);
+        self.top = top;
+    }
+
+    /// The sum, rounded.
+    pub fn value(&self) -> f64 {
+        match self.special {
+            [0, 0, 0] => {}
+            [_, 0, 0] => return f64::INFINITY,
+            [0, _, 0] => return f64::NEG_INFINITY,
+            _ => return f64::NAN,
+        }
+        if self.top == i32::MIN {
+            return 0.0;
+        }
+        let [high, middle, low] = self.bins;
+        // In units of the middle bin, of which there are fewer than 2^127 for up to 2^47 terms.
+        let upper = (high << WIDTH) + middle;
+        let lower = low as f64 * power_of_two(-WIDTH);
+        scaled(upper as f64 + lower, WIDTH * (self.top - 1))
+    }
+}
+
+/// Σ term(i) for i < n, on all cores of this process.
+pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    BinnedSum::of(n, term).value()
+}
+
+/// The lowest bin b whose terms are at most half a unit of bin b + 1, so that they have no part there.
+fn bin_of(magnitude: f64) -> i32 {
+    // ⌈(exponent + 2 − WIDTH)/WIDTH⌉
+    (exponent_of(magnitude) + 1).div_euclid(WIDTH)
+}
+
+/// ⌊log₂ x⌋ of a positive finite number.
+fn exponent_of(x: f64) -> i32 {
+    const SUBNORMAL: i32 = -1022;
+    let biased = (x.to_bits() >> 52) as i32;
+    if biased > 0 {
+        biased - 1023
+    } else {
+        SUBNORMAL - 52 + (63 - x.to_bits().leading_zeros() as i32)
+    }
+}
+
+/// 2^exponent of a normal number.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
+}
+
+/// x · 2^exponent, in steps that neither over- nor underflow before the end.
+fn scaled(mut x: f64, mut exponent: i32) -> f64 {
+    const STEP: i32 = 900;
+    while exponent.abs() > STEP {
+        let step = STEP * exponent.signum();
+        x *= power_of_two(step);
+        exponent -= step;
+    }
+    x * power_of_two(exponent)
+}
+
+/// The largest magnitude among finite terms, and whether there are others.
+#[derive(Debug, Clone, Copy, Default)]
+struct Largest {
+    magnitude: f64,
+    special: bool,
+}
+
+#[inline(always)]
+fn largest_body(terms: &[f64; BLOCK], largest: &mut Largest) {
+    let mut magnitudes = [0.0f64; LANES];
+    let mut zeros = [0.0f64; LANES];
+    for group in terms.chunks_exact(LANES) {
+        for k in 0..LANES {
+            let magnitude = group[k].abs();
+            magnitudes[k] = if magnitude > magnitudes[k] {
+                magnitude
+            } else {
+                magnitudes[k]
+            };
+            // Not a number for infinite terms and those that are no numbers.
+            zeros[k] += group[k] * 0.0;
+        }
+    }
+    largest.magnitude = magnitudes.iter().fold(0.0, |a, b| a.max(*b));
+    largest.special = zeros.iter().any(|zero| zero.is_nan());
+}
+
+#[inline(always)]
+fn cut_body(terms: &[f64; BLOCK], units: &[f64; KEPT], sums: &mut [[f64; LANES]; KEPT]) {
+    // x + 1.5 · 2^52 units is rounded to a multiple of the unit, halves to even.
+    let round = units.map(|unit| 1.5 * power_of_two(52) * unit);
+    let mut cut = [[0.0; LANES]; KEPT];
+    for group in terms.chunks_exact(LANES) {
+        for lane in 0..LANES {
+            let mut rest = group[lane];
+            for k in 0..KEPT {
+                let part = (rest + round[k]) - round[k];
+                cut[k][lane] += part;
+                rest -= part;
+            }
+        }
+    }
+    *sums = cut;
+}
+
+for_each_instruction_set! {
+    /// Finds the largest term.
+    fn largest_of [] <> (terms: &[f64; BLOCK], largest: &mut Largest) = largest_body
+}
+
+for_each_instruction_set! {
+    /// Adds the parts of all terms that are multiples of each unit, lane by lane.
+    fn cut_into [] <> (
+        terms: &[f64; BLOCK],
+        units: &[f64; KEPT],
+        sums: &mut [[f64; LANES]; KEPT],
+    ) = cut_body
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of both signs with exponents from `low` to `high`.
+    fn numbers(seed: u64, count: usize, [low, high]: [i32; 2]) -> Vec<f64> {
+        let mut state = seed;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            state >> 11
+        };
+        (0..count)
+            .map(|_| {
+                let mantissa = 1.0 + next() as f64 / power_of_two(53);
+                let exponent = low + (next() % (high - low + 1) as u64) as i32;
+                let sign = if next() % 2 == 0 { 1.0 } else { -1.0 };
+                sign * scaled(mantissa, exponent)
+            })
+            .collect()
+    }
+
+    fn of(terms: &[f64]) -> f64 {
+        sum(terms.len(), |i| terms[i])
+    }
+
+    #[test]
+    fn sums_do_not_depend_on_order_partition_or_instructions() {
+        for range in [
+            [-3, 3],
+            [-60, 60],
+            [-1000, 900],
+            [-1074, -1000],
+            [960, 1000],
+        ] {
+            let mut terms = numbers(7, 5 * BLOCK + 19, range);
+            let expected = of(&terms);
+            assert!(expected.is_finite());
+            terms.reverse();
+            assert_eq!(of(&terms).to_bits(), expected.to_bits(), "{range:?}");
+            terms.rotate_left(777);
+            for parts in [2, 3, 7, 100] {
+                let sums = terms.chunks(terms.len().div_ceil(parts));
+                let merged = sums
+                    .map(|part| BinnedSum::of(part.len(), |i| part[i]))
+                    .fold(BinnedSum::default(), |a, b| b.merged(a));
+                assert_eq!(
+                    merged.value().to_bits(),
+                    expected.to_bits(),
+                    "{range:?}, {parts}"
+                );
+            }
+            for set in InstructionSet::available() {
+                let blocks = terms.chunks(BLOCK).map(|chunk| {
+                    let mut block = [0.0; BLOCK];
+                    block[..chunk.len()].copy_from_slice(chunk);
+                    BinnedSum::of_block(set, &mut block)
+                });
+                let merged = blocks.fold(BinnedSum::default(), BinnedSum::merged);
+                assert_eq!(
+                    merged.value().to_bits(),
+                    expected.to_bits(),
+                    "{range:?}, {set:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn sums_are_those_of_exact_arithmetic_to_the_last_digit() {
+        // Integers times 2^-30: i128 adds them exactly.
+        let terms: Vec<f64> = numbers(3, 10_000, [-9, 22])
+            .iter()
+            .map(|x| (x * power_of_two(30)).round() / power_of_two(30))
+            .collect();
+        let exact: i128 = terms.iter().map(|x| (x * power_of_two(30)) as i128).sum();
+        let expected = exact as f64 / power_of_two(30);
+        assert_eq!(of(&terms), expected);
+        // What cancels leaves the small ones.
+        let small = 3.0 * power_of_two(-40);
+        let mut cancelling = terms.clone();
+        cancelling.extend(terms.iter().map(|x| -x));
+        cancelling.push(small);
+        assert_eq!(of(&cancelling), small);
+    }
+
+    #[test]
+    fn sums_of_few_extreme_and_special_terms() {
+        assert_eq!(of(&[]), 0.0);
+        assert_eq!(of(&[0.0, -0.0]), 0.0);
+        for x in [
+            5e-324,
+            -2.5e-310,
+            1.0,
+            0.1,
+            -f64::MAX,
+            2f64.powi(39),
+            2f64.powi(79),
+            f64::MIN_POSITIVE,
+        ] {
+            assert_eq!(of(&[x]), x, "{x:e}");
+            assert_eq!(of(&[x, x, -x]), x, "{x:e}");
+        }
+        assert_eq!(of(&[f64::MAX, f64::MAX]), f64::INFINITY);
+        assert_eq!(of(&[1.0, f64::INFINITY, -3.0]), f64::INFINITY);
+        assert_eq!(of(&[1.0, f64::NEG_INFINITY]), f64::NEG_INFINITY);
+        assert!(of(&[f64::INFINITY, 1.0, f64::NEG_INFINITY]).is_nan());
+        assert!(of(&[f64::NAN, 1.0]).is_nan());
+    }
+
+    #[test]
+    fn bins_and_exponents() {
+        assert_eq!(
+            [1.0, 1.5, 0.5, 5e-324, 2.5e-308].map(exponent_of),
+            [0, 0, -1, -1074, -1022]
+        );
+        for magnitude in [
+            1.0,
+            2f64.powi(38),
+            2f64.powi(39) * 0.999,
+            2f64.powi(-1),
+            2f64.powi(-42),
+        ] {
+            let bin = bin_of(magnitude);
+            assert!(
+                magnitude < power_of_two(WIDTH * bin + WIDTH - 1),
+                "{magnitude}"
+            );
+            assert!(
+                magnitude >= 0.5 * power_of_two(WIDTH * (bin - 1) + WIDTH - 1),
+                "{magnitude}"
+            );
+        }
+    }
+}
