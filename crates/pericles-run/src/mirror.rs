@@ -240,13 +240,13 @@ impl Mirror {
         if !operator.can_break() {
             return true;
         }
-        let Some(zoned) = operator.as_zoned() else {
+        let Some(breaking) = operator.capabilities().breaking else {
             return false;
         };
         // Stretches from well below to well above those that break anything.
         [0.01, 0.1, 1.0, 10.0, 100.0].iter().all(|times| {
             let mut marks = vec![false; n];
-            zoned.mark_endangered(&moved(times * amplitude), 1.0, &mut marks);
+            breaking.mark_endangered(&moved(times * amplitude), 1.0, &mut marks);
             let mut pairs = marks.iter().zip(&self.images);
             pairs.all(|(mark, &image)| *mark == marks[image as usize])
         })

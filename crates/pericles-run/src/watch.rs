@@ -206,7 +206,8 @@ fn endangered(simulation: &Simulation, audit: &Audit) -> Option<String> {
     }
     let mut marks = vec![false; system.points()];
     operator
-        .as_zoned()?
+        .capabilities()
+        .breaking?
         .mark_endangered(&state.u, NEAR, &mut marks);
     let share = marks.iter().filter(|mark| **mark).count() as f64 / marks.len() as f64;
     (share > ENDANGERED).then(|| {

@@ -20,7 +20,10 @@ impl System {
     /// In each pass every bond asks for its impulse from the same velocities; all impulses together are scaled so that they take the energy that is still missing, or as much
     /// of it as they can.
     pub fn settle_breaking(&mut self, t: f64, v: &mut [f64]) {
-        let mut breaks = self.operator_mut().take_coarse_breaks();
+        let Some(breaking) = self.operator_mut().breaking_mut() else {
+            return;
+        };
+        let mut breaks = breaking.take_coarse_breaks();
         if breaks.is_empty() {
             return;
         }
@@ -75,7 +78,9 @@ impl System {
             }
         }
         self.book_reaction(work, reaction);
-        self.operator_mut().dissipate(-given);
+        if let Some(breaking) = self.operator_mut().breaking_mut() {
+            breaking.dissipate(-given);
+        }
         -given
     }
 

@@ -98,6 +98,13 @@ pub struct Field<'a> {
     pub ghosts: &'a [f64],
 }
 
+impl<'a> Field<'a> {
+    /// A vector of own points and ghosts.
+    pub fn new(owned: &'a [f64], ghosts: &'a [f64]) -> Self {
+        Self { owned, ghosts }
+    }
+}
+
 impl Domain {
     /// All points of a body.
     pub fn alone(points: usize) -> Self {

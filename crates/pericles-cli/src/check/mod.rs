@@ -198,10 +198,10 @@ fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
 
 /// The fewest, mean and most neighbours of a point, where the operator knows them one by one.
 fn neighbours(model: &Model) -> Option<Line> {
-    let zoned = model.system.operator().as_zoned()?;
+    let local = model.system.operator().as_local()?;
     let count_of = |i: usize| {
         let mut count = 0u64;
-        zoned.neighbours(i, &mut |_| count += 1);
+        local.neighbours(i, &mut |_| count += 1);
         count
     };
     let counts = (0..model.cloud.len()).map(count_of);

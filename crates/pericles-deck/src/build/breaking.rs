@@ -108,11 +108,11 @@ fn fast(what: &'static str, speed: f64, limit: f64, dimension: usize) -> Caution
 
 /// Points with bonds beyond the critical stretch.
 fn torn(system: &System, u: &[f64]) -> usize {
-    let Some(zoned) = system.operator().as_zoned() else {
+    let Some(breaking) = system.operator().capabilities().breaking else {
         return 0;
     };
     let mut marks = vec![false; system.points()];
-    zoned.mark_endangered(u, 1.0, &mut marks);
+    breaking.mark_endangered(u, 1.0, &mut marks);
     marks.iter().filter(|mark| **mark).count()
 }
 

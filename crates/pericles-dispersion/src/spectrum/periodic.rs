@@ -1,6 +1,8 @@
 //! The bonds of a lattice on a periodic box.
 
-use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
+use pericles::operator::{
+    Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, On,
+};
 use pericles::parallel::{BLOCK, components, components_mut, for_each_block};
 use pericles::sum::sum;
 use pericles::{Archive, Saved};
@@ -222,8 +224,11 @@ impl ForceOperator for PeriodicForce {
         InstructionSet::Baseline
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        Some(self)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: Linearity::Exact(self),
+            ..Capabilities::default()
+        }
     }
 }
 

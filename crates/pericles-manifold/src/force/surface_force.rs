@@ -13,8 +13,11 @@ use pericles::lanes::Row;
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;
+use pericles::operator::{
+    Breakable, Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, LocalForce,
+    On, SplitForce,
+};
 use pericles::operator::{CoarseBreak, each_once};
-use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On, ZonedForce};
 use pericles::parallel::{BLOCK, components_mut, for_each_block};
 use pericles::space::PointCloud;
 use pericles::{Archive, Saved, StepEnd};
@@ -189,6 +192,47 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
         });
     }
 
+    fn directed_bonds(&self) -> u64 {
+        self.bonds.directed()
+    }
+
+    fn bytes(&self) -> usize {
+        self.bonds.bytes()
+            + size_of_val(&self.reference[..])
+            + self
+                .breaking
+                .as_ref()
+                .map_or(0, |breaking| size_of_val(&breaking.limits[..]))
+            + self.points() * size_of::<Row>()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: match self.law.is_linear() {
+                true => Linearity::Exact(self),
+                false => Linearity::Nonlinear,
+            },
+            breaking: Some(self),
+            local: Some(self),
+            split: Some(self),
+            bonds: None,
+        }
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        Some(self)
+    }
+
+    fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
+        Some(self)
+    }
+}
+
+impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
     fn dissipated(&self) -> f64 {
         self.breaking
             .as_ref()
@@ -250,42 +294,14 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
         }
     }
 
-    fn directed_bonds(&self) -> u64 {
-        self.bonds.directed()
-    }
-
-    fn bytes(&self) -> usize {
-        self.bonds.bytes()
-            + size_of_val(&self.reference[..])
-            + self
-                .breaking
-                .as_ref()
-                .map_or(0, |breaking| size_of_val(&breaking.limits[..]))
-            + self.points() * size_of::<Row>()
-    }
-
-    fn instruction_set(&self) -> InstructionSet {
-        self.instruction_set
-    }
-
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        self.law.is_linear().then_some(self as &dyn LinearOperator)
-    }
-
-    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
-        Some(self)
-    }
-
-    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
-        Some(self)
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if let Some(breaking) = &self.breaking {
+            breaking.mark_endangered(&self.bonds, u, fraction, marks);
+        }
     }
 }
 
-impl<L: SurfaceLaw> ZonedForce for SurfaceForce<L> {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.bonds.row(i).for_each(|(_, j)| visit(j));
-    }
-
+impl<L: SurfaceLaw> SplitForce for SurfaceForce<L> {
     fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
         let bonds = Bonds::new(&self.bonds, &self.reference).to(partners);
         self.add_force_of(&bonds, u, &on, out);
@@ -300,12 +316,6 @@ impl<L: SurfaceLaw> ZonedForce for SurfaceForce<L> {
     ) {
         self.decide(step, &on, Some(partners));
         self.add_force_from(step.t, step.u, on, partners, out);
-    }
-
-    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
-        if let Some(breaking) = &self.breaking {
-            breaking.mark_endangered(&self.bonds, u, fraction, marks);
-        }
     }
 }
 
@@ -328,5 +338,11 @@ impl<L: SurfaceLaw> Saved for SurfaceForce<L> {
             Some(breaking) => breaking.restore(&mut self.bonds, archive),
             None => Ok(()),
         }
+    }
+}
+
+impl<L: SurfaceLaw> LocalForce for SurfaceForce<L> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.bonds.row(i).for_each(|(_, j)| visit(j));
     }
 }

@@ -15,7 +15,9 @@ use pericles::Saved;
 use pericles::family::{Crack, VolumeCorrection};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
-use pericles::operator::{ForceOperator, InstructionSet, LatticeSprings, LinearOperator, On};
+use pericles::operator::{
+    Capabilities, ForceOperator, InstructionSet, LatticeSprings, LinearOperator, Linearity, On,
+};
 use pericles::parallel::{components, components_mut};
 use pericles::space::{Lattice, PointCloud};
 use pericles::{PericlesError, Result};
@@ -336,8 +338,11 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
         self.springs.clone()
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        Some(self)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: Linearity::Exact(self),
+            ..Capabilities::default()
+        }
     }
 }
 

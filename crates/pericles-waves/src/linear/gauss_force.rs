@@ -10,7 +10,9 @@ use pericles::Saved;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
-use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
+use pericles::operator::{
+    Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, On,
+};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
 
@@ -268,8 +270,11 @@ impl ForceOperator for GaussForce {
         InstructionSet::detect()
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        Some(self)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: Linearity::Exact(self),
+            ..Capabilities::default()
+        }
     }
 }
 

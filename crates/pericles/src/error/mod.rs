@@ -126,6 +126,20 @@ pub enum PericlesError {
         /// The body's dimension.
         dimension: usize,
     },
+    /// A force made for another body than the other forces of a system.
+    #[error(
+        "the force acts on {points} points in {dimension} dimensions; the body has {needed_points} points in {needed_dimension} dimensions"
+    )]
+    ForceOfAnotherBody {
+        /// Points of the force.
+        points: usize,
+        /// Its dimension.
+        dimension: usize,
+        /// Points of the body.
+        needed_points: usize,
+        /// Its dimension.
+        needed_dimension: usize,
+    },
     /// A crack surface without extent, or a polygon that is not plane.
     #[error("the crack has no usable surface: {reason}")]
     BadCrack {

@@ -31,11 +31,13 @@ impl Fragments {
     /// The pieces of a body whose bonds can break.
     pub fn of(operator: &dyn ForceOperator) -> Self {
         let mut first: Vec<u32> = (0..operator.points() as u32).collect();
-        operator.for_each_intact(&mut |i, j| {
-            let (i, j) = (root(&mut first, i as u32), root(&mut first, j as u32));
-            // The smaller number leads, whatever the order of the bonds.
-            first[i.max(j) as usize] = i.min(j);
-        });
+        if let Some(breaking) = operator.capabilities().breaking {
+            breaking.for_each_intact(&mut |i, j| {
+                let (i, j) = (root(&mut first, i as u32), root(&mut first, j as u32));
+                // The smaller number leads, whatever the order of the bonds.
+                first[i.max(j) as usize] = i.min(j);
+            });
+        }
         for i in 0..first.len() as u32 {
             let root = root(&mut first, i);
             first[i as usize] = root;

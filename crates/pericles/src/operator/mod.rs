@@ -12,9 +12,12 @@
 //! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
 
 mod assemble;
+mod breakable;
+mod capabilities;
 mod composite;
 mod damage;
 mod fast_law;
+mod forces;
 mod form;
 mod graded;
 mod grid;
@@ -25,21 +28,26 @@ pub mod prefetch;
 pub mod records;
 pub mod rows;
 mod springs;
+mod two_pass;
 mod view;
 mod zoned;
 
 pub use assemble::{AssembledBonds, BondBody};
+pub use breakable::Breakable;
+pub use capabilities::{Capabilities, Linearity};
 pub use composite::CompositeBody;
 pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
 pub use fast_law::{FastLaw, FixedBond};
+pub use forces::Forces;
 pub use form::BondForm;
 pub use graded::{EndLaw, GradedBody};
 pub use grid::GridForce;
 pub use linearisation::Linearisation;
 pub use list::BondForce;
 pub use springs::{LatticeSpring, LatticeSprings};
+pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
 pub use view::{BondAt, BondView};
-pub use zoned::ZonedForce;
+pub use zoned::{LocalForce, SplitForce};
 
 pub use crate::lanes::InstructionSet;
 pub use crate::parallel::On;
@@ -47,9 +55,9 @@ pub use crate::parallel::On;
 use crate::archive::Saved;
 use crate::step_end::StepEnd;
 
-/// The internal force density of a body.
+/// A force density on the points of a body as a function of their displacements.
 ///
-/// Operators whose bonds never break leave out what concerns breaking.
+/// What a force must do is small; what it can do beside that it says by its [`Capabilities`]. A point's force does not depend on which points are evaluated together.
 pub trait ForceOperator: Saved + Send + Sync {
     /// Number of points.
     fn points(&self) -> usize;
@@ -69,52 +77,35 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// An upper bound of the highest angular frequency (1/s) about the reference state, for the density ρ (kg/m³) of each point.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64;
 
+    /// `out` = the derivative of the force density at `u` in the given direction, for Newton–Krylov methods and frequency estimates.
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]);
+
     /// Decides breaking at the end of a step and adds the force density there, for the points named by `on`: a bond found over-stretched exerts no force in this evaluation and later ones.
     ///
-    /// What it dissipates is [`StepEnd::dissipated`]. Where that is far from its energy at the critical stretch, [`ForceOperator::take_coarse_breaks`] tells.
+    /// What it dissipates is [`StepEnd::dissipated`]. Where that is far from its energy at the critical stretch, [`Breakable::take_coarse_breaks`] tells.
     fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
         self.add_force(step.t, step.u, on, out);
     }
 
-    /// The derivative of the force density at `u` in the given direction, for Newton–Krylov methods and frequency estimates.
-    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]);
+    /// What it can do beside computing forces.
+    fn capabilities(&self) -> Capabilities<'_>;
 
-    /// Energy dissipated by breaking so far, J.
-    fn dissipated(&self) -> f64 {
-        0.0
+    /// The same as [`Capabilities::breaking`], to be changed.
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        None
     }
 
-    /// Books energy that breaking dissipated beside what was booked when it was decided, J.
-    fn dissipate(&mut self, energy: f64) {
-        let _ = energy;
+    /// The same as [`Capabilities::split`], to decide breaking part by part.
+    fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
+        None
     }
 
-    /// Takes the bonds broken since this was asked last by steps too coarse for them, each once, in an order that depends on nothing but the bonds.
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        Vec::new()
+    /// The springs of an infinite lattice of which the body at rest is a part: a bound of its highest frequency. None of bodies that are no part of a lattice of springs.
+    fn lattice_springs(&self) -> Option<LatticeSprings> {
+        None
     }
 
-    /// Bonds broken so far, each counted once.
-    fn broken_bonds(&self) -> u64 {
-        0
-    }
-
-    /// Whether anything in the body can break.
-    fn can_break(&self) -> bool {
-        false
-    }
-
-    /// Damage of each point, 0 … 1.
-    fn damage_into(&self, out: &mut [f64]) {
-        out.fill(0.0);
-    }
-
-    /// Calls `visit` with the two ends of every bond that is left, once or twice for each. Operators whose bonds never break need not know them and visit none.
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        let _ = visit;
-    }
-
-    /// The largest error of the force at `u` for being computed in floats, over the largest force; none of operators that compute in doubles.
+    /// The largest error of the force at `u` for being computed in floats, over the largest force; none of forces that are computed in doubles.
     fn rounding(&self, u: &[f64]) -> Option<f64> {
         let _ = u;
         None
@@ -132,34 +123,6 @@ pub trait ForceOperator: Saved + Send + Sync {
     /// Runs the loops with another instruction set, if the operator has loops for it and the machine has it; for tests and benchmarks.
     fn use_instruction_set(&mut self, set: InstructionSet) {
         let _ = set;
-    }
-
-    /// Whether the force is linear in the displacement as long as no bond breaks, computed in whatever precision.
-    fn is_linear(&self) -> bool {
-        self.as_linear().is_some()
-    }
-
-    /// The springs of an infinite lattice of which the body at rest is a part: a bound of its highest frequency. None of bodies that are no part of a lattice of springs.
-    fn lattice_springs(&self) -> Option<LatticeSprings> {
-        None
-    }
-
-    /// The operator as a linear map to double precision, if it is one.
-    fn as_linear(&self) -> Option<&dyn LinearOperator>;
-
-    /// The operator's bonds one by one, if it lists them.
-    fn as_bonds(&self) -> Option<&dyn BondView> {
-        None
-    }
-
-    /// The operator as a sum over bonds that can be taken apart by zones, if it is one.
-    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
-        None
-    }
-
-    /// The same, to decide breaking zone by zone.
-    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
-        None
     }
 }
 

@@ -12,7 +12,7 @@ use crate::archive::Counter;
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
-use crate::operator::{ForceOperator, On};
+use crate::operator::{ForceOperator, Forces, On};
 use crate::parallel::{BLOCK, for_each_entry};
 use crate::scalar::PointScalar;
 use crate::space::PointCloud;
@@ -24,7 +24,7 @@ use crate::step_end::{Path, StepEnd};
 /// [`System::end_step_on`] at the end of sub-steps.
 pub struct System {
     cloud: Arc<PointCloud>,
-    operator: Box<dyn ForceOperator>,
+    forces: Forces,
     density: PointScalar,
     loads: Vec<Load>,
     motions: Vec<PrescribedMotion>,
@@ -56,7 +56,7 @@ impl System {
         }
         Ok(Self {
             cloud,
-            operator,
+            forces: Forces::new(operator),
             density,
             loads: Vec::new(),
             motions: Vec::new(),
@@ -113,13 +113,27 @@ impl System {
         self.cloud.domain()
     }
 
-    /// The internal forces.
-    pub fn operator(&self) -> &dyn ForceOperator {
-        &*self.operator
+    /// Adds a force between the points of the body, beside those that it has.
+    ///
+    /// # Errors
+    /// A force on another number of points, or in another dimension.
+    pub fn add_force(&mut self, force: Box<dyn ForceOperator>) -> Result<()> {
+        self.forces.add(force)
     }
 
+    /// The sum of the internal forces.
+    pub fn operator(&self) -> &dyn ForceOperator {
+        self.forces.sum()
+    }
+
+    /// The internal forces one by one.
+    pub fn forces(&self) -> impl Iterator<Item = &dyn ForceOperator> {
+        self.forces.iter()
+    }
+
+    /// The sum of the internal forces, to be changed.
     pub(crate) fn operator_mut(&mut self) -> &mut dyn ForceOperator {
-        &mut *self.operator
+        self.forces.sum_mut()
     }
 
     /// Books work (J) and impulse (N s) of supports.
@@ -201,7 +215,7 @@ impl System {
     pub fn end_step_on(&mut self, step: &StepEnd<'_>, on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
-        self.operator.end_step(step, on.clone(), out);
+        self.operator_mut().end_step(step, on.clone(), out);
         self.add_loads(step.t, on, out);
         self.divide_by_density(on, out);
     }
@@ -217,8 +231,8 @@ impl System {
     ) {
         self.zero(on, out);
         self.count(on);
-        if let Some(zoned) = self.operator.as_zoned_mut() {
-            zoned.end_step_from(step, on.clone(), partners, out);
+        if let Some(split) = self.operator_mut().split_mut() {
+            split.end_step_from(step, on.clone(), partners, out);
         }
         if with_loads {
             self.add_loads(step.t, on, out);
@@ -235,7 +249,7 @@ impl System {
     pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &On<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
-        self.operator.add_force(t, u, on.clone(), out);
+        self.operator().add_force(t, u, on.clone(), out);
         self.add_loads(t, on, out);
         self.divide_by_density(on, out);
     }
@@ -252,8 +266,8 @@ impl System {
     ) {
         self.zero(on, out);
         self.count(on);
-        if let Some(zoned) = self.operator.as_zoned() {
-            zoned.add_force_from(t, u, on.clone(), partners, out);
+        if let Some(split) = self.operator().as_split() {
+            split.add_force_from(t, u, on.clone(), partners, out);
         }
         if with_loads {
             self.add_loads(t, on, out);
@@ -291,7 +305,7 @@ impl System {
     /// Internal force and loads at displacement u, N/m³.
     pub fn force_density_into(&self, t: f64, u: &[f64], out: &mut [f64]) {
         self.zero(&On::All, out);
-        self.operator.add_force(t, u, On::All, out);
+        self.operator().add_force(t, u, On::All, out);
         self.add_loads(t, &On::All, out);
     }
 
@@ -317,9 +331,9 @@ impl System {
 
     /// K d / ρ at displacement u, with prescribed entries held: the operator of the linearised free vibration.
     pub fn vibration_into(&self, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        match self.operator.as_linear() {
+        match self.operator().as_linear() {
             Some(linear) => linear.apply_into(direction, out),
-            None => self.operator.tangent_into(0.0, u, direction, out),
+            None => self.operator().tangent_into(0.0, u, direction, out),
         }
         self.divide_by_density(&On::All, out);
         out.par_chunks_mut(BLOCK)
@@ -342,7 +356,7 @@ impl System {
     pub(crate) fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
         self.zero(&On::All, work);
         self.count(&On::All);
-        self.operator.add_force(t, u, On::All, work);
+        self.operator().add_force(t, u, On::All, work);
         self.divide_by_density(&On::All, work);
         let n = self.points();
         let density = |i: usize| self.density.at(i);

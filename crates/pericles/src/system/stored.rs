@@ -7,7 +7,7 @@ use crate::error::Result;
 
 impl Saved for System {
     fn save(&self, archive: &mut Archive) {
-        self.operator.save(archive);
+        self.forces.save(archive);
         for (k, motion) in self.motions.iter().enumerate() {
             archive.put(
                 format!("motion/{k}/reaction"),
@@ -28,7 +28,7 @@ impl Saved for System {
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.operator.restore(archive)?;
+        self.forces.restore(archive)?;
         for (k, motion) in self.motions.iter_mut().enumerate() {
             archive.f64_into(&format!("motion/{k}/reaction"), motion.reactions_mut())?;
         }

@@ -1,7 +1,7 @@
 //! The choice of the points that take the fine step, and what is wrong with a choice.
 
 use crate::error::{PericlesError, Result};
-use crate::operator::ZonedForce;
+use crate::operator::LocalForce;
 use crate::space::{PointCloud, PointSet};
 
 /// The points that take the fine step.
@@ -84,7 +84,7 @@ pub(super) fn check(follow: &Follow) -> Result<()> {
 /// Marks the points of fixed regions.
 pub(super) fn mark_regions(
     cloud: &PointCloud,
-    force: &dyn ZonedForce,
+    force: &dyn LocalForce,
     regions: &[PointSet],
     is_fine: &mut [bool],
 ) -> Result<()> {
@@ -113,7 +113,7 @@ pub(super) fn mark_regions(
 /// Along every axis a region is as long as its longest bond, unless the body ends there.
 fn thick_enough(
     cloud: &PointCloud,
-    force: &dyn ZonedForce,
+    force: &dyn LocalForce,
     region: usize,
     points: &[u32],
 ) -> Result<()> {

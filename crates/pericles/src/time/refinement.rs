@@ -7,7 +7,7 @@ use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
 use crate::archive::{Archive, Counter, Values};
 use crate::error::{PericlesError, Result};
-use crate::operator::ZonedForce;
+use crate::operator::LocalForce;
 use crate::system::System;
 
 /// What a scheme is called and what it evaluates.
@@ -49,7 +49,7 @@ struct Looking {
 }
 
 /// The force as a sum over bonds, or why the scheme cannot be used.
-pub(super) fn zoned<'a>(system: &'a System, scheme: &'static str) -> Result<&'a dyn ZonedForce> {
+pub(super) fn local<'a>(system: &'a System, scheme: &'static str) -> Result<&'a dyn LocalForce> {
     if system.has_boundaries() {
         return Err(PericlesError::SchemeNotUsable {
             scheme,
@@ -58,7 +58,7 @@ pub(super) fn zoned<'a>(system: &'a System, scheme: &'static str) -> Result<&'a 
     }
     system
         .operator()
-        .as_zoned()
+        .as_local()
         .ok_or(PericlesError::SchemeNotUsable {
             scheme,
             reason: "its force is one product over the whole body and cannot be evaluated on a part of it; use bonds, or one time step",
@@ -74,7 +74,7 @@ impl Refinement {
         if ratio < 1 {
             return Err(PericlesError::StepRatio { ratio });
         }
-        let force = zoned(system, cost.name)?;
+        let force = local(system, cost.name)?;
         let n = system.points();
         let mut is_fine = vec![false; n];
         let follow = match fine {
@@ -116,7 +116,7 @@ impl Refinement {
 
     /// Before a coarse step: looks where the body is about to break, if it is time. Returns whether the zones changed.
     pub(super) fn update(&mut self, system: &System, state: &State) -> bool {
-        let Some(force) = system.operator().as_zoned() else {
+        let Some(force) = system.operator().as_local() else {
             return false;
         };
         if std::mem::take(&mut self.stale) {
@@ -245,9 +245,11 @@ impl Refinement {
 
 impl Looking {
     /// Leaves in `marks` the points that shall be fine.
-    fn look(&mut self, system: &System, force: &dyn ZonedForce, u: &[f64]) {
+    fn look(&mut self, system: &System, force: &dyn LocalForce, u: &[f64]) {
         self.marks.fill(false);
-        force.mark_endangered(u, self.follow.threshold, &mut self.marks);
+        if let Some(breaking) = system.operator().capabilities().breaking {
+            breaking.mark_endangered(u, self.follow.threshold, &mut self.marks);
+        }
         system.operator().damage_into(&mut self.now);
         for i in 0..self.marks.len() {
             if self.marks[i] || self.now[i] > self.damage[i] {

@@ -7,7 +7,7 @@ use super::zone::{Sum, Zone};
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State};
 use crate::archive::{Archive, Saved, Values};
-use crate::error::Result;
+use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::step_end::{Path, StepEnd};
@@ -43,8 +43,15 @@ impl Respa {
             stages: 1,
             shares_border: true,
         };
+        let refinement = Refinement::new(system, cost, ratio, fine)?;
+        if system.operator().as_split().is_none() {
+            return Err(PericlesError::SchemeNotUsable {
+                scheme: cost.name,
+                reason: "it takes the force apart by bonds, and here what a bond exerts depends on the other bonds of its ends; use rk3-mts or rk4-mts",
+            });
+        }
         Ok(Self {
-            refinement: Refinement::new(system, cost, ratio, fine)?,
+            refinement,
             slow: array(),
             fast: array(),
             mean: array(),

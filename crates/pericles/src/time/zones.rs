@@ -1,7 +1,7 @@
 //! The parts of a body with two time steps.
 
 use super::zone::Zone;
-use crate::operator::ZonedForce;
+use crate::operator::LocalForce;
 use crate::space::PointSet;
 
 /// The zones that follow from the fine points F and from who is bonded to whom.
@@ -25,7 +25,7 @@ pub(super) struct Zones {
 
 impl Zones {
     /// The zones for marked fine points. Only the neighbours of fine points are looked at.
-    pub(super) fn new(force: &dyn ZonedForce, is_fine: Vec<bool>) -> Self {
+    pub(super) fn new(force: &dyn LocalForce, is_fine: Vec<bool>) -> Self {
         let n = is_fine.len();
         let mut on_border = vec![false; n];
         for i in (0..n).filter(|&i| is_fine[i]) {
@@ -65,7 +65,7 @@ impl Zones {
 }
 
 /// Marks everything within `layers` families of the marked points.
-pub(super) fn grow(force: &dyn ZonedForce, marks: &mut [bool], layers: u32) {
+pub(super) fn grow(force: &dyn LocalForce, marks: &mut [bool], layers: u32) {
     let mut front: Vec<u32> = (0..marks.len() as u32)
         .filter(|&i| marks[i as usize])
         .collect();

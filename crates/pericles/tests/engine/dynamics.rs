@@ -8,7 +8,9 @@ use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
 use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, StressState};
 use pericles::observe::Energies;
-use pericles::operator::{BondBody, BondForce, DamageMeasure, FastLaw, ForceOperator, On};
+use pericles::operator::{
+    BondBody, BondForce, Breakable, DamageMeasure, FastLaw, ForceOperator, On,
+};
 use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
 use pericles::{Archive, Control, Outcome, Saved, Simulation, SimulationError, System, Values};

@@ -9,7 +9,7 @@ use pericles::material::{
     StressState,
 };
 use pericles::operator::{
-    BondBody, BondForce, BondForm, DamageMeasure, FastLaw, ForceOperator, GridForce,
+    BondBody, BondForce, BondForm, Breakable, DamageMeasure, FastLaw, ForceOperator, GridForce,
     InstructionSet, On,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
@@ -702,7 +702,7 @@ fn single_bonds_add_up_to_the_force() {
         let mut force = vec![0.0; 2 * n];
         operator.add_force(0.0, &u, On::All, &mut force);
         let scale = force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
-        let (bonds, mut count) = (operator.as_bonds().unwrap(), 0);
+        let (bonds, mut count) = (operator.capabilities().bonds.unwrap(), 0);
         for i in 0..n {
             let mut sum = [0.0; 3];
             bonds.for_each_bond(&u, i, &mut |bond| {

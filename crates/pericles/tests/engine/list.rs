@@ -9,7 +9,7 @@ use pericles::material::{
     BondMaterial, BondStretch, Fracture, GreenBond, LinearBond, LiteralBond, PairForce, StressState,
 };
 use pericles::operator::{
-    BondForce, Breaking, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On,
+    BondForce, Breakable, Breaking, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On,
 };
 use pericles::space::PointCloud;
 use pericles::{Path, StepEnd};

@@ -7,7 +7,9 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
+use pericles::operator::{
+    BondBody, BondForm, Breakable, DamageMeasure, ForceOperator, InstructionSet, On,
+};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};
@@ -208,7 +210,11 @@ fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
             let mut out = vec![0.0; u.len()];
             operator.end_step(&end, on, &mut out);
             let mut intact = Vec::new();
-            operator.for_each_intact(&mut |i, j| intact.push((i, j)));
+            operator
+                .capabilities()
+                .breaking
+                .unwrap()
+                .for_each_intact(&mut |i, j| intact.push((i, j)));
             // A force without the bonds that have just gone; bonds seen by one end only would leave a resultant.
             let resultant: f64 = out[..cloud.len()].iter().sum();
             (

@@ -35,24 +35,25 @@ fn forces_of_partners_add_up_and_are_opposite() {
     let [(inside, inner), (outside, outer)] = zones(&sphere);
     for bond in BONDS {
         let operator = sphere.operator(&brittle(bond, f64::INFINITY));
-        let zoned = operator.as_zoned().unwrap();
+        let local = operator.as_local().unwrap();
+        let split = operator.as_split().unwrap();
         for i in 0..n {
             let mut family = Vec::new();
-            zoned.neighbours(i, &mut |j| family.push(j as u32));
+            local.neighbours(i, &mut |j| family.push(j as u32));
             assert_eq!(family, sphere.pairs.row(i).0);
         }
         let whole = force(&*operator, &u);
         let scale = whole.iter().fold(0.0_f64, |max, f| max.max(f.abs()));
         let mut parts = vec![0.0; 3 * n];
-        zoned.add_force_from(0.0, &u, On::All, &inside, &mut parts);
-        zoned.add_force_from(0.0, &u, On::All, &outside, &mut parts);
+        split.add_force_from(0.0, &u, On::All, &inside, &mut parts);
+        split.add_force_from(0.0, &u, On::All, &outside, &mut parts);
         for k in 0..3 * n {
             assert!((parts[k] - whole[k]).abs() < 1e-12 * scale);
         }
         let mut exchange = vec![0.0; 3 * n];
-        zoned.add_force_from(0.0, &u, On::Set(&inner), &outside, &mut exchange);
+        split.add_force_from(0.0, &u, On::Set(&inner), &outside, &mut exchange);
         assert!((0..3 * n).all(|k| inside[k % n] || exchange[k] == 0.0));
-        zoned.add_force_from(0.0, &u, On::Set(&outer), &inside, &mut exchange);
+        split.add_force_from(0.0, &u, On::Set(&outer), &inside, &mut exchange);
         for component in exchange.chunks(n) {
             let terms = component.iter().zip(sphere.cloud.volumes());
             let sum: f64 = terms.map(|(f, area)| f * area).sum();
@@ -87,8 +88,8 @@ fn breaking_by_partners_decides_their_bonds_only() {
             (&outer, &inside),
         ];
         let counts = pairs.map(|(rows, partners)| {
-            let zoned = parts.as_zoned_mut().unwrap();
-            zoned.end_step_from(&end, On::Set(rows), partners, &mut sum);
+            let split = parts.split_mut().unwrap();
+            split.end_step_from(&end, On::Set(rows), partners, &mut sum);
             parts.broken_bonds()
         });
         assert!(counts[0] > 5 && counts[0] < counts[1] && counts[1] < counts[2]);
@@ -119,8 +120,8 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
     assert!(expected.contains(&true) && expected.contains(&false));
     let mut marks = vec![false; n];
     let operator = sphere.operator(&brittle(SurfaceBond::Displacement, critical));
-    let zoned = operator.as_zoned().unwrap();
-    zoned.mark_endangered(&u, fraction, &mut marks);
+    let breaking = operator.capabilities().breaking.unwrap();
+    breaking.mark_endangered(&u, fraction, &mut marks);
     assert_eq!(marks, expected);
 }
 

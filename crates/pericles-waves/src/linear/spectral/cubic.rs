@@ -15,7 +15,7 @@ use pericles::Saved;
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
-use pericles::operator::{ForceOperator, InstructionSet, LinearOperator, On};
+use pericles::operator::{Capabilities, ForceOperator, InstructionSet, On};
 use pericles::space::PointCloud;
 use pericles::sum::sum;
 
@@ -349,8 +349,8 @@ impl ForceOperator for SpectralCubicForce {
         InstructionSet::detect()
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        None
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities::default()
     }
 }
 

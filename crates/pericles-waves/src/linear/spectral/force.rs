@@ -16,7 +16,10 @@ use super::symbol::Symbol;
 use pericles::Saved;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
-use pericles::operator::{Diagonal, ForceOperator, FunctionOf, InstructionSet, LinearOperator, On};
+use pericles::operator::{
+    Capabilities, Diagonal, ForceOperator, FunctionOf, InstructionSet, LinearOperator, Linearity,
+    On,
+};
 use pericles::parallel::{components, components_mut};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
@@ -358,8 +361,11 @@ impl<const D: usize> ForceOperator for SpectralForce<D> {
         InstructionSet::detect()
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        Some(self)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: Linearity::Exact(self),
+            ..Capabilities::default()
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod arrays;
 mod block;
 mod breaking;
 mod build;
+mod damage;
 mod force;
 mod kernels;
 mod layout;

@@ -7,12 +7,11 @@ use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangen
 use super::padded::Frame;
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
-use crate::lanes::LANES;
 use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
-    LinearOperator, On, ZonedForce,
+    Breakable, Capabilities, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
+    LinearOperator, Linearity, On, SplitForce,
 };
 use crate::parallel::{components_mut, for_each_part};
 use crate::step_end::StepEnd;
@@ -107,87 +106,6 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         *spare() = Some(padded);
     }
 
-    fn dissipated(&self) -> f64 {
-        damage::dissipated(&self.blocks)
-    }
-
-    fn dissipate(&mut self, energy: f64) {
-        damage::dissipate(&mut self.blocks, energy);
-    }
-
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        damage::take_coarse_breaks(&mut self.blocks)
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(&self.blocks)
-    }
-
-    fn can_break(&self) -> bool {
-        self.critical_stretch.is_finite()
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        let volumes = self.stencil.volumes();
-        let mut whole = vec![0.0; self.points()];
-        out.fill(0.0);
-        for (sums, all) in [(&mut whole[..], true), (&mut *out, false)] {
-            self.for_each_block(sums, |first, number, intact, sums| {
-                self.for_each_counted(number, intact, |point, offset, intact| {
-                    if intact || all {
-                        let weight = if self.damage.count {
-                            1.0
-                        } else {
-                            volumes[offset]
-                        };
-                        sums[point - first] += weight;
-                    }
-                });
-            });
-        }
-        for (damage, whole) in out.iter_mut().zip(whole) {
-            *damage = if whole > 0.0 {
-                1.0 - *damage / whole
-            } else {
-                0.0
-            };
-        }
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        let offsets = self.stencil.offsets();
-        for (number, block) in self.blocks.iter().enumerate() {
-            let chunks = self.layout.chunks_of(number);
-            for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
-                let chunk = &self.layout.chunks()[chunk];
-                // The other end of a bond tells of it otherwise.
-                let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
-                for (mask, offset) in forward {
-                    for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
-                        let place = chunk.place as usize * LANES + lane;
-                        let there = place.wrapping_add_signed(offset.shift);
-                        visit(i, self.layout.point_at(there));
-                    }
-                }
-            }
-        }
-    }
-
-    fn rounding(&self, u: &[f64]) -> Option<f64> {
-        self.floats.as_ref()?;
-        let (mut rounded, mut exact) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-        self.add_force(0.0, u, On::All, &mut rounded);
-        self.add_force_in_doubles(u, &On::All, &mut exact);
-        let largest = |of: &dyn Fn(usize) -> f64| (0..u.len()).map(of).fold(0.0, f64::max);
-        let difference = largest(&|k| (rounded[k] - exact[k]).abs());
-        let scale = largest(&|k| exact[k].abs());
-        Some(if difference > 0.0 {
-            difference / scale
-        } else {
-            0.0
-        })
-    }
-
     fn directed_bonds(&self) -> u64 {
         self.directed_bonds
     }
@@ -215,10 +133,6 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         }
     }
 
-    fn is_linear(&self) -> bool {
-        L::LINEAR
-    }
-
     fn lattice_springs(&self) -> Option<LatticeSprings> {
         let (cells, lengths) = (self.stencil.cells(), self.stencil.lengths());
         let spring = |k: usize| LatticeSpring {
@@ -228,19 +142,41 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
         LatticeSprings::new(D, (0..self.stencil.len()).map(spring))
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        (L::LINEAR && self.floats.is_none()).then_some(self as &dyn LinearOperator)
+    fn rounding(&self, u: &[f64]) -> Option<f64> {
+        self.floats.as_ref()?;
+        let (mut rounded, mut exact) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+        self.add_force(0.0, u, On::All, &mut rounded);
+        self.add_force_in_doubles(u, &On::All, &mut exact);
+        let largest = |of: &dyn Fn(usize) -> f64| (0..u.len()).map(of).fold(0.0, f64::max);
+        let difference = largest(&|k| (rounded[k] - exact[k]).abs());
+        let scale = largest(&|k| exact[k].abs());
+        Some(if difference > 0.0 {
+            difference / scale
+        } else {
+            0.0
+        })
     }
 
-    fn as_bonds(&self) -> Option<&dyn BondView> {
+    fn capabilities(&self) -> Capabilities<'_> {
+        let in_doubles = self.floats.is_none();
+        Capabilities {
+            linear: match (L::LINEAR, in_doubles) {
+                (true, true) => Linearity::Exact(self),
+                (true, false) => Linearity::Rounded,
+                (false, _) => Linearity::Nonlinear,
+            },
+            breaking: Some(self),
+            local: in_doubles.then_some(self),
+            split: in_doubles.then_some(self),
+            bonds: Some(self),
+        }
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
         Some(self)
     }
 
-    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
-        self.floats.is_none().then_some(self)
-    }
-
-    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+    fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
         self.floats.is_none().then_some(self)
     }
 }
@@ -253,7 +189,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     }
 
     /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
-    fn for_each_block(
+    pub(super) fn for_each_block(
         &self,
         values: &mut [f64],
         visit: impl Fn(usize, usize, &[u8], &mut [f64]) + Sync,

@@ -1,14 +1,12 @@
-//! [`ZonedForce`] for lattice bodies.
+//! [`SplitForce`] and [`LocalForce`] for lattice bodies.
 
-use super::arrays::Grid;
-use super::block::{ChunkBlock, scatter};
+use super::block::ChunkBlock;
 use super::force::GridForce;
 use super::kernels::force_chunks;
 use super::layout::{Chunk, Partners};
 use crate::lanes::LANES;
-use crate::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{ForceOperator, On, ZonedForce};
+use crate::operator::{Breakable, LocalForce, On, SplitForce};
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> GridForce<L, D> {
@@ -50,28 +48,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let place = self.layout.place_of(i);
-        let (number, lane) = self.layout.chunk_at(place);
-        let chunk = &self.layout.chunks()[number];
-        let m = self.stencil.len();
-        for (k, &cell) in self.stencil.cells().iter().enumerate() {
-            let mut family = self.layout.neighbours(chunk, cell);
-            let group = (number * m + k) as u64;
-            if let Ok(found) = self
-                .precut
-                .binary_search_by_key(&group, |&(group, _)| group)
-            {
-                family &= !self.precut[found].1;
-            }
-            if family >> lane & 1 == 1 {
-                let there = place.wrapping_add_signed(self.stencil.offsets()[k].shift);
-                visit(self.layout.point_at(there));
-            }
-        }
-    }
-
+impl<L: FastLaw, const D: usize> SplitForce for GridForce<L, D> {
     /// Takes a work array of one byte per bond group of the blocks concerned.
     fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
         let partners = self.partners(partners);
@@ -95,81 +72,27 @@ impl<L: FastLaw, const D: usize> ZonedForce for GridForce<L, D> {
             self.add_force_from(step.t, step.u, on, partners, out);
         }
     }
-
-    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
-        if !self.can_break() {
-            return;
-        }
-        let threshold = L::threshold(fraction * self.critical_stretch);
-        let mut found = vec![0.0; self.points()];
-        let breakable = |chunk: &Chunk, offset: usize| self.breakable(chunk, offset);
-        self.sweep::<f64, 1>(
-            &self.doubles,
-            u,
-            &On::All,
-            &mut found,
-            |grid, block, intact, out| {
-                endangered_chunks::<L, D>(
-                    self.instruction_set,
-                    grid,
-                    threshold,
-                    &breakable,
-                    block,
-                    intact,
-                    out,
-                );
-            },
-        );
-        for (mark, found) in marks.iter_mut().zip(found) {
-            *mark |= found > 0.0;
-        }
-    }
 }
 
-#[inline(always)]
-fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
-    grid: &Grid<'_, f64, D>,
-    threshold: f64,
-    breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
-    block: &ChunkBlock<'_>,
-    intact: &[u8],
-    out: &mut [&mut [f64]; 1],
-) {
-    let m = grid.offsets.len();
-    let threshold = T::splat(threshold);
-    // Asked for few bonds only: behind a pointer, so that no part of it is compiled into the vector loop.
-    let breakable = std::hint::black_box(breakable);
-    for (number, chunk) in block.chunks.iter().enumerate() {
-        let place = grid.place(chunk);
-        let here = grid.here::<T>(place);
-        let mut endangered = 0;
-        let intact = &intact[number * m..(number + 1) * m];
-        for k in 0..m {
-            let (offset, mask) = (&grid.offsets[k], intact[k]);
-            let eta = grid.eta(place, offset.shift, &here);
-            let over = L::strain(&offset.lanes::<T>(), eta).greater(threshold) & mask;
-            if over & !endangered != 0 {
-                endangered |= over & breakable(chunk, k);
+impl<L: FastLaw, const D: usize> LocalForce for GridForce<L, D> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let place = self.layout.place_of(i);
+        let (number, lane) = self.layout.chunk_at(place);
+        let chunk = &self.layout.chunks()[number];
+        let m = self.stencil.len();
+        for (k, &cell) in self.stencil.cells().iter().enumerate() {
+            let mut family = self.layout.neighbours(chunk, cell);
+            let group = (number * m + k) as u64;
+            if let Ok(found) = self
+                .precut
+                .binary_search_by_key(&group, |&(group, _)| group)
+            {
+                family &= !self.precut[found].1;
             }
-        }
-        if endangered != 0 {
-            let mut ones = [0.0; LANES];
-            for lane in 0..LANES {
-                ones[lane] = f64::from(endangered >> lane & 1);
+            if family >> lane & 1 == 1 {
+                let there = place.wrapping_add_signed(self.stencil.offsets()[k].shift);
+                visit(self.layout.point_at(there));
             }
-            scatter(ones, chunk, chunk.lanes, block.first_point, out[0]);
         }
     }
-}
-
-for_each_instruction_set! {
-    /// Adds one to the points with a bond that may break and is strained beyond the threshold.
-    fn endangered_chunks [L: FastLaw, const D: usize] <L, D> (
-        grid: &Grid<'_, f64, D>,
-        threshold: f64,
-        breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
-        block: &ChunkBlock<'_>,
-        intact: &[u8],
-        out: &mut [&mut [f64]; 1],
-    ) = endangered_chunks_body on lanes
 }

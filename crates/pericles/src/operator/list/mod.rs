@@ -2,6 +2,7 @@
 
 mod arrays;
 mod breaking;
+mod damage;
 mod force;
 mod kernels;
 mod operator;

@@ -1,18 +1,16 @@
 //! [`ForceOperator`] for bond lists.
 
-use rayon::prelude::*;
-
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
 use crate::archive::{Archive, Saved};
 use crate::error::Result;
-use crate::lanes::LANES;
+use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    BondAt, BondView, CoarseBreak, ForceOperator, InstructionSet, LatticeSprings, LinearOperator,
-    On, ZonedForce, damage,
+    BondAt, BondView, Breakable, Capabilities, ForceOperator, InstructionSet, LatticeSprings,
+    LinearOperator, Linearity, On, SplitForce,
 };
-use crate::parallel::{BLOCK, components};
+use crate::parallel::components;
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
@@ -87,60 +85,6 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
         });
     }
 
-    fn dissipated(&self) -> f64 {
-        damage::dissipated(&self.blocks)
-    }
-
-    fn dissipate(&mut self, energy: f64) {
-        damage::dissipate(&mut self.blocks, energy);
-    }
-
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        damage::take_coarse_breaks(&mut self.blocks)
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(&self.blocks)
-    }
-
-    fn can_break(&self) -> bool {
-        self.critical_stretch.is_finite()
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        out.par_iter_mut()
-            .enumerate()
-            .with_min_len(BLOCK)
-            .for_each(|(i, damage)| {
-                let (mut whole, mut left) = (0.0, 0.0);
-                for (entry, j) in self.bonds.family(i) {
-                    let present = self.bonds.present()[entry / LANES] >> (entry % LANES) & 1 == 1;
-                    if !(present || self.damage.count_precut) {
-                        continue;
-                    }
-                    let weight = if self.damage.count {
-                        1.0
-                    } else {
-                        self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
-                    };
-                    whole += weight;
-                    if self.is_intact(i, entry) {
-                        left += weight;
-                    }
-                }
-                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-            });
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        for i in 0..self.points() {
-            let family = self.bonds.family(i);
-            for (_, j) in family.filter(|&(entry, j)| j > i && self.is_intact(i, entry)) {
-                visit(i, j);
-            }
-        }
-    }
-
     fn directed_bonds(&self) -> u64 {
         self.bonds.directed_bonds()
     }
@@ -166,19 +110,24 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
         self.springs_of_offsets()
     }
 
-    fn as_linear(&self) -> Option<&dyn LinearOperator> {
-        L::LINEAR.then_some(self as &dyn LinearOperator)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: match L::LINEAR {
+                true => Linearity::Exact(self),
+                false => Linearity::Nonlinear,
+            },
+            breaking: Some(self),
+            local: Some(self),
+            split: Some(self),
+            bonds: Some(self),
+        }
     }
 
-    fn as_bonds(&self) -> Option<&dyn BondView> {
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
         Some(self)
     }
 
-    fn as_zoned(&self) -> Option<&dyn ZonedForce> {
-        Some(self)
-    }
-
-    fn as_zoned_mut(&mut self) -> Option<&mut dyn ZonedForce> {
+    fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
         Some(self)
     }
 }

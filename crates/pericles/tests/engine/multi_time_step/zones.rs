@@ -114,11 +114,12 @@ fn neighbours_are_those_that_exert_a_force() {
         let n = body.cloud.len();
         let families = FORMS.map(|form| {
             let operator = body.operator(form);
-            let zoned = operator.as_zoned().unwrap();
+            let local = operator.as_local().unwrap();
+
             (0..n)
                 .map(|i| {
                     let mut family = Vec::new();
-                    zoned.neighbours(i, &mut |j| family.push(j));
+                    local.neighbours(i, &mut |j| family.push(j));
                     family.sort_unstable();
                     family
                 })
@@ -144,23 +145,23 @@ fn forces_of_partners_add_up_and_are_opposite() {
             |marks: &[bool]| -> Vec<u32> { (0..n as u32).filter(|&i| marks[i as usize]).collect() };
         for form in FORMS {
             let operator = body.operator(form);
-            let zoned = operator.as_zoned().unwrap();
+            let split = operator.as_split().unwrap();
             let mut whole = vec![0.0; u.len()];
             operator.add_force(0.0, &u, On::All, &mut whole);
             let mut parts = vec![0.0; u.len()];
-            zoned.add_force_from(0.0, &u, On::All, &inside, &mut parts);
-            zoned.add_force_from(0.0, &u, On::All, &outside, &mut parts);
+            split.add_force_from(0.0, &u, On::All, &inside, &mut parts);
+            split.add_force_from(0.0, &u, On::All, &outside, &mut parts);
             let scale = whole.iter().fold(0.0, |max: f64, f| max.max(f.abs()));
             for k in 0..u.len() {
                 assert!((parts[k] - whole[k]).abs() < 1e-12 * scale);
             }
             // What the two zones do to each other is equal and opposite; other entries stay.
             let mut exchange = vec![0.0; u.len()];
-            zoned.add_force_from(0.0, &u, On::Set(&set(&inside)), &outside, &mut exchange);
+            split.add_force_from(0.0, &u, On::Set(&set(&inside)), &outside, &mut exchange);
             for k in 0..u.len() {
                 assert!(inside[k % n] || exchange[k] == 0.0);
             }
-            zoned.add_force_from(0.0, &u, On::Set(&set(&outside)), &inside, &mut exchange);
+            split.add_force_from(0.0, &u, On::Set(&set(&outside)), &inside, &mut exchange);
             for component in exchange.chunks(n) {
                 let sum: f64 = component.iter().sum();
                 assert!(sum.abs() < 1e-12 * scale * n as f64);
@@ -201,12 +202,10 @@ fn breaking_by_partners_decides_their_bonds_only() {
                 (&outside, &inside),
             ] {
                 let rows = set(rows);
-                parts.as_zoned_mut().unwrap().end_step_from(
-                    &end,
-                    On::Set(&rows),
-                    partners,
-                    &mut sum,
-                );
+                parts
+                    .split_mut()
+                    .unwrap()
+                    .end_step_from(&end, On::Set(&rows), partners, &mut sum);
                 counts.push(parts.broken_bonds());
             }
             assert!(
@@ -258,7 +257,8 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
             let operator = body.operator(form);
             let mut marks = vec![false; n];
             operator
-                .as_zoned()
+                .capabilities()
+                .breaking
                 .unwrap()
                 .mark_endangered(&u, fraction, &mut marks);
             assert_eq!(marks, expected, "{form:?}");

@@ -1,0 +1,338 @@
+//! Several forces on one body.
+
+use super::{
+    BondAt, BondView, Breakable, Capabilities, CoarseBreak, ForceOperator, InstructionSet,
+    LinearOperator, Linearity, LocalForce, On, SplitForce,
+};
+use crate::archive::{Archive, Saved};
+use crate::error::{PericlesError, Result};
+use crate::step_end::StepEnd;
+
+/// The forces that act between the points of a body, at least one: their sum is a force.
+///
+/// It can do what all of them can; it can break where one of them can.
+pub struct Forces {
+    list: Vec<Box<dyn ForceOperator>>,
+}
+
+impl Forces {
+    /// One force.
+    pub fn new(force: Box<dyn ForceOperator>) -> Self {
+        Self { list: vec![force] }
+    }
+
+    /// Adds a force.
+    ///
+    /// # Errors
+    /// A force on another number of points, or in another dimension.
+    pub fn add(&mut self, force: Box<dyn ForceOperator>) -> Result<()> {
+        let (points, dimension) = (force.points(), force.dimension());
+        if points != self.points() || dimension != self.dimension() {
+            return Err(PericlesError::ForceOfAnotherBody {
+                points,
+                dimension,
+                needed_points: self.points(),
+                needed_dimension: self.dimension(),
+            });
+        }
+        self.list.push(force);
+        Ok(())
+    }
+
+    /// The sum of all forces; a force that is alone stands for itself.
+    pub fn sum(&self) -> &dyn ForceOperator {
+        match &self.list[..] {
+            [one] => &**one,
+            _ => self,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn sum_mut(&mut self) -> &mut dyn ForceOperator {
+        if self.list.len() == 1 {
+            return &mut *self.list[0];
+        }
+        self
+    }
+
+    /// The forces one by one.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn ForceOperator> {
+        self.list.iter().map(|force| &**force)
+    }
+
+    fn breaking(&self) -> impl Iterator<Item = &dyn Breakable> {
+        self.iter()
+            .filter_map(|force| force.capabilities().breaking)
+    }
+
+    /// A capability that all of them have.
+    fn all<'a, T: ?Sized + 'a>(
+        &'a self,
+        own: &'a T,
+        has: impl Fn(Capabilities<'a>) -> Option<&'a T>,
+    ) -> Option<&'a T> {
+        let all = self
+            .list
+            .iter()
+            .all(|force| has(force.capabilities()).is_some());
+        all.then_some(own)
+    }
+}
+
+impl ForceOperator for Forces {
+    fn points(&self) -> usize {
+        self.list[0].points()
+    }
+
+    fn dimension(&self) -> usize {
+        self.list[0].dimension()
+    }
+
+    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        for force in &self.list {
+            force.add_force(t, u, on.clone(), out);
+        }
+    }
+
+    fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        for force in &self.list {
+            force.add_energy_density(t, u, out);
+        }
+    }
+
+    fn energy(&self, t: f64, u: &[f64]) -> f64 {
+        self.list.iter().map(|force| force.energy(t, u)).sum()
+    }
+
+    /// ω² of a sum of stiffnesses is at most the sum of their ω².
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let square = |force: &Box<dyn ForceOperator>| force.frequency_bound(density).powi(2);
+        self.list.iter().map(square).sum::<f64>().sqrt()
+    }
+
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        let mut part = vec![0.0; out.len()];
+        out.fill(0.0);
+        for force in &self.list {
+            force.tangent_into(t, u, direction, &mut part);
+            add(&part, out);
+        }
+    }
+
+    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+        for force in &mut self.list {
+            force.end_step(step, on.clone(), out);
+        }
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        let linear: Vec<_> = self
+            .iter()
+            .map(|force| force.capabilities().linear)
+            .collect();
+        let exact = linear.iter().all(|one| matches!(one, Linearity::Exact(_)));
+        let rounded = !linear.iter().any(|one| matches!(one, Linearity::Nonlinear));
+        Capabilities {
+            linear: match (exact, rounded) {
+                (true, _) => Linearity::Exact(self),
+                (false, true) => Linearity::Rounded,
+                (false, false) => Linearity::Nonlinear,
+            },
+            breaking: self.breaking().next().map(|_| self as &dyn Breakable),
+            local: self.all(self, |force| force.local),
+            split: self.all(self, |force| force.split),
+            bonds: self.all(self, |force| force.bonds),
+        }
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        self.breaking().next()?;
+        Some(self)
+    }
+
+    fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
+        self.capabilities().split?;
+        Some(self)
+    }
+
+    /// The sum of their largest errors: each is relative to the largest force of its own.
+    fn rounding(&self, u: &[f64]) -> Option<f64> {
+        let errors = self.list.iter().filter_map(|force| force.rounding(u));
+        errors.reduce(|sum, error| sum + error)
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.list.iter().map(|force| force.directed_bonds()).sum()
+    }
+
+    fn bytes(&self) -> usize {
+        self.list.iter().map(|force| force.bytes()).sum()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.list[0].instruction_set()
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        for force in &mut self.list {
+            force.use_instruction_set(set);
+        }
+    }
+}
+
+impl Breakable for Forces {
+    fn can_break(&self) -> bool {
+        self.breaking().any(|breaking| breaking.can_break())
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        self.breaking()
+            .map(|breaking| breaking.broken_bonds())
+            .sum()
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.breaking().map(|breaking| breaking.dissipated()).sum()
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        let mut breaking = self
+            .list
+            .iter_mut()
+            .filter_map(|force| force.breaking_mut());
+        if let Some(first) = breaking.find(|breaking| breaking.can_break()) {
+            first.dissipate(energy);
+        }
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        let breaking = self
+            .list
+            .iter_mut()
+            .filter_map(|force| force.breaking_mut());
+        breaking
+            .flat_map(|breaking| breaking.take_coarse_breaks())
+            .collect()
+    }
+
+    /// The largest damage of all forces.
+    fn damage_into(&self, out: &mut [f64]) {
+        let mut part = vec![0.0; out.len()];
+        out.fill(0.0);
+        for breaking in self.breaking() {
+            breaking.damage_into(&mut part);
+            for (out, damage) in out.iter_mut().zip(&part) {
+                *out = out.max(*damage);
+            }
+        }
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for breaking in self.breaking() {
+            breaking.for_each_intact(visit);
+        }
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        for breaking in self.breaking() {
+            breaking.mark_endangered(u, fraction, marks);
+        }
+    }
+}
+
+impl LocalForce for Forces {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let mut reached = Vec::new();
+        for local in self.iter().filter_map(|force| force.capabilities().local) {
+            local.neighbours(i, &mut |j| reached.push(j));
+        }
+        reached.sort_unstable();
+        reached.dedup();
+        reached.into_iter().for_each(visit);
+    }
+}
+
+impl SplitForce for Forces {
+    fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+        for split in self.iter().filter_map(|force| force.capabilities().split) {
+            split.add_force_from(t, u, on.clone(), partners, out);
+        }
+    }
+
+    fn end_step_from(
+        &mut self,
+        step: &StepEnd<'_>,
+        on: On<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
+        let forces = self.list.iter_mut();
+        for split in forces.filter_map(|force| force.split_mut()) {
+            split.end_step_from(step, on.clone(), partners, out);
+        }
+    }
+}
+
+impl BondView for Forces {
+    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
+        for bonds in self.iter().filter_map(|force| force.capabilities().bonds) {
+            bonds.for_each_bond(u, i, visit);
+        }
+    }
+}
+
+impl LinearOperator for Forces {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.add_force(0.0, u, On::All, out);
+    }
+
+    fn half_bandwidth(&self) -> Option<usize> {
+        let width = |force: &dyn ForceOperator| match force.capabilities().linear {
+            Linearity::Exact(linear) => linear.half_bandwidth(),
+            _ => None,
+        };
+        self.iter()
+            .map(width)
+            .try_fold(0, |most, width| Some(most.max(width?)))
+    }
+}
+
+/// The arrays of force k of several are stored under names that begin with `force/k/`; a force that is alone has its names for itself.
+impl Saved for Forces {
+    fn save(&self, archive: &mut Archive) {
+        if let [one] = &self.list[..] {
+            return one.save(archive);
+        }
+        for (k, force) in self.list.iter().enumerate() {
+            let mut own = Archive::default();
+            force.save(&mut own);
+            for (name, values) in own.into_arrays() {
+                archive.put(format!("force/{k}/{name}"), values);
+            }
+        }
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        if let [one] = &mut self.list[..] {
+            return one.restore(archive);
+        }
+        for (k, force) in self.list.iter_mut().enumerate() {
+            let prefix = format!("force/{k}/");
+            let mut own = Archive::default();
+            for (name, values) in archive.arrays() {
+                if let Some(name) = name.strip_prefix(&prefix) {
+                    own.put(name, values.clone());
+                }
+            }
+            force.restore(&own)?;
+        }
+        Ok(())
+    }
+}
+
+fn add(part: &[f64], out: &mut [f64]) {
+    for (out, part) in out.iter_mut().zip(part) {
+        *out += part;
+    }
+}

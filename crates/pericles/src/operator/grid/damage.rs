@@ -1,0 +1,155 @@
+//! [`Breakable`] for lattice bodies.
+
+use super::arrays::Grid;
+use super::block::{ChunkBlock, scatter};
+use super::force::GridForce;
+use super::layout::Chunk;
+use crate::lanes::LANES;
+use crate::lanes::{Lanes, for_each_instruction_set};
+use crate::operator::fast_law::FastLaw;
+use crate::operator::{Breakable, CoarseBreak, ForceOperator, On, damage};
+
+impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
+    fn dissipated(&self) -> f64 {
+        damage::dissipated(&self.blocks)
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        damage::dissipate(&mut self.blocks, energy);
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        damage::take_coarse_breaks(&mut self.blocks)
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        damage::broken_bonds(&self.blocks)
+    }
+
+    fn can_break(&self) -> bool {
+        self.critical_stretch.is_finite()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        let volumes = self.stencil.volumes();
+        let mut whole = vec![0.0; self.points()];
+        out.fill(0.0);
+        for (sums, all) in [(&mut whole[..], true), (&mut *out, false)] {
+            self.for_each_block(sums, |first, number, intact, sums| {
+                self.for_each_counted(number, intact, |point, offset, intact| {
+                    if intact || all {
+                        let weight = if self.damage.count {
+                            1.0
+                        } else {
+                            volumes[offset]
+                        };
+                        sums[point - first] += weight;
+                    }
+                });
+            });
+        }
+        for (damage, whole) in out.iter_mut().zip(whole) {
+            *damage = if whole > 0.0 {
+                1.0 - *damage / whole
+            } else {
+                0.0
+            };
+        }
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        let offsets = self.stencil.offsets();
+        for (number, block) in self.blocks.iter().enumerate() {
+            let chunks = self.layout.chunks_of(number);
+            for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
+                let chunk = &self.layout.chunks()[chunk];
+                // The other end of a bond tells of it otherwise.
+                let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
+                for (mask, offset) in forward {
+                    for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
+                        let place = chunk.place as usize * LANES + lane;
+                        let there = place.wrapping_add_signed(offset.shift);
+                        visit(i, self.layout.point_at(there));
+                    }
+                }
+            }
+        }
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if !self.can_break() {
+            return;
+        }
+        let threshold = L::threshold(fraction * self.critical_stretch);
+        let mut found = vec![0.0; self.points()];
+        let breakable = |chunk: &Chunk, offset: usize| self.breakable(chunk, offset);
+        self.sweep::<f64, 1>(
+            &self.doubles,
+            u,
+            &On::All,
+            &mut found,
+            |grid, block, intact, out| {
+                endangered_chunks::<L, D>(
+                    self.instruction_set,
+                    grid,
+                    threshold,
+                    &breakable,
+                    block,
+                    intact,
+                    out,
+                );
+            },
+        );
+        for (mark, found) in marks.iter_mut().zip(found) {
+            *mark |= found > 0.0;
+        }
+    }
+}
+
+#[inline(always)]
+fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
+    grid: &Grid<'_, f64, D>,
+    threshold: f64,
+    breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
+    block: &ChunkBlock<'_>,
+    intact: &[u8],
+    out: &mut [&mut [f64]; 1],
+) {
+    let m = grid.offsets.len();
+    let threshold = T::splat(threshold);
+    // Asked for few bonds only: behind a pointer, so that no part of it is compiled into the vector loop.
+    let breakable = std::hint::black_box(breakable);
+    for (number, chunk) in block.chunks.iter().enumerate() {
+        let place = grid.place(chunk);
+        let here = grid.here::<T>(place);
+        let mut endangered = 0;
+        let intact = &intact[number * m..(number + 1) * m];
+        for k in 0..m {
+            let (offset, mask) = (&grid.offsets[k], intact[k]);
+            let eta = grid.eta(place, offset.shift, &here);
+            let over = L::strain(&offset.lanes::<T>(), eta).greater(threshold) & mask;
+            if over & !endangered != 0 {
+                endangered |= over & breakable(chunk, k);
+            }
+        }
+        if endangered != 0 {
+            let mut ones = [0.0; LANES];
+            for lane in 0..LANES {
+                ones[lane] = f64::from(endangered >> lane & 1);
+            }
+            scatter(ones, chunk, chunk.lanes, block.first_point, out[0]);
+        }
+    }
+}
+
+for_each_instruction_set! {
+    /// Adds one to the points with a bond that may break and is strained beyond the threshold.
+    fn endangered_chunks [L: FastLaw, const D: usize] <L, D> (
+        grid: &Grid<'_, f64, D>,
+        threshold: f64,
+        breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
+        block: &ChunkBlock<'_>,
+        intact: &[u8],
+        out: &mut [&mut [f64]; 1],
+    ) = endangered_chunks_body on lanes
+}

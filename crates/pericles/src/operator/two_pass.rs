@@ -1,0 +1,260 @@
+//! Forces in two passes: one over points that leaves a few values at each, and one over bonds that reads them at both ends.
+
+use std::sync::Arc;
+
+use super::pool::{Lent, Pool};
+use super::{
+    Breakable, Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, LocalForce,
+    On,
+};
+use crate::archive::{Archive, Saved};
+use crate::domain::Field;
+use crate::error::Result;
+use crate::space::{PointCloud, PointSet};
+use crate::step_end::StepEnd;
+
+/// What a pass over bonds reads at both ends of a bond.
+#[derive(Debug, Clone, Copy)]
+pub struct AtPoints<'a> {
+    /// Displacement, m.
+    pub u: Field<'a>,
+    /// What the pass over points left.
+    pub values: Field<'a>,
+}
+
+/// A force density whose bonds depend on what other bonds of their ends do, such as those of state-based materials: the dilatation of a point, or a tensor, comes from all of its bonds, and the force of a bond
+/// from the values at both of its ends.
+///
+/// [`TwoPassForce`] makes a [`ForceOperator`] of it: it runs the passes in turn, on the points that are needed, and exchanges what they leave where a body is divided among processes.
+pub trait TwoPass: Saved + Send + Sync {
+    /// How many values the pass over points leaves at each point.
+    fn values_per_point(&self) -> usize;
+
+    /// The pass over points: sets the values of the points named by `on` (component-major) from the displacements; other entries stay.
+    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]);
+
+    /// Sets the derivatives of all values at `u` in a direction.
+    fn value_changes_into(&self, t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]);
+
+    /// The pass over bonds: adds the force density of the points named by `on`, N/m³.
+    fn add_bond_force(&self, t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]);
+
+    /// Adds the derivative of the force density in a direction in which the values change by `change.values`.
+    fn add_bond_tangent(&self, t: f64, at: AtPoints<'_>, change: AtPoints<'_>, out: &mut [f64]);
+
+    /// Adds the elastic energy density, J/m³.
+    fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]);
+
+    /// As [`ForceOperator::frequency_bound`].
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64;
+
+    /// Whether the force is linear in the displacement as long as no bond breaks.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// Calls `visit` for every own point that point i is bonded to, once each.
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
+
+    /// Decides breaking of the bonds of the points named by `on`, at both ends alike, before the passes at the end of a step.
+    fn decide(&mut self, step: &StepEnd<'_>, on: &On<'_>) {
+        let _ = (step, on);
+    }
+
+    /// Its bonds as ones that break, if they do.
+    fn breaking(&self) -> Option<&dyn Breakable> {
+        None
+    }
+
+    /// The same, to be changed.
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        None
+    }
+
+    /// Family entries that the loops run over: each bond counts twice.
+    fn directed_bonds(&self) -> u64;
+
+    /// Memory, bytes.
+    fn bytes(&self) -> usize;
+}
+
+/// The [`ForceOperator`] of a force in two passes.
+pub struct TwoPassForce<F: TwoPass> {
+    force: F,
+    cloud: Arc<PointCloud>,
+    /// Arrays for the values of own points.
+    work: Pool<Vec<f64>>,
+}
+
+impl<F: TwoPass> TwoPassForce<F> {
+    /// The operator of a force on the points of a body.
+    pub fn new(cloud: Arc<PointCloud>, force: F) -> Self {
+        let entries = cloud.len() * force.values_per_point();
+        Self {
+            force,
+            cloud,
+            work: Pool::new(1, move || vec![0.0; entries]),
+        }
+    }
+
+    /// The force.
+    pub fn force(&self) -> &F {
+        &self.force
+    }
+
+    /// The values at `u` of the points named by `on` and of all that they are bonded to.
+    fn values(&self, t: f64, u: Field<'_>, on: &On<'_>) -> (Lent<'_, Vec<f64>>, Vec<f64>) {
+        let mut own = self.work.take();
+        match on {
+            On::All => self.force.values_into(t, u, on, &mut own),
+            part => {
+                let needed = self.with_neighbours(part);
+                self.force.values_into(t, u, &On::Set(&needed), &mut own);
+            }
+        }
+        let ghosts = self.cloud.domain().ghosts(&own);
+        (own, ghosts)
+    }
+
+    fn with_neighbours(&self, on: &On<'_>) -> PointSet {
+        let mut marks = vec![false; self.cloud.len()];
+        let mut mark = |i: usize| {
+            marks[i] = true;
+            self.force.neighbours(i, &mut |j| marks[j] = true);
+        };
+        match on {
+            On::All => (0..self.cloud.len()).for_each(&mut mark),
+            On::Range(range) => range.clone().for_each(&mut mark),
+            On::Set(points) => points.iter().for_each(|&i| mark(i as usize)),
+        }
+        let marked = |i: &u32| marks[*i as usize];
+        (0..self.cloud.len() as u32).filter(marked).collect()
+    }
+}
+
+impl<F: TwoPass> ForceOperator for TwoPassForce<F> {
+    fn points(&self) -> usize {
+        self.cloud.len()
+    }
+
+    fn dimension(&self) -> usize {
+        self.cloud.dimension()
+    }
+
+    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        let ghosts = self.cloud.domain().ghosts(u);
+        let u = Field::new(u, &ghosts);
+        let (own, ghosts) = self.values(t, u, &on);
+        let values = Field::new(&own, &ghosts);
+        self.force
+            .add_bond_force(t, AtPoints { u, values }, &on, out);
+    }
+
+    fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        let ghosts = self.cloud.domain().ghosts(u);
+        let u = Field::new(u, &ghosts);
+        let (own, ghosts) = self.values(t, u, &On::All);
+        let values = Field::new(&own, &ghosts);
+        self.force
+            .add_energy_density(t, AtPoints { u, values }, out);
+    }
+
+    fn energy(&self, t: f64, u: &[f64]) -> f64 {
+        let mut density = vec![0.0; self.points()];
+        self.add_energy_density(t, u, &mut density);
+        let volumes = self.cloud.volumes();
+        let energy = |i: usize| density[i] * volumes[i];
+        self.cloud.domain().sum(self.points(), energy)
+    }
+
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        self.force.frequency_bound(density)
+    }
+
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        let domain = self.cloud.domain();
+        let (ghosts, direction_ghosts) = (domain.ghosts(u), domain.ghosts(direction));
+        let u = Field::new(u, &ghosts);
+        let direction = Field::new(direction, &direction_ghosts);
+        let (own, ghosts) = self.values(t, u, &On::All);
+        let values = Field::new(&own, &ghosts);
+        let mut changes = self.work.take();
+        self.force.value_changes_into(t, u, direction, &mut changes);
+        let ghosts = domain.ghosts(&changes);
+        let change = AtPoints {
+            u: direction,
+            values: Field::new(&changes, &ghosts),
+        };
+        self.force
+            .add_bond_tangent(t, AtPoints { u, values }, change, out);
+    }
+
+    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+        self.force.decide(step, &on);
+        self.add_force(step.t, step.u, on, out);
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            linear: match self.force.is_linear() {
+                true => Linearity::Exact(self),
+                false => Linearity::Nonlinear,
+            },
+            breaking: self.force.breaking(),
+            local: Some(self),
+            // What a bond exerts depends on all bonds of its ends.
+            split: None,
+            bonds: None,
+        }
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        self.force.breaking_mut()
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.force.directed_bonds()
+    }
+
+    fn bytes(&self) -> usize {
+        let values = 2 * self.points() * self.force.values_per_point();
+        self.force.bytes() + values * size_of::<f64>()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::Baseline
+    }
+}
+
+/// The values of a neighbour depend on its own neighbours: the force on a point depends on points two bonds away.
+impl<F: TwoPass> LocalForce for TwoPassForce<F> {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let mut near = Vec::new();
+        self.force.neighbours(i, &mut |j| near.push(j));
+        let mut reached = near.clone();
+        for &j in &near {
+            self.force.neighbours(j, &mut |k| reached.push(k));
+        }
+        reached.sort_unstable();
+        reached.dedup();
+        reached.into_iter().filter(|&k| k != i).for_each(visit);
+    }
+}
+
+impl<F: TwoPass> LinearOperator for TwoPassForce<F> {
+    fn apply_into(&self, u: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.add_force(0.0, u, On::All, out);
+    }
+}
+
+impl<F: TwoPass> Saved for TwoPassForce<F> {
+    fn save(&self, archive: &mut Archive) {
+        self.force.save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.force.restore(archive)
+    }
+}
