@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod divided;
 mod dynamics;
 mod fragments;
 mod grid;
@@ -13,3 +14,4 @@ mod properties;
 mod single_precision;
 mod statics;
 mod surface_correction;
+mod two_pass;

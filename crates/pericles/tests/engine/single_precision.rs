@@ -7,9 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{
-    BondBody, BondForm, Breakable, DamageMeasure, ForceOperator, InstructionSet, On,
-};
+use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};

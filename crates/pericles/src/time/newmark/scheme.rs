@@ -222,7 +222,7 @@ impl Newmark {
             iterations: self.options.iterations as usize,
             interrupt,
         };
-        let scale = scaled.iter().map(|y| y * y).sum::<f64>().sqrt();
+        let scale = system.domain().norm(scaled);
         let mut equation = StepEquation {
             system,
             t,
