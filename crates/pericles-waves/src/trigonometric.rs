@@ -8,7 +8,8 @@ use pericles::Saved;
 use pericles::StepKind;
 use pericles::operator::{FunctionOf, On};
 use pericles::parallel::BLOCK;
-use pericles::time::{Integrator, State, refuse_changes_of_support};
+use pericles::time::{Integrator, State};
+use pericles::{Need, Requirement, require};
 use pericles::{PericlesError, Result};
 use pericles::{PointScalar, System};
 
@@ -107,6 +108,16 @@ enum Engine {
 const NAME: &str = "trigonometric";
 
 impl Trigonometric {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
+        },
+        Requirement::SAME_SUPPORTS,
+    ];
+
     /// The scheme for a body.
     ///
     /// # Errors
@@ -121,11 +132,7 @@ impl Trigonometric {
                 allowed: "zero (the default, and always right) or a positive number, 1/s²",
             });
         }
-        refuse_changes_of_support(
-            NAME,
-            "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
-            system,
-        )?;
+        require(NAME, Self::REQUIREMENTS, system)?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let reference = array();
@@ -346,6 +353,10 @@ fn subtract(y: &mut [f64], x: &[f64]) {
 impl Integrator for Trigonometric {
     fn name(&self) -> &'static str {
         NAME
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn step_kind(&self) -> StepKind {

@@ -219,7 +219,7 @@ impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
             breaking: Some(self),
             local: Some(self),
             split: Some(self),
-            bonds: None,
+            ..Capabilities::default()
         }
     }
 

@@ -13,6 +13,8 @@ pub struct Capabilities<'a> {
     pub local: Option<&'a dyn LocalForce>,
     /// It is a sum over bonds that can be summed up in parts.
     pub split: Option<&'a dyn SplitForce>,
+    /// It is computed in single precision.
+    pub single_precision: bool,
     /// Its bonds can be looked at one by one.
     pub bonds: Option<&'a dyn BondView>,
 }

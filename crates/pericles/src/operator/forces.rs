@@ -142,6 +142,9 @@ impl ForceOperator for Forces {
             local: self.all(self, |force| force.local),
             split: self.all(self, |force| force.split),
             bonds: self.all(self, |force| force.bonds),
+            single_precision: self
+                .iter()
+                .any(|force| force.capabilities().single_precision),
         }
     }
 

@@ -205,7 +205,7 @@ impl<F: TwoPass> ForceOperator for TwoPassForce<F> {
             local: Some(self),
             // What a bond exerts depends on all bonds of its ends.
             split: None,
-            bonds: None,
+            ..Capabilities::default()
         }
     }
 

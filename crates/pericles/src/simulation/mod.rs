@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 pub use failure::SimulationError;
 
 use crate::archive::{Archive, Saved};
+use crate::compatibility::require;
 use crate::error::PericlesError;
 use crate::guard::{Alarm, Watched};
 use crate::interrupt::Interrupt;
@@ -37,6 +38,28 @@ pub enum Outcome {
 struct Scheduled {
     schedule: Schedule,
     observer: Box<dyn Observer>,
+}
+
+/// Whether a system, with all its supports and boundaries, can be stepped by a scheme for a number of steps: what the scheme needs of the system, and what its boundaries need of the scheme.
+///
+/// # Errors
+/// [`PericlesError::SchemeNotUsable`], [`PericlesError::BoundaryScheme`] and [`PericlesError::BoundarySteps`].
+pub fn check_compatibility(
+    system: &System,
+    integrator: &dyn Integrator,
+    steps: u64,
+) -> Result<(), PericlesError> {
+    let scheme = integrator.name();
+    for boundary in system.boundaries() {
+        let needed = boundary.step_kinds();
+        if !needed.is_empty() && !needed.contains(&integrator.step_kind()) {
+            return Err(PericlesError::BoundaryScheme { scheme, needed });
+        }
+        if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
+            return Err(PericlesError::BoundarySteps { steps, made_for });
+        }
+    }
+    require(scheme, integrator.requirements(), system)
 }
 
 /// A body, a scheme, and those who look on.
@@ -190,7 +213,7 @@ impl Simulation {
         interrupt: Interrupt<'_>,
         mut control: impl FnMut(&Self) -> Control,
     ) -> Result<Outcome, SimulationError> {
-        self.check_boundaries()?;
+        check_compatibility(&self.system, &*self.integrator, self.steps)?;
         if self.state.step == 0 {
             self.show(false)?;
         }
@@ -263,22 +286,6 @@ impl Simulation {
         for scheduled in &self.observers {
             let settled = scheduled.observer.settle();
             settled.map_err(SimulationError::Observe)?;
-        }
-        Ok(())
-    }
-
-    /// Boundaries with memory are made for a scheme and a number of steps.
-    fn check_boundaries(&self) -> Result<(), PericlesError> {
-        let (kind, steps) = (self.integrator.step_kind(), self.steps);
-        for boundary in self.system.boundaries() {
-            let needed = boundary.step_kinds();
-            if !needed.is_empty() && !needed.contains(&kind) {
-                let scheme = self.integrator.name();
-                return Err(PericlesError::BoundaryScheme { scheme, needed });
-            }
-            if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
-                return Err(PericlesError::BoundarySteps { steps, made_for });
-            }
         }
         Ok(())
     }

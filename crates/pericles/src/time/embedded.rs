@@ -6,6 +6,7 @@ use super::runge_kutta::{Stages, StepForm};
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
 use crate::archive::{Archive, Counter, Saved, Values};
+use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result, positive};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
@@ -39,19 +40,25 @@ const SAFETY: f64 = 0.9;
 /// Sub-steps smaller than this part of a step are given up.
 const SMALLEST: f64 = 1e-9;
 
+const NAME: &str = "dormand-prince";
+
 impl AdaptiveRungeKutta {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: "a boundary keeps a state of its own, which rejected steps would disturb; use rk4",
+        },
+    ];
+
     /// The scheme with a relative tolerance per sub-step.
     ///
     /// # Errors
     /// A tolerance that is not positive; a body with boundaries that keep a state: sub-steps that are tried and rejected would disturb it.
     pub fn new(tolerance: f64, system: &System) -> Result<Self> {
         positive("the tolerance of the adaptive step", tolerance)?;
-        if system.has_boundaries() {
-            return Err(PericlesError::SchemeNotUsable {
-                scheme: "dormand-prince",
-                reason: "a boundary keeps a state of its own, which rejected steps would disturb; use rk4",
-            });
-        }
+        require(NAME, Self::REQUIREMENTS, system)?;
         let tableau = Tableau::dormand_prince();
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
@@ -151,7 +158,11 @@ fn largest(array: &[f64]) -> f64 {
 
 impl Integrator for AdaptiveRungeKutta {
     fn name(&self) -> &'static str {
-        "dormand-prince"
+        NAME
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn order(&self) -> u32 {

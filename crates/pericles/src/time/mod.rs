@@ -36,7 +36,8 @@ pub use tableau::Tableau;
 pub use verlet::VelocityVerlet;
 
 use crate::archive::{Archive, Saved, Values};
-use crate::error::{PericlesError, Result};
+use crate::compatibility::Requirement;
+use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
@@ -131,6 +132,11 @@ pub trait Integrator: Saved + Send {
         StepKind::Stages
     }
 
+    /// What it needs of the system. Its constructor refuses a system that does not meet it, and so does a run before its first step, when all boundaries and supports are known.
+    fn requirements(&self) -> &'static [Requirement] {
+        &[]
+    }
+
     /// Order of the error in dt.
     fn order(&self) -> u32;
 
@@ -202,28 +208,4 @@ pub trait Integrator: Saved + Send {
         t_next: f64,
         interrupt: Interrupt<'_>,
     ) -> Result<()>;
-}
-
-/// Refuses what a scheme cannot follow whose step is solved for, or reaches far, with the supports of its start: boundaries with a memory, for the reason given, and points
-/// that are let go.
-pub fn refuse_changes_of_support(
-    scheme: &'static str,
-    of_boundaries: &'static str,
-    system: &System,
-) -> Result<()> {
-    if system.has_boundaries() {
-        let reason = of_boundaries;
-        return Err(PericlesError::SchemeNotUsable { scheme, reason });
-    }
-    refuse_released_points(scheme, system)
-}
-
-/// Refuses points that are let go.
-pub fn refuse_released_points(scheme: &'static str, system: &System) -> Result<()> {
-    if !system.releases_points() {
-        return Ok(());
-    }
-    let reason =
-        "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme";
-    Err(PericlesError::SchemeNotUsable { scheme, reason })
 }

@@ -2,13 +2,14 @@
 
 use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
-use super::refinement::{Refinement, SchemeCost};
+use super::refinement::{ONE_TIME_STEP_BOUNDARIES, PARTS_OF_THE_BODY, Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State, Tableau};
 use crate::archive::{Archive, Saved};
+use crate::compatibility::Requirement;
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::step_end::{Path, StepEnd};
@@ -60,6 +61,13 @@ struct Work {
 }
 
 impl MultiTimeStep {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        ONE_TIME_STEP_BOUNDARIES,
+        PARTS_OF_THE_BODY,
+    ];
+
     /// The scheme for a body.
     ///
     /// # Errors
@@ -84,6 +92,7 @@ impl MultiTimeStep {
         } = options;
         let cost = SchemeCost {
             name,
+            requirements: Self::REQUIREMENTS,
             stages: tableau.len() as u32,
             shares_border: false,
         };
@@ -113,6 +122,10 @@ impl MultiTimeStep {
 impl Integrator for MultiTimeStep {
     fn name(&self) -> &'static str {
         self.name
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn order(&self) -> u32 {

@@ -6,6 +6,7 @@ use super::frequency::{HighestFrequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
 use crate::archive::{Archive, Counter, Values};
+use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::operator::LocalForce;
 use crate::system::System;
@@ -13,6 +14,7 @@ use crate::system::System;
 /// What a scheme is called and what it evaluates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SchemeCost {
+    pub(super) requirements: &'static [Requirement],
     pub(super) name: &'static str,
     /// Evaluations of a point in each of its steps.
     pub(super) stages: u32,
@@ -48,21 +50,24 @@ struct Looking {
     marks: Vec<bool>,
 }
 
-/// The force as a sum over bonds, or why the scheme cannot be used.
-pub(super) fn local<'a>(system: &'a System, scheme: &'static str) -> Result<&'a dyn LocalForce> {
-    if system.has_boundaries() {
-        return Err(PericlesError::SchemeNotUsable {
-            scheme,
-            reason: "a boundary keeps a state of its own, which knows one time step only; use velocity-verlet",
-        });
-    }
-    system
-        .operator()
-        .as_local()
-        .ok_or(PericlesError::SchemeNotUsable {
-            scheme,
-            reason: "its force is one product over the whole body and cannot be evaluated on a part of it; use bonds, or one time step",
-        })
+/// What all schemes with two time steps need of a system.
+pub(super) const ONE_TIME_STEP_BOUNDARIES: Requirement = Requirement {
+    need: Need::NoBoundaries,
+    reason: "a boundary keeps a state of its own, which knows one time step only; use velocity-verlet",
+};
+pub(super) const PARTS_OF_THE_BODY: Requirement = Requirement {
+    need: Need::FiniteReach,
+    reason: "its force is one product over the whole body and cannot be evaluated on a part of it; use bonds, or one time step",
+};
+
+/// The force as one that can be evaluated on a part of the body, if the system meets the requirements of a scheme.
+fn local<'a>(system: &'a System, scheme: &SchemeCost) -> Result<&'a dyn LocalForce> {
+    require(scheme.name, scheme.requirements, system)?;
+    let force = system.operator().as_local();
+    force.ok_or(PericlesError::SchemeNotUsable {
+        scheme: scheme.name,
+        reason: PARTS_OF_THE_BODY.reason,
+    })
 }
 
 impl Refinement {
@@ -74,7 +79,7 @@ impl Refinement {
         if ratio < 1 {
             return Err(PericlesError::StepRatio { ratio });
         }
-        let force = local(system, cost.name)?;
+        let force = local(system, &cost)?;
         let n = system.points();
         let mut is_fine = vec![false; n];
         let follow = match fine {

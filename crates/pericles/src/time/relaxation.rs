@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::{InnerIterations, Integrator, State};
 use crate::archive::{Archive, Saved, Values};
+use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
@@ -80,7 +81,12 @@ pub struct Relaxation {
     iterations: u64,
 }
 
+const NAME: &str = "relaxation";
+
 impl Relaxation {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[Requirement::IN_DOUBLES];
+
     /// The scheme for a system.
     ///
     /// # Errors
@@ -101,11 +107,12 @@ impl Relaxation {
         {
             return refuse("the damping", damping, "above 0 and below 2");
         }
+        require(NAME, Self::REQUIREMENTS, system)?;
         // With unit densities: the bound is that of the stiffness itself.
         let omega = system.operator().frequency_bound(&|_| 1.0);
         if !(omega > 0.0 && omega.is_finite()) {
             return Err(PericlesError::SchemeNotUsable {
-                scheme: "relaxation",
+                scheme: NAME,
                 reason: "its bonds have no stiffness at rest, which sets the fictitious masses",
             });
         }
@@ -290,7 +297,11 @@ impl Relaxation {
 
 impl Integrator for Relaxation {
     fn name(&self) -> &'static str {
-        "relaxation"
+        NAME
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     /// Of the work between static states, in the length of load steps.

@@ -1,13 +1,14 @@
 //! r-RESPA: velocity Verlet with short steps for some bonds.
 
 use super::fine_region::Fine;
-use super::refinement::{Refinement, SchemeCost};
+use super::refinement::{ONE_TIME_STEP_BOUNDARIES, PARTS_OF_THE_BODY, Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State};
 use crate::archive::{Archive, Saved, Values};
-use crate::error::{PericlesError, Result};
+use crate::compatibility::{Need, Requirement};
+use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::step_end::{Path, StepEnd};
@@ -31,7 +32,20 @@ pub struct Respa {
     everywhere: Zone,
 }
 
+const NAME: &str = "respa";
+
 impl Respa {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        ONE_TIME_STEP_BOUNDARIES,
+        PARTS_OF_THE_BODY,
+        Requirement {
+            need: Need::SumOverBonds,
+            reason: "it takes the force apart by bonds, and here what a bond exerts depends on the other bonds of its ends; use rk3-mts or rk4-mts",
+        },
+    ];
+
     /// The scheme with M fast steps in a slow one.
     ///
     /// # Errors
@@ -39,17 +53,12 @@ impl Respa {
     pub fn new(ratio: u32, fine: Fine, system: &System) -> Result<Self> {
         let array = || vec![0.0; system.dimension() * system.points()];
         let cost = SchemeCost {
-            name: "respa",
+            name: NAME,
+            requirements: Self::REQUIREMENTS,
             stages: 1,
             shares_border: true,
         };
         let refinement = Refinement::new(system, cost, ratio, fine)?;
-        if system.operator().as_split().is_none() {
-            return Err(PericlesError::SchemeNotUsable {
-                scheme: cost.name,
-                reason: "it takes the force apart by bonds, and here what a bond exerts depends on the other bonds of its ends; use rk3-mts or rk4-mts",
-            });
-        }
         Ok(Self {
             refinement,
             slow: array(),
@@ -116,7 +125,11 @@ fn kick(zone: &Zone, a: &[f64], dt: f64, n: usize, v: &mut [f64]) {
 
 impl Integrator for Respa {
     fn name(&self) -> &'static str {
-        "respa"
+        NAME
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn order(&self) -> u32 {

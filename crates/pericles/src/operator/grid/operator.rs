@@ -169,6 +169,7 @@ impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
             local: in_doubles.then_some(self),
             split: in_doubles.then_some(self),
             bonds: Some(self),
+            single_precision: !in_doubles,
         }
     }
 

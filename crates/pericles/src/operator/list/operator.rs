@@ -120,6 +120,7 @@ impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
             local: Some(self),
             split: Some(self),
             bonds: Some(self),
+            single_precision: false,
         }
     }
 

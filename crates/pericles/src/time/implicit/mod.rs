@@ -8,8 +8,9 @@ use rayon::prelude::*;
 pub use solver::LinearSolver;
 use solver::StepSolver;
 
-use super::{Integrator, State, refuse_released_points};
+use super::{Integrator, State};
 use crate::archive::{Archive, Saved};
+use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
@@ -67,6 +68,16 @@ const ACCEPTED: f64 = 1e-12;
 const ROUNDING: f64 = 1e-15;
 
 impl Implicit {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::BoundariesWithinStep,
+            reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
+        },
+        Requirement::SAME_SUPPORTS,
+    ];
+
     /// A scheme for a body.
     ///
     /// # Errors
@@ -80,8 +91,7 @@ impl Implicit {
     /// # Errors
     /// As [`Implicit::new`].
     pub fn with_solver(rule: ImplicitRule, solver: LinearSolver, system: &System) -> Result<Self> {
-        refuse_explicit_boundaries(rule.name(), system)?;
-        refuse_released_points(rule.name(), system)?;
+        require(rule.name(), Self::REQUIREMENTS, system)?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let solver = StepSolver::new(solver, system);
@@ -256,17 +266,6 @@ impl Implicit {
     }
 }
 
-/// Boundaries that give something within a step must say what.
-fn refuse_explicit_boundaries(scheme: &'static str, system: &System) -> Result<()> {
-    if system.boundaries().all(|one| one.within_step().is_some()) {
-        return Ok(());
-    }
-    Err(PericlesError::SchemeNotUsable {
-        scheme,
-        reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
-    })
-}
-
 impl ImplicitRule {
     /// As written in decks.
     pub fn name(self) -> &'static str {
@@ -366,6 +365,10 @@ impl Integrator for Implicit {
 
     fn step_kind(&self) -> StepKind {
         StepKind::Middle
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn order(&self) -> u32 {

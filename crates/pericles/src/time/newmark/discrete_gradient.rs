@@ -3,6 +3,7 @@
 use super::InnerIterations;
 use super::equation::{StepEquation, centre, root_masses};
 use crate::archive::{Archive, Saved};
+use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::solve::{SolveLimits, Work, newton_krylov};
@@ -51,7 +52,28 @@ const NEWTON: usize = 40;
 /// A residual that is rounding and nothing else, over the size of its terms.
 const ROUNDING: f64 = 1e-15;
 
+const NAME: &str = "discrete-gradient";
+
+const FREE_AND_ELASTIC: &str = "it balances the energy of a free elastic body under loads: no prescribed motion, no breaking, no absorbing boundary; newmark can";
+
 impl DiscreteGradient {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::NoSupports,
+            reason: FREE_AND_ELASTIC,
+        },
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: FREE_AND_ELASTIC,
+        },
+        Requirement {
+            need: Need::NothingBreaks,
+            reason: FREE_AND_ELASTIC,
+        },
+    ];
+
     /// The scheme for a body; `tolerance` is the relative error of the energy in a step.
     ///
     /// # Errors
@@ -64,13 +86,7 @@ impl DiscreteGradient {
                 allowed: "1e-14 to 1e-2",
             });
         }
-        if !system.motions().is_empty() || system.has_boundaries() || system.operator().can_break()
-        {
-            return Err(PericlesError::SchemeNotUsable {
-                scheme: "discrete-gradient",
-                reason: "it balances the energy of a free elastic body under loads: no prescribed motion, no breaking, no absorbing boundary; newmark can",
-            });
-        }
+        require(NAME, Self::REQUIREMENTS, system)?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         Ok(Self {
@@ -235,7 +251,11 @@ struct Step {
 
 impl Integrator for DiscreteGradient {
     fn name(&self) -> &'static str {
-        "discrete-gradient"
+        NAME
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn order(&self) -> u32 {

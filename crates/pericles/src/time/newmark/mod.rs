@@ -23,6 +23,7 @@ mod scheme;
 pub use discrete_gradient::DiscreteGradient;
 pub use scheme::Newmark;
 
+use crate::compatibility::{Need, Requirement};
 use crate::error::{PericlesError, Result};
 use crate::system::System;
 
@@ -39,6 +40,30 @@ pub enum InnerSolver {
     },
     /// Newton's method with conjugate gradients.
     NewtonKrylov,
+}
+
+impl InnerSolver {
+    /// The scheme with this solver, in messages.
+    fn scheme(self) -> &'static str {
+        match self {
+            Self::FixedPoint | Self::Anderson { .. } => "newmark",
+            Self::NewtonKrylov => "newmark with Newton's method",
+        }
+    }
+
+    /// What the scheme with this solver needs of a system.
+    pub const fn requirements(self) -> &'static [Requirement] {
+        match self {
+            Self::FixedPoint | Self::Anderson { .. } => &[Requirement::IN_DOUBLES],
+            Self::NewtonKrylov => &[
+                Requirement::IN_DOUBLES,
+                Requirement {
+                    need: Need::NoBoundaries,
+                    reason: "its boundaries have a memory that an iteration must not touch; solver = \"fixed-point\" can",
+                },
+            ],
+        }
+    }
 }
 
 /// In which norm the change of the velocity (m/s) is measured.

@@ -4,6 +4,7 @@ use super::anderson::Anderson;
 use super::equation::{StepEquation, root_masses};
 use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
 use crate::archive::{Archive, Saved};
+use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
@@ -51,18 +52,17 @@ impl Newmark {
     /// Parameters out of range; Newton's method on a body with boundaries that have a memory.
     pub fn new(options: NewmarkOptions, system: &System) -> Result<Self> {
         options.check()?;
+        require(
+            options.solver.scheme(),
+            options.solver.requirements(),
+            system,
+        )?;
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let inner = match options.solver {
             InnerSolver::FixedPoint => Inner::FixedPoint,
             InnerSolver::Anderson { depth } => {
                 Inner::Anderson(Anderson::new(depth as usize, entries))
-            }
-            InnerSolver::NewtonKrylov if system.has_boundaries() => {
-                return Err(PericlesError::SchemeNotUsable {
-                    scheme: "newmark with Newton's method",
-                    reason: "its boundaries have a memory that an iteration must not touch; solver = \"fixed-point\" can",
-                });
             }
             InnerSolver::NewtonKrylov => {
                 let root_mass = root_masses(system);
@@ -293,6 +293,10 @@ const ROUNDING: f64 = 1e-15;
 impl Integrator for Newmark {
     fn name(&self) -> &'static str {
         "newmark"
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        self.options.solver.requirements()
     }
 
     fn order(&self) -> u32 {
