@@ -1,6 +1,8 @@
 //! Loops over points on all cores whose results do not depend on the number of threads.
 //!
 //! Points are taken in fixed blocks; a block is computed by one thread from start to end. Sums are in [`sum`](crate::sum).
+//!
+//! Work is given as a reference to a closure that takes a whole block, so that the code which hands blocks to threads is compiled once, not once for every loop.
 
 use std::ops::Range;
 
@@ -68,7 +70,7 @@ pub const BLOCK: usize = 512;
 pub fn for_each_block<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
-    work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+    work: &(dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync),
 ) {
     for_each_part(out, states, &|block| block * BLOCK, &|block, out, state| {
         work(block * BLOCK, out, state);
@@ -80,8 +82,8 @@ pub fn for_each_block<const D: usize, S: Send>(
 pub(crate) fn for_each_part<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
-    first: &(impl Fn(usize) -> usize + Sync),
-    work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+    first: &(dyn Fn(usize) -> usize + Sync),
+    work: &(dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync),
 ) {
     split(0, out, states, first, work);
 }
@@ -90,8 +92,8 @@ fn split<const D: usize, S: Send>(
     part: usize,
     out: [&mut [f64]; D],
     states: &mut [S],
-    first: &(impl Fn(usize) -> usize + Sync),
-    work: &(impl Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+    first: &(dyn Fn(usize) -> usize + Sync),
+    work: &(dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync),
 ) {
     match states {
         [] => {}
@@ -116,6 +118,23 @@ fn split<const D: usize, S: Send>(
     }
 }
 
+/// Calls `work(first entry, entries)` for every block of entries, on all cores.
+pub fn for_each_chunk<T: Send>(entries: &mut [T], work: &(dyn Fn(usize, &mut [T]) + Sync)) {
+    entries
+        .par_chunks_mut(BLOCK)
+        .enumerate()
+        .for_each(|(block, chunk)| work(block * BLOCK, chunk));
+}
+
+/// The values of a function of points, on all cores.
+pub fn for_each_point<T: Send>(points: usize, value: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+    (0..points)
+        .into_par_iter()
+        .with_min_len(BLOCK / 2)
+        .map(value)
+        .collect()
+}
+
 /// Calls `set(point, entry)` for the entries of a component-major array that belong to the points named by `on`, on all cores.
 pub(crate) fn for_each_entry(
     on: &On<'_>,
@@ -127,34 +146,33 @@ pub(crate) fn for_each_entry(
         match on {
             On::All => in_range(0, component, set),
             On::Range(range) => in_range(range.start, &mut component[range.clone()], set),
-            On::Set(points) => in_set(0, component, points, set),
+            On::Set(points) => in_set(0, component, points, &|first, entries| {
+                for (k, entry) in entries.iter_mut().enumerate() {
+                    set(first + k, entry);
+                }
+            }),
         }
     }
 }
 
 fn in_range(first: usize, entries: &mut [f64], set: &(impl Fn(usize, &mut f64) + Sync)) {
-    entries
-        .par_chunks_mut(BLOCK)
-        .enumerate()
-        .for_each(|(block, chunk)| {
-            for (k, entry) in chunk.iter_mut().enumerate() {
-                set(first + block * BLOCK + k, entry);
-            }
-        });
+    for_each_chunk(entries, &|start, chunk| {
+        for (k, entry) in chunk.iter_mut().enumerate() {
+            set(first + start + k, entry);
+        }
+    });
 }
 
+/// Calls `work(first point, entries)` for every run of consecutive points.
 fn in_set(
     first: usize,
     entries: &mut [f64],
     points: &[u32],
-    set: &(impl Fn(usize, &mut f64) + Sync),
+    work: &(dyn Fn(usize, &mut [f64]) + Sync),
 ) {
     if points.len() <= 2 * BLOCK {
         for run in runs(points) {
-            let entries = &mut entries[run.start - first..run.end - first];
-            for (i, entry) in run.zip(entries) {
-                set(i, entry);
-            }
+            work(run.start, &mut entries[run.start - first..run.end - first]);
         }
         return;
     }
@@ -162,8 +180,8 @@ fn in_set(
     let middle = high_points[0] as usize;
     let (low, high) = entries.split_at_mut(middle - first);
     rayon::join(
-        || in_set(first, low, low_points, set),
-        || in_set(middle, high, high_points, set),
+        || in_set(first, low, low_points, work),
+        || in_set(middle, high, high_points, work),
     );
 }
 

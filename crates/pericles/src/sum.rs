@@ -44,16 +44,22 @@ impl Default for BinnedSum {
 impl BinnedSum {
     /// Σ term(i) for i < n, on all cores.
     pub fn of(n: usize, term: impl Fn(usize) -> f64 + Sync) -> Self {
+        Self::of_blocks(n, &|first, terms| {
+            for (k, slot) in terms.iter_mut().enumerate() {
+                *slot = term(first + k);
+            }
+        })
+    }
+
+    /// Of n terms that `fill(first term, terms)` computes block by block.
+    fn of_blocks(n: usize, fill: &(dyn Fn(usize, &mut [f64]) + Sync)) -> Self {
         let set = InstructionSet::detect();
         (0..n.div_ceil(BLOCK))
             .into_par_iter()
             .map(|block| {
                 let first = block * BLOCK;
-                let count = BLOCK.min(n - first);
                 let mut terms = [0.0; BLOCK];
-                for (k, slot) in terms[..count].iter_mut().enumerate() {
-                    *slot = term(first + k);
-                }
+                fill(first, &mut terms[..BLOCK.min(n - first)]);
                 Self::of_block(set, &mut terms)
             })
             .reduce(Self::default, Self::merged)

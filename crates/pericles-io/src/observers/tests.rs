@@ -45,7 +45,7 @@ fn simulation(folder: &Path) -> Simulation {
     let force = BondForce::<BondStretch, 2>::with_stiffness(
         cloud.clone(),
         bonds,
-        |_| 1.0,
+        &|_| 1.0,
         breaking,
         DamageMeasure::default(),
     );

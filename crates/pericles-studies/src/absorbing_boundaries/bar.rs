@@ -178,7 +178,7 @@ impl Bar {
         let force = BondForce::<LinearBond, 1>::with_pair_stiffness(
             Arc::clone(&cloud),
             bonds,
-            stiffness,
+            &stiffness,
             breaking,
             damage,
         );

@@ -131,7 +131,7 @@ impl Case {
         let force = BondForce::<LinearBond, 1>::with_stiffness(
             Arc::clone(&cloud),
             bonds,
-            |xi| micromodulus(xi[0].abs()) * xi[0].abs(),
+            &|xi| micromodulus(xi[0].abs()) * xi[0].abs(),
             breaking,
             DamageMeasure::default(),
         );

@@ -222,7 +222,7 @@ impl BondBody<'_> {
         let list = BondForce::with_pair_stiffness(
             self.cloud.clone(),
             bonds,
-            |i, j, xi| {
+            &|i, j, xi| {
                 let alpha = material.influence.alpha_of(xi, material.horizon);
                 mean(i, j) * (constants.micromodulus * alpha)
             },

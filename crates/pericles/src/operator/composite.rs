@@ -121,7 +121,7 @@ impl CompositeBody<'_> {
         let list = BondForce::<L, D>::with_weighted_stiffness(
             cloud.clone(),
             bonds,
-            stiffness_of_pair,
+            &stiffness_of_pair,
             breaking,
             self.body.damage,
         );

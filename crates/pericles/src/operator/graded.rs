@@ -140,7 +140,7 @@ impl GradedBody<'_> {
         let force = BondForce::<L, D>::with_weighted_stiffness(
             Arc::clone(cloud),
             bonds,
-            |bonds, i, j| mean(i, j) * 0.5 * (end(bonds, i, j) + end(bonds, j, i)),
+            &|bonds, i, j| mean(i, j) * 0.5 * (end(bonds, i, j) + end(bonds, j, i)),
             Breaking {
                 critical_stretch,
                 no_fail: self.no_fail,

@@ -5,15 +5,13 @@ mod supports;
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use crate::accounts::Ledger;
 use crate::archive::Counter;
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{ForceOperator, Forces, On};
-use crate::parallel::{BLOCK, for_each_entry};
+use crate::parallel::{for_each_chunk, for_each_entry};
 use crate::scalar::PointScalar;
 use crate::space::PointCloud;
 use crate::step_end::{Path, StepEnd};
@@ -336,8 +334,7 @@ impl System {
             None => self.operator().tangent_into(0.0, u, direction, out),
         }
         self.divide_by_density(&On::All, out);
-        out.par_chunks_mut(BLOCK)
-            .for_each(|chunk| chunk.iter_mut().for_each(|x| *x = -*x));
+        for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
         self.hold(out);
     }
 

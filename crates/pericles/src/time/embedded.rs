@@ -10,7 +10,7 @@ use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result, positive};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
-use crate::parallel::BLOCK;
+use crate::parallel::{BLOCK, for_each_chunk};
 use crate::system::System;
 
 /// The Dormand–Prince pair with local extrapolation: within each step of the run as many sub-steps as the tolerance asks for.
@@ -135,9 +135,7 @@ impl AdaptiveRungeKutta {
 }
 
 fn zero(array: &mut [f64]) {
-    array
-        .par_chunks_mut(BLOCK)
-        .for_each(|chunk| chunk.fill(0.0));
+    for_each_chunk(array, &|_, chunk| chunk.fill(0.0));
 }
 
 /// max |x|; infinite if an entry is not a number.

@@ -1,12 +1,10 @@
 //! Velocity Verlet.
 
-use rayon::prelude::*;
-
 use super::{Integrator, State};
 use crate::archive::Saved;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::parallel::BLOCK;
+use crate::parallel::for_each_chunk;
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
@@ -50,15 +48,9 @@ impl Integrator for VelocityVerlet {
     ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
         let dt = t_next - *t;
-        kick(v, a, 0.5 * dt);
+        add_scaled(v, 0.5 * dt, a);
         system.constrain_mean_velocity(*t, dt, v);
-        u.par_chunks_mut(BLOCK)
-            .zip(v.par_chunks(BLOCK))
-            .for_each(|(u, v)| {
-                for (u, v) in u.iter_mut().zip(v) {
-                    *u += dt * v;
-                }
-            });
+        add_scaled(u, dt, v);
         system.constrain(t_next, u, v);
         let end = StepEnd {
             t: t_next,
@@ -67,7 +59,7 @@ impl Integrator for VelocityVerlet {
             path: Path::MeanVelocity(v),
         };
         system.end_step(&end, v, a);
-        kick(v, a, 0.5 * dt);
+        add_scaled(v, 0.5 * dt, a);
         system.constrain_velocity(t_next, v);
         state.close(system, t_next);
         state.step += 1;
@@ -75,14 +67,13 @@ impl Integrator for VelocityVerlet {
     }
 }
 
-fn kick(v: &mut [f64], a: &[f64], dt: f64) {
-    v.par_chunks_mut(BLOCK)
-        .zip(a.par_chunks(BLOCK))
-        .for_each(|(v, a)| {
-            for (v, a) in v.iter_mut().zip(a) {
-                *v += dt * a;
-            }
-        });
+/// y += factor x
+fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
+    for_each_chunk(y, &|first, y| {
+        for (y, x) in y.iter_mut().zip(&x[first..]) {
+            *y += factor * x;
+        }
+    });
 }
 
 /// The scheme carries nothing from step to step but the state.

@@ -77,7 +77,7 @@ impl Zone {
         &self,
         n: usize,
         out: &mut [f64],
-        work: &(impl Fn(&mut [f64], Range<usize>) + Sync),
+        work: &(dyn Fn(&mut [f64], Range<usize>) + Sync),
     ) {
         for (c, component) in out.chunks_mut(n).enumerate() {
             let place = Place {
@@ -100,7 +100,7 @@ impl Zone {
         to: usize,
         place: Place,
         entries: &mut [f64],
-        work: &(impl Fn(&mut [f64], Range<usize>) + Sync),
+        work: &(dyn Fn(&mut [f64], Range<usize>) + Sync),
     ) {
         if to - from > 1 {
             let middle = from.midpoint(to);

@@ -215,7 +215,7 @@ fn neighbours_far_apart_in_number() {
     let list = BondForce::<LinearBond, 1>::with_stiffness(
         cloud.clone(),
         bonds,
-        |_| 1.0,
+        &|_| 1.0,
         Breaking {
             critical_stretch: f64::INFINITY,
             no_fail: &[],

@@ -62,7 +62,7 @@ fn bar_with(half: usize, beta: f64, critical_stretch: f64) -> System {
     let force = BondForce::<LinearBond, 1>::with_pair_stiffness(
         cloud.clone(),
         bonds,
-        |i, j, xi| {
+        &|i, j, xi| {
             let share = if hard(i) && hard(j) { 1.0 } else { beta };
             share * gaussian(xi[0].abs()) * xi[0].abs()
         },

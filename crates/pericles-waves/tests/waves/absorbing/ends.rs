@@ -100,7 +100,7 @@ fn one_free_end_doubles_and_reflects() {
         let force = BondForce::<LinearBond, 1>::with_stiffness(
             cloud.clone(),
             bonds,
-            |xi| gaussian(xi[0].abs()) * xi[0].abs(),
+            &|xi| gaussian(xi[0].abs()) * xi[0].abs(),
             breaking,
             DamageMeasure::default(),
         );

@@ -1,12 +1,10 @@
 //! [`Breakable`] for bond lists.
 
-use rayon::prelude::*;
-
 use super::force::BondForce;
 use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{Breakable, CoarseBreak, ForceOperator, damage};
-use crate::parallel::{BLOCK, components};
+use crate::parallel::{components, for_each_chunk};
 
 impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
     fn dissipated(&self) -> f64 {
@@ -30,10 +28,8 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
     }
 
     fn damage_into(&self, out: &mut [f64]) {
-        out.par_iter_mut()
-            .enumerate()
-            .with_min_len(BLOCK)
-            .for_each(|(i, damage)| {
+        for_each_chunk(out, &|first, out| {
+            for (i, damage) in (first..).zip(out) {
                 let (mut whole, mut left) = (0.0, 0.0);
                 for (entry, j) in self.bonds.family(i) {
                     let present = self.bonds.present()[entry / LANES] >> (entry % LANES) & 1 == 1;
@@ -51,7 +47,8 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
                     }
                 }
                 *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-            });
+            }
+        });
     }
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
@@ -86,15 +83,13 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
                 .as_ref()
                 .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
         };
-        marks
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(BLOCK)
-            .for_each(|(i, mark)| {
+        for_each_chunk(marks, &|first, marks| {
+            for (i, mark) in (first..).zip(marks) {
                 *mark |= self
                     .bonds
                     .family(i)
                     .any(|(entry, j)| self.is_intact(i, entry) && may_break(entry) && over(i, j));
-            });
+            }
+        });
     }
 }

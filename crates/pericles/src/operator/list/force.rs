@@ -74,7 +74,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         }
         let stiffness =
             |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
-        Self::with_stiffness(cloud, bonds, stiffness, breaking, damage)
+        Self::with_stiffness(cloud, bonds, &stiffness, breaking, damage)
     }
 
     /// An operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m; missing components are zero.
@@ -82,12 +82,12 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     pub fn with_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
-        stiffness_of_bond: impl Fn([f64; 3]) -> f64 + Sync,
+        stiffness_of_bond: &(dyn Fn([f64; 3]) -> f64 + Sync),
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
         let of_pair = |_, _, xi| stiffness_of_bond(xi);
-        Self::with_pair_stiffness(cloud, bonds, of_pair, breaking, damage)
+        Self::with_pair_stiffness(cloud, bonds, &of_pair, breaking, damage)
     }
 
     /// An operator whose bonds have the stiffness c α(i, j, ξ) given for each pair of points and the vector ξ from one to the other; it must be the same from both
@@ -95,7 +95,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     pub fn with_pair_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
-        stiffness_of_pair: impl Fn(usize, usize, [f64; 3]) -> f64 + Sync,
+        stiffness_of_pair: &(dyn Fn(usize, usize, [f64; 3]) -> f64 + Sync),
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
@@ -104,20 +104,20 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             stiffness_of_pair(i, j, bonds.vector(&points, i, j))
                 * bonds.volume_factor(&points, i, j)
         };
-        Self::with_weighted_stiffness(cloud, bonds, weighted, breaking, damage)
+        Self::with_weighted_stiffness(cloud, bonds, &weighted, breaking, damage)
     }
 
     /// An operator whose bonds have the stiffness c α κ(i, j), partial volumes included, given for each pair of points; it must be the same from both ends.
     pub fn with_weighted_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
-        stiffness_of_pair: impl Fn(&BondList, usize, usize) -> f64 + Sync,
+        stiffness_of_pair: &(dyn Fn(&BondList, usize, usize) -> f64 + Sync),
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
         let volumes = cloud.volumes();
         let stiffness =
-            Stiffness::of_pairs(&bonds, |i, j| stiffness_of_pair(&bonds, i, j) * volumes[j]);
+            Stiffness::of_pairs(&bonds, &|i, j| stiffness_of_pair(&bonds, i, j) * volumes[j]);
         Self::build(cloud, bonds, stiffness, breaking, damage)
     }
 

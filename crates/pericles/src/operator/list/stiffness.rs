@@ -2,12 +2,11 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
-
 use crate::family::{BondList, VolumeCorrection};
 use crate::kernel::{ActsOn, Influence, InfluenceFunction};
 use crate::lanes::LANES;
 use crate::lanes::{F64x8, Lanes, Real};
+use crate::parallel::for_each_point;
 use crate::space::PointCloud;
 
 /// c α κ V of the neighbour, for every entry of a list.
@@ -119,19 +118,15 @@ impl Stiffness {
     }
 
     /// The values of a function of the points of each entry, on all cores.
-    pub fn of_pairs(bonds: &BondList, of: impl Fn(usize, usize) -> f64 + Sync) -> Self {
-        let rows: Vec<Vec<f64>> = (0..bonds.len())
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|i| {
-                let first = bonds.start()[i] * LANES;
-                let mut row = vec![0.0; bonds.start()[i + 1] * LANES - first];
-                for (entry, j) in bonds.family(i) {
-                    row[entry - first] = of(i, j);
-                }
-                row
-            })
-            .collect();
+    pub fn of_pairs(bonds: &BondList, of: &(dyn Fn(usize, usize) -> f64 + Sync)) -> Self {
+        let rows = for_each_point(bonds.len(), &|i| {
+            let first = bonds.start()[i] * LANES;
+            let mut row = vec![0.0; bonds.start()[i + 1] * LANES - first];
+            for (entry, j) in bonds.family(i) {
+                row[entry - first] = of(i, j);
+            }
+            row
+        });
         Self::of_values(rows.concat())
     }
 

@@ -3,8 +3,6 @@
 mod ends;
 mod solver;
 
-use rayon::prelude::*;
-
 pub use solver::LinearSolver;
 use solver::StepSolver;
 
@@ -14,7 +12,7 @@ use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
-use crate::parallel::BLOCK;
+use crate::parallel::for_each_chunk;
 use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
 use crate::step_kind::StepKind;
 use crate::system::System;
@@ -345,9 +343,10 @@ fn add_and_weigh(out: &mut [f64], factor: f64, x: &[f64], mass: &[f64]) {
 }
 
 fn each(y: &mut [f64], x: &[f64], set: impl Fn(&mut f64, f64) + Sync) {
-    y.par_chunks_mut(BLOCK)
-        .zip(x.par_chunks(BLOCK))
-        .for_each(|(y, x)| y.iter_mut().zip(x).for_each(|(y, x)| set(y, *x)));
+    for_each_chunk(y, &|first, y| {
+        let x = &x[first..];
+        y.iter_mut().zip(x).for_each(|(y, x)| set(y, *x));
+    });
 }
 
 /// Rounding may keep a solver above what was asked for, but not above `accepted`.

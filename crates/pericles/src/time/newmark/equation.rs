@@ -1,10 +1,8 @@
 //! The equation of an implicit step, in the form the solver takes.
 
-use rayon::prelude::*;
-
 use crate::domain::Domain;
 use crate::operator::On;
-use crate::parallel::BLOCK;
+use crate::parallel::for_each_chunk;
 use crate::solve::Nonlinear;
 use crate::system::System;
 
@@ -44,9 +42,9 @@ impl StepEquation<'_> {
             centre(self.system.domain(), self.root_mass, c, n, &from)
         });
         let density = self.system.density();
-        out.par_chunks_mut(BLOCK).enumerate().for_each(|(b, out)| {
+        for_each_chunk(out, &|first, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                let k = b * BLOCK + i;
+                let k = first + i;
                 let pull = if phi == 0.0 {
                     0.0
                 } else {
@@ -61,15 +59,11 @@ impl StepEquation<'_> {
 
     fn unscale(&mut self, y: &[f64], slot: usize) {
         let root_mass = self.root_mass;
-        self.work[slot]
-            .par_chunks_mut(BLOCK)
-            .zip(y.par_chunks(BLOCK))
-            .zip(root_mass.par_chunks(BLOCK))
-            .for_each(|((x, y), root_mass)| {
-                for ((x, y), root_mass) in x.iter_mut().zip(y).zip(root_mass) {
-                    *x = y / root_mass;
-                }
-            });
+        for_each_chunk(&mut self.work[slot], &|first, x| {
+            for ((x, y), root_mass) in x.iter_mut().zip(&y[first..]).zip(&root_mass[first..]) {
+                *x = y / root_mass;
+            }
+        });
     }
 }
 

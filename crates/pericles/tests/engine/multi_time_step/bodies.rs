@@ -139,7 +139,7 @@ pub fn small_plate(stiffness: f64, core: f64) -> Problem {
     let operator = BondForce::<LinearBond, 2>::with_pair_stiffness(
         cloud.clone(),
         bonds,
-        pair,
+        &pair,
         breaking,
         DamageMeasure::default(),
     );
