@@ -408,19 +408,38 @@ impl Simulation {
 
 impl Saved for Simulation {
     fn save(&self, archive: &mut Archive) {
+        let Self {
+            // In `save_motion`.
+            state: _,
+            system: _,
+            integrator: _,
+            stops,
+            observers,
+            // Given with the run, found at its start, or found anew.
+            dt: _,
+            steps: _,
+            start: _,
+            frequency: _,
+            allow_unstable: _,
+            stopped: _,
+            step_ratio: _,
+            instability: _,
+        } = self;
         self.save_motion(archive);
-        self.stops.save(archive);
-        for scheduled in &self.observers {
-            scheduled.observer.save(archive);
-        }
+        stops.save(archive);
+        observers.save(archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
         self.restore_motion(archive)?;
         self.stops.restore(archive)?;
-        for scheduled in &mut self.observers {
-            scheduled.observer.restore(archive)?;
-        }
-        Ok(())
+        self.observers.restore(archive)
+    }
+}
+
+crate::saved! {
+    impl Saved for Scheduled {
+        observer: part,
+        schedule: fixed,
     }
 }

@@ -9,7 +9,6 @@ use super::zone::Sum;
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State, Tableau};
 use crate::accounts::Completed;
-use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::Accepted;
@@ -379,14 +378,10 @@ impl Step<'_> {
     }
 }
 
-impl Saved for MultiTimeStep {
-    fn save(&self, archive: &mut Archive) {
-        self.refinement.save(archive);
-        self.history.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.refinement.restore(archive)?;
-        self.history.restore(archive)
+crate::saved! {
+    impl Saved for MultiTimeStep {
+        refinement, history: part,
+        name, order, limit, form, inside, predictor, everywhere: fixed,
+        work: scratch,
     }
 }
