@@ -10,6 +10,7 @@ use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
 use pericles::material::BondStretch;
 use pericles::observe::{CrackTracker, Field, Probe, Schedule, TrackedCrack};
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
+use pericles::round_trip::check_resume;
 use pericles::space::{Face, Grid, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Archive, Control, Outcome, PointScalar, Saved, Simulation, System, Values};
@@ -221,6 +222,12 @@ fn stopped_and_resumed_runs_leave_the_same_bytes() {
             );
         }
     }
+}
+
+#[test]
+fn observers_are_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    check_resume(|| simulation(folder.path()), 23).unwrap();
 }
 
 #[test]
