@@ -89,15 +89,7 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         &[],
         DamageMeasure::default(),
     );
-    let body = BondBody {
-        cloud: &cloud,
-        material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, material, &constants);
     let grid = body.operator(BondForm::Grid).unwrap().operator;
     let lattice = BondLattice::of_body(&cloud, material, &constants).unwrap();
     let (n, centre) = (cloud.len(), cloud.nearest([0.5 * cells * DX; 3]));

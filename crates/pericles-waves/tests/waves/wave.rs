@@ -9,7 +9,7 @@ use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, DamageMeasure, ForceOperator, LinearOperator, Linearisation};
+use pericles::operator::{BondBody, ForceOperator, LinearOperator, Linearisation};
 use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{Implicit, ImplicitRule, Integrator, LinearSolver, State, VelocityVerlet};
 use pericles::{Interrupt, PointScalar, Saved, System};
@@ -86,15 +86,7 @@ fn bonds(
     form: ForceForm,
 ) -> Box<dyn ForceOperator> {
     let constants = material.constants(cloud, state_of(cloud)).unwrap();
-    let body = BondBody {
-        cloud,
-        material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(cloud, material, &constants);
     pericles_waves::assemble(&body.into(), form)
         .unwrap()
         .operator

@@ -273,15 +273,7 @@ fn torn_plate(part: f64, grid_form: bool) -> (Energies, [f64; 2], u64) {
     let material = material(3e-3, Fracture::CriticalStretch(1e-3));
     let state = StressState::PlaneStress;
     let constants = material.constants(&cloud, state).unwrap();
-    let body = BondBody {
-        cloud: &cloud,
-        material: &material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, &material, &constants);
     let system = if grid_form {
         system(&cloud, body.grid::<BondStretch, 2>().unwrap())
     } else {

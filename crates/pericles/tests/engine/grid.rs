@@ -153,14 +153,12 @@ fn pair<L: FastLaw, const D: usize>(
     no_fail: &[u32],
     damage: DamageMeasure,
 ) -> (GridForce<L, D>, BondForce<L, D>) {
+    let constants = material.constants(cloud, state(D)).unwrap();
     let body = BondBody {
-        cloud,
-        material,
-        constants: &material.constants(cloud, state(D)).unwrap(),
         cracks,
         no_fail,
-        stiffness: &[],
         damage,
+        ..BondBody::new(cloud, material, &constants)
     };
     let (list, cuts) = body.list().unwrap();
     let grid: GridForce<L, D> = body.grid().unwrap();
@@ -621,14 +619,10 @@ fn the_fastest_form_is_the_grid_where_there_is_one() {
             Fracture::Unbreakable,
         );
         material.law = PairLaw::Linear;
+        let constants = material.constants(cloud, state(dimension)).unwrap();
         let body = BondBody {
-            cloud,
-            material: &material,
-            constants: &material.constants(cloud, state(dimension)).unwrap(),
             cracks: &cracks(dimension),
-            no_fail: &[],
-            stiffness: &[],
-            damage: DamageMeasure::default(),
+            ..BondBody::new(cloud, &material, &constants)
         };
         body.operator(form).unwrap()
     };

@@ -7,9 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{
-    Accepted, BondBody, BondForm, DamageMeasure, ForceOperator, InstructionSet, On,
-};
+use pericles::operator::{Accepted, BondBody, BondForm, ForceOperator, InstructionSet, On};
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
@@ -76,14 +74,11 @@ fn operator(
         StressState::PlaneStrain,
         StressState::Spatial,
     ][cloud.dimension() - 1];
+    let constants = material.constants(cloud, state).unwrap();
     let body = BondBody {
-        cloud,
-        material: &material,
-        constants: &material.constants(cloud, state).unwrap(),
         cracks: &[(crack(cloud.dimension()), EndRule::Closed)],
         no_fail: &[0, 1, 2],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
+        ..BondBody::new(cloud, &material, &constants)
     };
     body.operator(form).unwrap().operator
 }
