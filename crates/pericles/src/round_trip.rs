@@ -39,45 +39,49 @@ pub enum Incomplete {
     Archive(#[from] PericlesError),
 }
 
-/// Checks that a run resumed from a checkpoint after step `pause` goes on as if it had never stopped, bit for bit in everything that runs save. Returns what is stored at its end.
+/// Checks that a run resumed from a checkpoint after one of the steps `pauses`, in ascending order, goes on as if it had never stopped, bit for bit in everything that runs save. Returns what
+/// is stored at its end.
 ///
-/// `make` makes the run, each time the same one. It is run to its end with a checkpoint on the way. The checkpoint is restored into a new run, which must store the same again, and must end
+/// `make` makes the run, each time the same one. It is run to its end with the checkpoints on the way. Each of them is restored into a new run, which must store the same again, and must end
 /// with the same; and into the run that has ended, which must end with the same once more: what a new run happens to have right is then wrong.
 ///
 /// # Errors
 /// [`Incomplete`] with the arrays that differ; errors of the run itself.
 pub fn check_resume(
-    mut make: impl FnMut() -> Simulation,
-    pause: u64,
+    make: impl Fn() -> Simulation,
+    pauses: impl IntoIterator<Item = u64>,
 ) -> Result<Archive, Incomplete> {
     let mut whole = make();
-    let paused = whole.run(|run| match run.state().step {
-        step if step == pause => Control::Stop,
-        _ => Control::Continue,
-    })?;
-    if paused == Outcome::Finished {
-        let step = whole.state().step;
-        return Err(Incomplete::Ended { step });
+    let mut checkpoints = Vec::new();
+    for pause in pauses {
+        let paused = whole.run(|run| match run.state().step {
+            step if step == pause => Control::Stop,
+            _ => Control::Continue,
+        })?;
+        if paused == Outcome::Finished {
+            let step = whole.state().step;
+            return Err(Incomplete::Ended { step });
+        }
+        checkpoints.push(stored(&whole)?);
     }
-    let checkpoint = stored(&whole)?;
     whole.run(|_| Control::Continue)?;
     let end = stored(&whole)?;
-
-    let mut resumed = make();
-    resumed.restore(&checkpoint)?;
-    equal(&checkpoint, &stored(&resumed)?, |arrays| {
-        Incomplete::Restored { arrays }
-    })?;
-    resumed.run(|_| Control::Continue)?;
-    equal(&end, &stored(&resumed)?, |arrays| Incomplete::Resumed {
-        arrays,
-    })?;
-
-    whole.restore(&checkpoint)?;
-    whole.run(|_| Control::Continue)?;
-    equal(&end, &stored(&whole)?, |arrays| Incomplete::TakenBack {
-        arrays,
-    })?;
+    for checkpoint in &checkpoints {
+        let mut resumed = make();
+        resumed.restore(checkpoint)?;
+        equal(checkpoint, &stored(&resumed)?, |arrays| {
+            Incomplete::Restored { arrays }
+        })?;
+        resumed.run(|_| Control::Continue)?;
+        equal(&end, &stored(&resumed)?, |arrays| Incomplete::Resumed {
+            arrays,
+        })?;
+        whole.restore(checkpoint)?;
+        whole.run(|_| Control::Continue)?;
+        equal(&end, &stored(&whole)?, |arrays| Incomplete::TakenBack {
+            arrays,
+        })?;
+    }
     Ok(end)
 }
 

@@ -159,3 +159,32 @@ impl<E: Entry<Number = f64> + Default> Entry for Option<E> {
         rest
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn through<E: Entry<Number = f64>>(entry: &E, fresh: &mut E, expected: usize) {
+        let mut array = vec![7.0];
+        entry.append_to(&mut array);
+        array.push(8.0);
+        assert_eq!(entry.count(), expected);
+        assert_eq!(array.len(), expected + 2);
+        assert_eq!(fresh.take_from(&array[1..]), [8.0]);
+    }
+
+    #[test]
+    fn entries_take_back_what_they_stored() {
+        let mut pair = (0.0, [0.0; 2]);
+        through(&(1.0, [2.0, 3.0]), &mut pair, 3);
+        assert_eq!(pair, (1.0, [2.0, 3.0]));
+        let mut vector = vec![0.0; 2];
+        through(&vec![1.0, 2.0], &mut vector, 2);
+        assert_eq!(vector, [1.0, 2.0]);
+        let mut value = None;
+        through(&Some((1.0, f64::NAN)), &mut value, 2);
+        assert_eq!(value.map(|(t, _)| t), Some(1.0));
+        through(&None, &mut value, 2);
+        assert_eq!(value, None);
+    }
+}

@@ -423,7 +423,7 @@ fn supports_move_exactly_and_report_their_force() {
 
 #[test]
 fn stop_and_resume_equals_the_uninterrupted_run() {
-    let end = check_resume(|| breaking_plate(600), 371).unwrap();
+    let end = check_resume(|| breaking_plate(600), [371]).unwrap();
     let broken = end.u64s("operator/broken").unwrap();
     assert!(broken.iter().sum::<u64>() > 0);
 

@@ -519,7 +519,7 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
         })
         .unwrap();
     assert!(first.system().operator().broken_bonds() > 0);
-    check_resume(run, 41).unwrap();
+    check_resume(run, [41]).unwrap();
     assert!(run().restore(&Archive::default()).is_err());
 
     // A bond to where the body has no point, or one that a crack has cut.

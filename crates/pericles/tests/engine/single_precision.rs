@@ -257,7 +257,7 @@ fn a_torn_plate_breaks_as_in_doubles_and_is_resumed() {
     let energies = floats.snapshot().energies();
     let balance = energies.balance() / energies.initial;
     assert!(balance.abs() < 1e-5, "{balance:e}");
-    check_resume(|| torn(BondForm::FloatGrid), 170).unwrap();
+    check_resume(|| torn(BondForm::FloatGrid), [170]).unwrap();
 }
 
 #[test]

@@ -190,6 +190,6 @@ fn implicit_schemes_go_on_from_a_checkpoint() {
             let integrator = scheme(&system);
             Simulation::new(system, integrator, sphere.thrown(1.0), 0.05, 12)
         };
-        check_resume(make, 5).unwrap();
+        check_resume(make, [5]).unwrap();
     }
 }

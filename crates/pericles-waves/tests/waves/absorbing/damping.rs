@@ -69,7 +69,7 @@ fn damping_is_resumed() {
         let state = pulse(&system, 12.0);
         Simulation::new(system, Box::new(VelocityVerlet), state, DT, 200)
     };
-    check_resume(make, 77).unwrap();
+    check_resume(make, [77]).unwrap();
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn stopped_and_resumed(history: fn(GhostKernels) -> Box<dyn History>) {
         add_ends(&mut system, &state, &BOTH, dt, steps, history);
         Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps)
     };
-    check_resume(make, 150).unwrap();
+    check_resume(make, [150]).unwrap();
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn a_field_beyond_the_end_comes_in_and_leaves() {
 
 #[test]
 fn the_field_beyond_is_resumed() {
-    check_resume(with_ends, 120).unwrap();
+    check_resume(with_ends, [120]).unwrap();
 }
 
 #[test]

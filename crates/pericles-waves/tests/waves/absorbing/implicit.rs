@@ -102,7 +102,7 @@ fn stop_and_resume_gives_the_same_bits() {
             let scheme = Implicit::new(ImplicitRule::Midpoint, &system).unwrap();
             Simulation::new(system, Box::new(scheme), state, dt, steps)
         };
-        check_resume(make, 90).unwrap();
+        check_resume(make, [90]).unwrap();
     }
 }
 
