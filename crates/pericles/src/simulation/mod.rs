@@ -273,8 +273,12 @@ impl Simulation {
         for boundary in self.system.boundaries() {
             let needed = boundary.step_kinds();
             if !needed.is_empty() && !needed.contains(&kind) {
-                let scheme = self.integrator.name();
-                return Err(PericlesError::BoundaryScheme { scheme, needed });
+                return Err(PericlesError::BoundaryScheme {
+                    what: "a boundary of this run",
+                    scheme: self.integrator.name(),
+                    kind,
+                    needed,
+                });
             }
             if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
                 return Err(PericlesError::BoundarySteps { steps, made_for });
