@@ -104,7 +104,7 @@ impl MidpointEnd {
     }
 
     /// Finds what the ghosts pull in the present state, and what the past pulls in the coming step.
-    fn look_around(&mut self) {
+    fn update_pulls(&mut self) {
         self.layer
             .pull_into(&self.own, &self.beyond, &mut self.pull);
         self.middle.fill(0.0);
@@ -136,7 +136,7 @@ impl Boundary for MidpointEnd {
             false => Exchange::default(),
         };
         self.started = true;
-        self.look_around();
+        self.update_pulls();
         exchange
     }
 
@@ -187,7 +187,7 @@ pericles::saved! {
         layer, dt, corner: fixed,
         before, middle, ghosts: scratch,
     } then |end| {
-        end.look_around();
+        end.update_pulls();
         Ok(())
     }
 }
