@@ -132,7 +132,7 @@ fn kernels_that_would_be_unstable_are_bounded() {
 #[test]
 fn classes_that_carry_nothing_are_warned_of_where_bonds_break() {
     let cautions = |lines: &str| {
-        // In motion: of a plate at rest it is said that nothing acts on it.
+        // With an initial velocity: a plate at rest would get the warning that nothing acts on it.
         let text = PLATE.replace("INFLUENCE", lines) + "[[initial]]\nvelocity = [1, 0]\n";
         let deck = Deck::parse(&text, "deck.toml", &[]).unwrap();
         let warnings = deck.build().unwrap().warnings;

@@ -1,6 +1,6 @@
 //! Text in XML and HTML.
 
-/// Text as it stands in an attribute or between the tags of XML and HTML. Control characters, which XML cannot hold, are replaced.
+/// Text escaped for attributes and for content between tags in XML and HTML. Control characters, which XML does not allow, are replaced.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {

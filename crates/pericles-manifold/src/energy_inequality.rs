@@ -1,8 +1,6 @@
 //! The bound of the energy of a body under loads that change.
 
-use pericles::Result;
 use pericles::observe::Snapshot;
-use pericles::{Archive, Saved, Values};
 
 /// e(t) ≤ e(0) exp(νt) + 1/(2ν) ∫₀ᵗ exp(ν(t−s)) ‖b(s)‖² ds with ‖b‖² = Σ V |b|²/ρ (W): what kinetic plus elastic energy e (J) cannot exceed, for any rate ν > 0 (1/s).
 ///
@@ -65,20 +63,10 @@ impl EnergyInequality {
     }
 }
 
-impl Saved for EnergyInequality {
-    fn save(&self, archive: &mut Archive) {
-        let last = self.last.unwrap_or(f64::NAN);
-        archive.put(
-            "observer/energy-inequality",
-            Values::F64(vec![last, self.forced]),
-        );
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let mut stored = [0.0; 2];
-        archive.f64_into("observer/energy-inequality", &mut stored)?;
-        self.last = (!stored[0].is_nan()).then_some(stored[0]);
-        self.forced = stored[1];
-        Ok(())
+pericles::saved! {
+    impl Saved for EnergyInequality {
+        last, forced: array("observer/energy-inequality"),
+        rate: fixed,
+        load: scratch,
     }
 }

@@ -213,6 +213,10 @@ pub struct EnergyBound {
     pub last: Option<(f64, f64)>,
 }
 
+pericles::saved! {
+    impl Entry<Number = f64> for EnergyBound { impulse, last }
+}
+
 impl EnergyBound {
     /// The margin at a state, later than the one before.
     pub fn margin(&mut self, snapshot: &Snapshot<'_>) -> f64 {

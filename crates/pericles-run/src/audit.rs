@@ -78,7 +78,7 @@ pub struct Audit {
     pub mirror_errors: Vec<MirrorError>,
     /// None for schemes with one time step.
     pub refinement: Option<RefinementAudit>,
-    /// What is odd about the results.
+    /// Warnings about the results.
     pub warnings: Vec<String>,
 }
 

@@ -37,5 +37,5 @@ pub enum Event<'a> {
     LoopEnds,
 }
 
-/// What events are told to.
+/// The callback that receives events.
 pub type Tell<'a> = &'a mut dyn FnMut(Event<'_>);

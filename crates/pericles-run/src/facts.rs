@@ -77,7 +77,7 @@ pub struct Facts {
     pub ends: Vec<EndFacts>,
     /// The vector instructions that the force loops use.
     pub instruction_set: &'static str,
-    /// What is odd about the run.
+    /// Warnings about the run.
     pub warnings: Vec<String>,
     /// Defaults that this deck relies on and that have changed since the last release.
     #[serde(skip_serializing_if = "Vec::is_empty")]

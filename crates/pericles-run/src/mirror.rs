@@ -164,7 +164,7 @@ impl Mirror {
         if component == self.axis { -sign } else { sign }
     }
 
-    /// Largest difference between a vector field and its image, over its largest entry. Entries that are no number have images that are none.
+    /// Largest difference between a vector field and its image, over its largest entry. The images of NaN entries are NaN.
     fn difference(&self, sign: f64, field: &[f64]) -> f64 {
         let (mut most, mut largest) = (0.0f64, 0.0f64);
         for (c, component) in field.chunks(self.images.len()).enumerate() {

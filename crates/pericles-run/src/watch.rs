@@ -1,4 +1,4 @@
-//! The physics watch: what is odd about a run at its end, in words, by thresholds.
+//! The physics watch: warnings about a finished run where a quantity exceeds its threshold.
 //!
 //! | what | warned of beyond |
 //! |---|---|

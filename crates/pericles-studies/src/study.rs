@@ -34,7 +34,7 @@ pub struct Context<'a> {
     pub full: bool,
     /// The folder for figures; none if no figures are wanted.
     pub figures: Option<&'a Path>,
-    /// Is told how far runs are that take long.
+    /// Receives the progress of long runs.
     pub tell: &'a dyn Fn(Event<'_>),
 }
 

@@ -30,21 +30,24 @@ pub enum ForceForm {
 impl ForceForm {
     /// As written in decks.
     pub fn name(self) -> &'static str {
-        match self.of_bonds() {
-            Ok(bonds) => bonds.name(),
-            Err(transformed) => transformed.name(),
+        match self {
+            Self::Fastest => BondForm::Fastest.name(),
+            Self::Grid => BondForm::Grid.name(),
+            Self::FloatGrid => BondForm::FloatGrid.name(),
+            Self::List => BondForm::List.name(),
+            Self::Convolution => "convolution",
+            Self::Spectral => "spectral",
         }
     }
 
-    /// The form of bonds one by one, or what is none.
-    fn of_bonds(self) -> std::result::Result<BondForm, Transformed> {
+    /// The form in which bonds are computed one by one; none for forms that transform.
+    fn of_bonds(self) -> Option<BondForm> {
         match self {
-            Self::Fastest => Ok(BondForm::Fastest),
-            Self::Grid => Ok(BondForm::Grid),
-            Self::FloatGrid => Ok(BondForm::FloatGrid),
-            Self::List => Ok(BondForm::List),
-            Self::Convolution => Err(Transformed::Convolution),
-            Self::Spectral => Err(Transformed::Spectral),
+            Self::Fastest => Some(BondForm::Fastest),
+            Self::Grid => Some(BondForm::Grid),
+            Self::FloatGrid => Some(BondForm::FloatGrid),
+            Self::List => Some(BondForm::List),
+            Self::Convolution | Self::Spectral => None,
         }
     }
 }
@@ -56,22 +59,6 @@ impl From<BondForm> for ForceForm {
             BondForm::Grid => Self::Grid,
             BondForm::FloatGrid => Self::FloatGrid,
             BondForm::List => Self::List,
-        }
-    }
-}
-
-/// Forms in which no bond is computed on its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Transformed {
-    Convolution,
-    Spectral,
-}
-
-impl Transformed {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Convolution => "convolution",
-            Self::Spectral => "spectral",
         }
     }
 }
@@ -108,18 +95,17 @@ pub fn assemble(composite: &CompositeBody<'_>, form: ForceForm) -> Result<Assemb
         }
         chosen => chosen,
     };
-    let transformed = match form.of_bonds() {
-        Ok(bonds) => return composite.operator(bonds).map(AssembledForce::from),
-        Err(transformed) => transformed,
-    };
+    if let Some(bonds) = form.of_bonds() {
+        return composite.operator(bonds).map(AssembledForce::from);
+    }
     if !composite.is_plain() {
         return Err(composite.only_listed(form.name()));
     }
     let operator = match (body.material.law, body.cloud.dimension()) {
-        (PairLaw::GreenStrain, 1) if transformed == Transformed::Spectral => cubic(body)?,
-        (PairLaw::Linear | PairLaw::BondStretch, 1) => transform::<1>(body, transformed)?,
-        (PairLaw::Linear | PairLaw::BondStretch, 2) => transform::<2>(body, transformed)?,
-        (PairLaw::Linear | PairLaw::BondStretch, 3) => transform::<3>(body, transformed)?,
+        (PairLaw::GreenStrain, 1) if form == ForceForm::Spectral => cubic(body)?,
+        (PairLaw::Linear | PairLaw::BondStretch, 1) => transform::<1>(body, form)?,
+        (PairLaw::Linear | PairLaw::BondStretch, 2) => transform::<2>(body, form)?,
+        (PairLaw::Linear | PairLaw::BondStretch, 3) => transform::<3>(body, form)?,
         _ => return refuse_law(body, form),
     };
     Ok(AssembledForce {
@@ -151,9 +137,10 @@ fn convolution_is_fastest(body: &BondBody<'_>) -> bool {
     costs.is_ok_and(|costs| GRID_GAIN * costs.convolution < costs.bond_list)
 }
 
+/// A form without bonds: plane waves, else a convolution.
 fn transform<const D: usize>(
     body: &BondBody<'_>,
-    form: Transformed,
+    form: ForceForm,
 ) -> Result<Box<dyn ForceOperator>> {
     let (name, periodic) = (form.name(), body.cloud.is_periodic());
     if !body.stiffness.is_empty() {
@@ -170,21 +157,21 @@ fn transform<const D: usize>(
     }
     let cloud = body.cloud.clone();
     Ok(match form {
-        Transformed::Spectral if !periodic => {
+        ForceForm::Spectral if !periodic => {
             return refuse(
                 name,
                 "Fourier series need a body whose opposite faces are one: set body.periodic = true, or use \"convolution\"",
             );
         }
-        Transformed::Spectral => Box::new(SpectralForce::<D>::new(
+        ForceForm::Spectral => Box::new(SpectralForce::<D>::new(
             cloud,
             body.material,
             body.constants,
         )?),
-        Transformed::Convolution if GaussForce::fits(&cloud) => {
+        _ if GaussForce::fits(&cloud) => {
             Box::new(GaussForce::new(cloud, body.material, body.constants)?)
         }
-        Transformed::Convolution => Box::new(ConvolutionForce::<D>::new(
+        _ => Box::new(ConvolutionForce::<D>::new(
             cloud,
             body.material,
             body.constants,
@@ -197,7 +184,7 @@ fn transform<const D: usize>(
 fn cubic(body: &BondBody<'_>) -> Result<Box<dyn ForceOperator>> {
     if !body.stiffness.is_empty() || !body.cracks.is_empty() {
         return refuse(
-            Transformed::Spectral.name(),
+            ForceForm::Spectral.name(),
             "parts of other stiffness and pre-cracks have no Fourier series; use \"list\"",
         );
     }

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use crate::function::{Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction};
 use pericles::Interrupt;
-use pericles::Saved;
 use pericles::StepKind;
 use pericles::operator::{FunctionOf, On};
 use pericles::parallel::BLOCK;
@@ -426,5 +425,9 @@ impl Integrator for Trigonometric {
     }
 }
 
-/// The scheme carries nothing from step to step but the state.
-impl Saved for Trigonometric {}
+pericles::saved! {
+    impl Saved for Trigonometric {
+        options, engine, linear, reference: fixed,
+        push, pull, remainder, change, next: scratch,
+    }
+}

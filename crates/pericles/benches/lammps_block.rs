@@ -12,7 +12,7 @@ use pericles::Interrupt;
 use pericles::bench::{Case, Timing, run, run_by_clock};
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::material::StressState;
-use pericles::operator::{BondBody, BondForm, DamageMeasure, On};
+use pericles::operator::{BondBody, BondForm, On};
 use pericles::time::{Integrator, State, VelocityVerlet};
 
 use clock::cpu_seconds;
@@ -51,15 +51,8 @@ fn forces(cells: usize, form: BondForm) -> pericles::Result<()> {
     let case = Case::new("forces", vec![cells; 3], form);
     let cloud = case.cloud()?;
     let material = case.material();
-    let body = BondBody {
-        cloud: &Arc::clone(&cloud),
-        material: &material,
-        constants: &material.constants(&cloud, StressState::Spatial)?,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let constants = material.constants(&cloud, StressState::Spatial)?;
+    let body = BondBody::new(&cloud, &material, &constants);
     let operator = body.operator(case.form)?.operator;
     let n = cloud.len();
     let spacing = cloud.spacing();

@@ -49,7 +49,7 @@
 //! ```
 
 mod accounts;
-mod archive;
+pub mod archive;
 pub mod bench;
 pub mod boundary;
 mod breaking;
@@ -67,6 +67,7 @@ pub mod noise;
 pub mod observe;
 pub mod operator;
 pub mod parallel;
+pub mod round_trip;
 mod scalar;
 mod simulation;
 pub mod solve;

@@ -22,6 +22,16 @@ impl StepKind {
             Self::Flow | Self::Stages => &[],
         }
     }
+
+    /// Why boundaries with a memory cannot follow such steps where one may expect that they can; the end of a message, else empty.
+    pub(crate) fn why_not(self) -> &'static str {
+        match self {
+            Self::Flow => {
+                ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
+            }
+            Self::EndOfStep | Self::Middle | Self::Stages => "",
+        }
+    }
 }
 
 /// The schemes of some kinds in words, such as `velocity-verlet, implicit-midpoint or trapezoidal`.

@@ -139,9 +139,17 @@ impl StopWhen {
 /// All conditions of a run: the peaks are part of its state.
 impl Saved for Vec<StopWhen> {
     fn save(&self, archive: &mut Archive) {
+        let peak = |stop: &StopWhen| {
+            let StopWhen {
+                peak,
+                broken: _,
+                set: _,
+                condition: _,
+            } = stop;
+            *peak
+        };
         if !self.is_empty() {
-            let peaks = self.iter().map(|stop| stop.peak).collect();
-            archive.put("stop/peaks", Values::F64(peaks));
+            archive.put("stop/peaks", Values::F64(self.iter().map(peak).collect()));
         }
     }
 

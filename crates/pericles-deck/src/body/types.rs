@@ -61,7 +61,7 @@ pub struct PointsFile {
     pub dimension: usize,
 }
 
-/// What stands in the place of a grid in the deck of a surface.
+/// The placeholder for the grid of a body that is a surface.
 pub(super) fn no_grid() -> Body {
     Body {
         grid: Grid {

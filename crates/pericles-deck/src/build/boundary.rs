@@ -50,13 +50,13 @@ impl Deck {
             let refuse = |error| self.at_path(&path, PericlesError::from(error).into());
             let kind = integrator.step_kind();
             let wrong_scheme = |what, needed| {
-                let error = AbsorbingError::Scheme {
+                let error = PericlesError::BoundaryScheme {
                     what,
                     scheme: integrator.name(),
                     kind,
                     needed,
                 };
-                self.at("time.scheme", error.into())
+                self.at("time.scheme", error)
             };
             let BoundaryCondition::Absorbing {
                 side,

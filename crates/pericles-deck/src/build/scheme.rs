@@ -166,7 +166,7 @@ impl Deck {
         })
     }
 
-    /// What is odd about two time steps.
+    /// Adds warnings about a multirate scheme.
     pub(super) fn judge_two_steps(
         &self,
         integrator: &dyn Integrator,

@@ -1,4 +1,4 @@
-//! Whether a model makes physical sense: what is odd about its cracks and conditions.
+//! Whether a model makes physical sense: warnings about its pre-cracks and conditions.
 
 use pericles::System;
 use pericles::family::{BondList, Crack};
@@ -82,7 +82,7 @@ impl Deck {
             .then(|| self.finding(&"material.influence".into(), caution))
     }
 
-    /// What is odd about a pre-crack that cuts no bond.
+    /// The warning about a pre-crack that cuts no bond.
     pub(super) fn useless_crack(crack: &Crack, cloud: &PointCloud) -> Caution {
         let dimension = cloud.dimension();
         let half = 0.5 * cloud.spacing();

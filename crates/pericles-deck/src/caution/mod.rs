@@ -1,4 +1,4 @@
-//! What is odd about a deck though a run may be meant.
+//! Warnings about decks that are valid but may not do what the user means.
 
 mod advice;
 mod area;

@@ -1,4 +1,4 @@
-//! What is odd about a deck, and what makes no physical sense.
+//! Warnings about decks, and decks that make no physical sense.
 
 use super::{PLATE, STATIC, build, parse, plate_with_time, refusal, ring};
 

@@ -5,7 +5,6 @@ use pericles::operator::{
 };
 use pericles::parallel::{BLOCK, components, components_mut, for_each_block};
 use pericles::sum::sum;
-use pericles::{Archive, Saved};
 use pericles::{PericlesError, Result};
 
 use super::super::lattice::BondLattice;
@@ -238,12 +237,9 @@ impl LinearOperator for PeriodicForce {
     }
 }
 
-/// There is nothing to remember.
-impl Saved for PeriodicForce {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
+pericles::saved! {
+    impl Saved for PeriodicForce {
+        dimension, points, volume, density, spokes, ends: fixed,
     }
 }
 

@@ -114,34 +114,20 @@ impl Problem {
         let values = &self.values - &self.rows * &affine.origin;
         let (y, condition) = least_squares(&rows, &values)?;
         let alpha = &affine.origin + &affine.basis * &y;
-        let Some(lower) = self.lower else {
-            let kkt = self.kkt(&alpha, &[]);
-            return Ok(Solution {
-                alpha,
-                active: Vec::new(),
-                condition,
-                kkt,
-            });
+        let violated = |lower: &f64| !alpha.iter().all(|a| a >= lower);
+        let (alpha, active, condition) = match self.lower.filter(violated) {
+            None => (alpha, Vec::new(), condition),
+            Some(_) if affine.basis.ncols() == 0 => return Err(Refusal::Infeasible),
+            Some(lower) => {
+                let margin = affine.origin.map(|a| lower - a);
+                let (y, active) = bounded(&rows, &values, &affine.basis, &margin)?;
+                let found = &affine.origin + &affine.basis * y;
+                let (alpha, condition) = self
+                    .with_fixed(&active, lower)
+                    .unwrap_or((found, condition));
+                (alpha, active, condition)
+            }
         };
-        if alpha.iter().all(|a| *a >= lower) {
-            let kkt = self.kkt(&alpha, &[]);
-            return Ok(Solution {
-                alpha,
-                active: Vec::new(),
-                condition,
-                kkt,
-            });
-        }
-        let margin = affine.origin.map(|a| lower - a);
-        let (y, active) = if affine.basis.ncols() == 0 {
-            return Err(Refusal::Infeasible);
-        } else {
-            bounded(&rows, &values, &affine.basis, &margin)?
-        };
-        let found = &affine.origin + &affine.basis * y;
-        let (alpha, condition) = self
-            .with_fixed(&active, lower)
-            .unwrap_or((found, condition));
         let kkt = self.kkt(&alpha, &active);
         Ok(Solution {
             alpha,

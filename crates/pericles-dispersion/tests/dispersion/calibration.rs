@@ -9,7 +9,7 @@ use pericles::material::{
     BondConstants, BondMaterial, Calibration, CrackPlane, ElasticModulus, Fracture,
     FractureCalibration, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, DamageMeasure};
+use pericles::operator::{BondBody, BondForm};
 use pericles::space::{PointCloud, rectangular_cells};
 use pericles_dispersion::BondLattice;
 
@@ -164,15 +164,7 @@ fn a_constant_micromodulus_in_one_dimension() {
 /// The energy density of a uniform dilation in the middle of a body, over that of the continuum.
 fn dilation(cloud: &Arc<PointCloud>, material: &BondMaterial, state: StressState) -> f64 {
     let constants = material.constants(cloud, state).unwrap();
-    let body = BondBody {
-        cloud,
-        material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(cloud, material, &constants);
     let operator = body.operator(BondForm::List).unwrap().operator;
     let strain = 1e-6;
     let u: Vec<f64> = cloud.positions().iter().map(|x| strain * x).collect();

@@ -8,7 +8,7 @@ use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, PairLaw, StressState};
-use pericles::operator::{BondBody, BondForm, DamageMeasure};
+use pericles::operator::{BondBody, BondForm};
 use pericles::space::PointCloud;
 use pericles::time::{HighestFrequency, highest_frequency};
 use pericles::{PointScalar, System};
@@ -86,15 +86,7 @@ fn small_bodies_are_known_to_a_thousandth() {
             StressState::Spatial,
         ][cloud.dimension() - 1];
         let constants = material.constants(cloud, state).unwrap();
-        let bonds = BondBody {
-            cloud,
-            material: &material,
-            constants: &constants,
-            cracks: &[],
-            no_fail: &[],
-            stiffness: &[],
-            damage: DamageMeasure::default(),
-        };
+        let bonds = BondBody::new(cloud, &material, &constants);
         let operator = bonds.operator(BondForm::Fastest).unwrap().operator;
         System::new(cloud.clone(), operator, PointScalar::Uniform(DENSITY)).unwrap()
     };
@@ -192,15 +184,7 @@ fn large_lattice_bodies_take_the_bound_of_their_dispersion_relation() {
     let infinite = stability(&lattice).omega_max;
     let list =
         common::listed::<LinearBond, 2>(&cloud, &material, StressState::PlaneStress, None, &[]);
-    let body = BondBody {
-        cloud: &cloud,
-        material: &material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, &material, &constants);
     let grid = body.grid::<BondStretch, 2>().unwrap();
     let convolution =
         ConvolutionForce::<2>::new(cloud.clone(), &material, &constants, &[], [false; 2]).unwrap();

@@ -89,15 +89,7 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         &[],
         DamageMeasure::default(),
     );
-    let body = BondBody {
-        cloud: &cloud,
-        material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, material, &constants);
     let grid = body.operator(BondForm::Grid).unwrap().operator;
     let lattice = BondLattice::of_body(&cloud, material, &constants).unwrap();
     let (n, centre) = (cloud.len(), cloud.nearest([0.5 * cells * DX; 3]));
@@ -447,39 +439,36 @@ const PLATE: [(f64, Option<Method>); 4] = [
     (3.0, Some(Method::LeastSquares)),
 ];
 
-#[test]
-fn measured_peaks_lie_on_the_time_discrete_curve() {
-    let run = |nodes, steps| SpectrumRun {
+fn spectrum_run(nodes: usize, steps: usize) -> SpectrumRun {
+    SpectrumRun {
         nodes,
         steps,
         dt: 0.1,
         seed: 1,
-    };
+    }
+}
+
+/// Bars and plates in runs of these sizes.
+fn check_spectra(bars: SpectrumRun, plates: SpectrumRun) {
     for (n, table) in BAR {
-        check_spectrum(StressState::Uniaxial, n, table, run(64, 2048));
+        check_spectrum(StressState::Uniaxial, n, table, bars);
     }
     for (n, table) in PLATE {
-        check_spectrum(StressState::PlaneStrain, n, table, run(16, 1024));
+        check_spectrum(StressState::PlaneStrain, n, table, plates);
     }
-    check_spectrum(StressState::Spatial, 2.0, None, run(8, 512));
+}
+
+#[test]
+fn measured_peaks_lie_on_the_time_discrete_curve() {
+    check_spectra(spectrum_run(64, 2048), spectrum_run(16, 1024));
+    check_spectrum(StressState::Spatial, 2.0, None, spectrum_run(8, 512));
 }
 
 /// The size of the paper: 512 nodes and 8192 steps, 48² nodes and 4096 steps.
 #[test]
 #[ignore = "a minute"]
 fn measured_peaks_at_full_size() {
-    let run = |nodes, steps| SpectrumRun {
-        nodes,
-        steps,
-        dt: 0.1,
-        seed: 1,
-    };
-    for (n, table) in BAR {
-        check_spectrum(StressState::Uniaxial, n, table, run(512, 8192));
-    }
-    for (n, table) in PLATE {
-        check_spectrum(StressState::PlaneStrain, n, table, run(48, 4096));
-    }
+    check_spectra(spectrum_run(512, 8192), spectrum_run(48, 4096));
 }
 
 #[test]

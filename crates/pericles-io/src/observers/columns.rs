@@ -2,7 +2,7 @@
 
 use pericles::observe::{Field, Snapshot};
 use pericles::space::PointSet;
-use pericles::{Archive, Result, Saved, Values};
+use pericles::{Archive, Result, Saved};
 use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::{ExactSolution, Miss};
 
@@ -94,16 +94,10 @@ impl HistoryColumns for ErrorColumns {
     }
 }
 
-impl Saved for ErrorColumns {
-    fn save(&self, archive: &mut Archive) {
-        archive.put("observer/errors/largest", Values::F64(vec![self.largest]));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        archive.f64_into(
-            "observer/errors/largest",
-            std::slice::from_mut(&mut self.largest),
-        )
+pericles::saved! {
+    impl Saved for ErrorColumns {
+        largest: array("observer/errors/largest"),
+        solution, points: fixed,
     }
 }
 
@@ -152,7 +146,11 @@ impl HistoryColumns for ExtremeColumns {
     }
 }
 
-impl Saved for ExtremeColumns {}
+pericles::saved! {
+    impl Saved for ExtremeColumns {
+        fields, dimension: fixed,
+    }
+}
 
 /// What kinetic plus elastic energy cannot exceed, and by how much they stay below it, J.
 pub struct EnergyBoundColumns(pub EnergyInequality);

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use pericles::observe::{CrackTracker, Field, ObserveError, Observer, Snapshot};
-use pericles::{Archive, Result, Saved};
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
@@ -58,12 +57,9 @@ impl Observer for Cracks {
     }
 }
 
-impl Saved for Cracks {
-    fn save(&self, archive: &mut Archive) {
-        self.table.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)
+pericles::saved! {
+    impl Saved for Cracks {
+        table: part,
+        tracker, dimension: fixed,
     }
 }

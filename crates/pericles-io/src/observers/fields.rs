@@ -190,7 +190,18 @@ impl Observer for FieldSeries {
 
 impl Saved for FieldSeries {
     fn save(&self, archive: &mut Archive) {
-        archive.put(KEY, Values::U64(vec![self.outputs as u64]));
+        let Self {
+            outputs,
+            // Opened again.
+            series: _,
+            folder: _,
+            single_precision: _,
+            surface: _,
+            wanted: _,
+            body: _,
+            background: _,
+        } = self;
+        archive.put(KEY, Values::U64(vec![*outputs as u64]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use pericles::observe::{Fragments, ObserveError, Observer, Snapshot};
-use pericles::{Archive, Result, Saved};
 
 use super::table::{ObserverTable, step_and_time, whole};
 use crate::csv::Column;
@@ -53,12 +52,9 @@ impl Observer for FragmentCourse {
     }
 }
 
-impl Saved for FragmentCourse {
-    fn save(&self, archive: &mut Archive) {
-        self.table.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)
+pericles::saved! {
+    impl Saved for FragmentCourse {
+        table: part,
+        smallest: fixed,
     }
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use pericles::observe::{ObserveError, Observer, Snapshot};
-use pericles::{Archive, Result, Saved};
 
 use super::HistoryColumns;
 use super::table::{AXES, ObserverTable, step_and_time, whole};
@@ -78,15 +77,9 @@ impl Observer for History {
     }
 }
 
-impl Saved for History {
-    fn save(&self, archive: &mut Archive) {
-        self.table.save(archive);
-        self.more.iter().for_each(|columns| columns.save(archive));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)?;
-        let mut more = self.more.iter_mut();
-        more.try_for_each(|columns| columns.restore(archive))
+pericles::saved! {
+    impl Saved for History {
+        table, more: part,
+        dimension: fixed,
     }
 }

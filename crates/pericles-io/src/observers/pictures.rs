@@ -256,7 +256,14 @@ impl Observer for Pictures {
 
 impl Saved for Pictures {
     fn save(&self, archive: &mut Archive) {
-        archive.put(self.key(), Values::U64(vec![self.drawn]));
+        let Self {
+            drawn,
+            folder: _,
+            stem: _,
+            what: _,
+            animated: _,
+        } = self;
+        archive.put(self.key(), Values::U64(vec![*drawn]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {

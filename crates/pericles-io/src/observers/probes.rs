@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use pericles::observe::{ObserveError, Observer, Probe, Snapshot};
-use pericles::{Archive, Result, Saved};
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
@@ -53,12 +52,9 @@ impl Observer for Probes {
     }
 }
 
-impl Saved for Probes {
-    fn save(&self, archive: &mut Archive) {
-        self.table.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)
+pericles::saved! {
+    impl Saved for Probes {
+        table: part,
+        probes, dimension: fixed,
     }
 }

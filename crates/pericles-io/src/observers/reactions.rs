@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use pericles::boundary::PrescribedMotion;
 use pericles::observe::{ObserveError, Observer, Snapshot};
-use pericles::{Archive, Result, Saved};
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
@@ -43,12 +42,8 @@ impl Observer for Reactions {
     }
 }
 
-impl Saved for Reactions {
-    fn save(&self, archive: &mut Archive) {
-        self.table.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)
+pericles::saved! {
+    impl Saved for Reactions {
+        table: part,
     }
 }

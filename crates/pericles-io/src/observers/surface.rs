@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use pericles::observe::{ObserveError, Observer, Snapshot};
-use pericles::{Archive, Result, Saved, Values};
 use pericles_manifold::{EnergyBound, SurfaceMeasure};
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
@@ -70,22 +69,10 @@ impl Observer for SurfaceCourse {
     }
 }
 
-impl Saved for SurfaceCourse {
-    fn save(&self, archive: &mut Archive) {
-        self.table.save(archive);
-        let (t, size) = self.bound.last.unwrap_or((f64::NAN, f64::NAN));
-        archive.put(KEY, Values::F64(vec![self.bound.impulse, t, size]));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.table.restore(archive)?;
-        let mut values = [0.0; 3];
-        archive.f64_into(KEY, &mut values)?;
-        let [impulse, t, size] = values;
-        self.bound = EnergyBound {
-            impulse,
-            last: t.is_finite().then_some((t, size)),
-        };
-        Ok(())
+pericles::saved! {
+    impl Saved for SurfaceCourse {
+        table: part,
+        bound: array("{KEY}"),
+        measure: fixed,
     }
 }

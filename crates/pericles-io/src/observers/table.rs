@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use pericles::{Archive, PericlesError, Result, Values};
+use pericles::{Archive, PericlesError, Result, Saved, Values};
 
 use crate::csv::{Cell, Column, CsvTable};
 use crate::error::IoError;
@@ -61,21 +61,29 @@ impl ObserverTable {
         }
         Ok(())
     }
+}
 
+impl Saved for ObserverTable {
     /// Notes the length; the rows are on the disk when the checkpoint that remembers it is.
-    pub(super) fn save(&self, archive: &mut Archive) {
-        let open = &mut *self.open.borrow_mut();
+    fn save(&self, archive: &mut Archive) {
+        let Self {
+            open,
+            key,
+            path: _,
+            columns: _,
+        } = self;
+        let open = &mut *open.borrow_mut();
         let length = open.table.as_mut().map_or(0, |table| {
             if let Err(error) = table.sync() {
                 open.trouble = Some(error);
             }
             table.len_bytes()
         });
-        archive.put(self.key, Values::U64(vec![length]));
+        archive.put(*key, Values::U64(vec![length]));
     }
 
     /// Cuts the file back to the noted length.
-    pub(super) fn restore(&mut self, archive: &Archive) -> Result<()> {
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut length = 0;
         archive.u64_into(self.key, std::slice::from_mut(&mut length))?;
         let table = (length > 0)

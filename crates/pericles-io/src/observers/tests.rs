@@ -10,9 +10,12 @@ use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
 use pericles::material::BondStretch;
 use pericles::observe::{CrackTracker, Field, Probe, Schedule, TrackedCrack};
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
+use pericles::round_trip::check_resume;
 use pericles::space::{Face, Grid, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Archive, Control, Outcome, PointScalar, Saved, Simulation, System, Values};
+use pericles_manifold::EnergyInequality;
+use pericles_waves::exact::LineSolution;
 
 use super::*;
 use crate::{IoError, read_csv};
@@ -84,7 +87,20 @@ fn simulation(folder: &Path) -> Simulation {
     )
     .animated();
     let cracks = Cracks::new(folder.join("cracks.csv"), tracker, 2);
-    let history = History::new(folder.join("history.csv"), 2);
+    // Not the solution of this body: what counts is that the largest error is carried on.
+    let line = LineSolution {
+        young: 1.0,
+        density: 1.0,
+        length: 2.0,
+        width: 3.0,
+        amplitude: 0.1,
+        centre: 6.0,
+    };
+    let errors = ErrorColumns::new(Box::new(line), (0..cloud.len() as u32).collect());
+    let bound = EnergyBoundColumns(EnergyInequality::new(0.1));
+    let history = History::new(folder.join("history.csv"), 2)
+        .with(errors)
+        .with(bound);
     let probes = Probes::new(folder.join("probes.csv"), vec![probe], 2);
     simulation.observe(Schedule::Every(4), Box::new(history));
     simulation.observe(Schedule::Every(4), Box::new(reactions));
@@ -221,6 +237,12 @@ fn stopped_and_resumed_runs_leave_the_same_bytes() {
             );
         }
     }
+}
+
+#[test]
+fn observers_are_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    check_resume(|| simulation(folder.path()), [23]).unwrap();
 }
 
 #[test]

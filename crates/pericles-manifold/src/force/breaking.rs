@@ -135,9 +135,16 @@ impl Breaking {
     }
 
     pub fn save(&self, archive: &mut Archive) {
-        let entries = self.broken.iter().map(|&(entry, _)| entry as u64);
+        let Self {
+            broken,
+            dissipated,
+            limits: _,
+            // Settled in every step.
+            coarse: _,
+        } = self;
+        let entries = broken.iter().map(|&(entry, _)| entry as u64);
         archive.put("operator/broken", Values::U64(entries.collect()));
-        archive.put("operator/dissipated", Values::F64(vec![self.dissipated]));
+        archive.put("operator/dissipated", Values::F64(vec![*dissipated]));
     }
 
     pub fn restore(&mut self, bonds: &mut SurfaceBonds, archive: &Archive) -> Result<()> {

@@ -328,7 +328,17 @@ impl<L: SurfaceLaw> LinearOperator for SurfaceForce<L> {
 
 impl<L: SurfaceLaw> Saved for SurfaceForce<L> {
     fn save(&self, archive: &mut Archive) {
-        if let Some(breaking) = &self.breaking {
+        let Self {
+            breaking,
+            // Broken bonds are those of `breaking`.
+            bonds: _,
+            law: _,
+            cloud: _,
+            reference: _,
+            records: _,
+            instruction_set: _,
+        } = self;
+        if let Some(breaking) = breaking {
             breaking.save(archive);
         }
     }

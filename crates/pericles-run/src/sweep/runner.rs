@@ -138,7 +138,7 @@ impl Sweep {
     /// Runs what has not finished.
     ///
     /// # Errors
-    /// A table that cannot be written. What goes wrong with a run is told, and does not stop the others.
+    /// A table that cannot be written. A run that fails is reported and does not stop the others.
     pub fn drive(
         &self,
         settings: &Settings,

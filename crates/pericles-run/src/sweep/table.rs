@@ -11,7 +11,7 @@ use crate::error::RunError;
 use crate::results::Results;
 use crate::units::significant;
 
-/// What is told of every run, by its place in `run.json`.
+/// The columns of every run, with their place in `run.json`.
 const NUMBERS: [(&str, &str); 10] = [
     ("points", "/model/points"),
     ("dt [s]", "/model/dt"),

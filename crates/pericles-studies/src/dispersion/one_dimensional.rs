@@ -5,7 +5,7 @@ use pericles_dispersion::long_wave_speeds;
 use pericles_run::RunError;
 
 use super::figures::{write_comparison, write_curves, write_tables};
-use super::models::{NamedTables, model, tuned};
+use super::models::{NamedTables, constraint_residual, model, tuned};
 use super::published::{PAPER, method, number, numbers, published};
 use crate::row::Row;
 use crate::study::{Context, Study};
@@ -55,14 +55,7 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             );
             rows.push(omega.within(highest, 1e-4));
         }
-        let residual = assessed
-            .constraints
-            .iter()
-            .map(|c| c.abs())
-            .fold(0.0, f64::max);
-        rows.push(
-            Row::new(what("constraint residual".into()), "", Some(residual)).within(0.0, 1e-12),
-        );
+        rows.push(constraint_residual(&what, &table));
         if n == 10.0 {
             rows.push(
                 Row::new(what("condition number".into()), "", Some(table.condition))

@@ -6,7 +6,7 @@ use pericles_dispersion::{BondLattice, long_wave_speeds};
 use pericles_run::RunError;
 
 use super::figures::{write_curves, write_tables};
-use super::models::model;
+use super::models::{constraint_residual, model, optimality_residual};
 use super::published::PAPER;
 use crate::row::Row;
 use crate::study::{Context, Study};
@@ -70,17 +70,8 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
                 "",
                 Some(found.stability.omega_max),
             ));
-            let residual = found
-                .constraints
-                .iter()
-                .map(|c| c.abs())
-                .fold(0.0, f64::max);
-            rows.push(
-                Row::new(what("constraint residual".into()), "", Some(residual)).within(0.0, 1e-12),
-            );
-            rows.push(
-                Row::new(what("optimality residual".into()), "", Some(table.kkt)).within(0.0, 1e-9),
-            );
+            rows.push(constraint_residual(&what, &table));
+            rows.push(optimality_residual(&what, &table));
             let miss = anisotropy(&model.lattice(&table.alpha));
             rows.push(
                 Row::new(what("anisotropy of long waves".into()), "", Some(miss))

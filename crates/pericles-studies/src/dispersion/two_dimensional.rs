@@ -7,7 +7,7 @@ use pericles_run::RunError;
 use pericles_run::dispersion::write_polar;
 
 use super::figures::{write_comparison, write_curves, write_tables};
-use super::models::{NamedTables, model, tuned};
+use super::models::{NamedTables, constraint_residual, model, optimality_residual, tuned};
 use super::published::{PAPER, combination, method, number, numbers, published, rounding};
 use crate::row::Row;
 use crate::study::{Context, Study};
@@ -93,17 +93,8 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
                     .within(omega, (3.0 * rough).max(rounding(&cells, 7))),
             );
         }
-        let residual = found
-            .constraints
-            .iter()
-            .map(|c| c.abs())
-            .fold(0.0, f64::max);
-        rows.push(
-            Row::new(what("constraint residual".into()), "", Some(residual)).within(0.0, 1e-12),
-        );
-        rows.push(
-            Row::new(what("optimality residual".into()), "", Some(table.kkt)).within(0.0, 1e-9),
-        );
+        rows.push(constraint_residual(&what, &table));
+        rows.push(optimality_residual(&what, &table));
         match tables.last_mut() {
             Some((last, list)) if *last == n => list.push((name, table.alpha)),
             _ => tables.push((n, vec![(name, table.alpha)])),

@@ -7,7 +7,7 @@ use pericles::observe::{
     CrackTracker, Energies, Field, ObserveError, Observer, Schedule, Snapshot,
 };
 use pericles::space::{PointCloud, PointSet};
-use pericles::{Archive, Control, Saved, Simulation};
+use pericles::{Control, Simulation};
 use pericles_deck::Deck;
 use pericles_run::{Event, Facts, RunError};
 
@@ -195,11 +195,10 @@ impl Observer for Recorder {
     }
 }
 
-/// Studies are not resumed.
-impl Saved for Recorder {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> pericles::Result<()> {
-        Ok(())
+// Studies are not resumed.
+pericles::saved! {
+    impl Saved for Recorder {
+        tracker, symmetry: fixed,
+        looks: scratch,
     }
 }

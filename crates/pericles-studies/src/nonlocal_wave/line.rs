@@ -7,7 +7,7 @@ use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, DamageMeasure};
+use pericles::operator::BondBody;
 use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{Implicit, ImplicitRule, Integrator, State, VelocityVerlet};
 use pericles::{Interrupt, PointScalar, System};
@@ -108,15 +108,7 @@ pub(super) fn system_as(
     form: ForceForm,
 ) -> Result<System, RunError> {
     let constants = material.constants(cloud, StressState::Uniaxial)?;
-    let body = BondBody {
-        cloud,
-        material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(cloud, material, &constants);
     let operator = pericles_waves::assemble(&body.into(), form)?.operator;
     Ok(System::new(
         Arc::clone(cloud),

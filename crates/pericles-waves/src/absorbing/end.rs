@@ -2,11 +2,9 @@
 
 use super::history::History;
 use super::{AbsorbingError, FreeWave, OuterLayer};
-use pericles::Result;
 use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange};
-use pericles::{Archive, Saved, Values};
 
 /// Weight of the initial displacement in the history: velocity Verlet starts with half a kick, the trapezoidal rule with half a weight.
 const FIRST: f64 = 0.5;
@@ -129,24 +127,13 @@ impl Boundary for AbsorbingEnd {
     }
 }
 
-impl Saved for AbsorbingEnd {
-    fn save(&self, archive: &mut Archive) {
-        let name = self.layer.name();
-        archive.put(format!("{name}/pull"), Values::F64(self.pull.clone()));
-        self.history.save(&name, archive);
-        if let Some(free) = &self.free {
-            free.save(&name, archive);
-        }
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let name = self.layer.name();
-        archive.f64_into(&format!("{name}/pull"), &mut self.pull)?;
-        self.history.restore(&name, archive)?;
-        if let Some(free) = &mut self.free {
-            free.restore(&name, archive)?;
-        }
-        self.started = true;
-        Ok(())
+pericles::saved! {
+    impl Saved for AbsorbingEnd {
+        pull: array("{}/pull", layer.name()),
+        history: under("{}", layer.name()),
+        free: under("{}", layer.name()),
+        started: set(true),
+        layer: fixed,
+        own, ghosts, pull_before: scratch,
     }
 }

@@ -1,17 +1,5 @@
 //! What an absorbing end refuses.
 
-use pericles::{StepKind, schemes_of};
-
-/// The reason behind a scheme that one may expect to work.
-fn why_not(kind: StepKind) -> &'static str {
-    match kind {
-        StepKind::Flow => {
-            ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
-        }
-        _ => "",
-    }
-}
-
 impl From<AbsorbingError> for pericles::PericlesError {
     fn from(error: AbsorbingError) -> Self {
         Self::Extension(Box::new(NoEnd(error)))
@@ -212,22 +200,6 @@ pub enum AbsorbingError {
         found: f64,
         /// Largest on all.
         largest: f64,
-    },
-    /// A scheme that the history is not made for.
-    #[error(
-        "{what} is made for {}, not for {scheme}{}",
-        schemes_of(needed),
-        why_not(*kind)
-    )]
-    Scheme {
-        /// The boundary.
-        what: &'static str,
-        /// The scheme of the run.
-        scheme: &'static str,
-        /// Where it takes the forces.
-        kind: StepKind,
-        /// What the boundary is made for.
-        needed: &'static [StepKind],
     },
     /// What needs an explicit scheme.
     #[error(

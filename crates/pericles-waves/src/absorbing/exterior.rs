@@ -3,8 +3,6 @@
 use super::history::History;
 use super::layer::NEGLIGIBLE;
 use super::{AbsorbingError, LatticeStencil};
-use pericles::Result;
-use pericles::{Archive, Values};
 
 /// The free motion w of the infinite lattice from the initial data beyond an end, zero in the body: the exterior's displacements are w + F * (u − w), for their difference from w starts
 /// from rest there.
@@ -20,14 +18,16 @@ pub struct FreeWave {
     increment: Vec<f64>,
     /// K sites before the first, the sites, K behind the last: padded by ghosts.
     padded: Vec<f64>,
-    /// Towards the body, and outwards.
-    histories: [Box<dyn History>; 2],
+    /// Towards the body.
+    inner: Box<dyn History>,
+    /// Outwards.
+    outer: Box<dyn History>,
     acceleration: Vec<f64>,
 }
 
 impl FreeWave {
     /// From displacements and velocities of the exterior's sites, the one next to the body first; beyond the last they are zero. `body` are the largest |u| and |v| of
-    /// the body itself. `histories` are two new ones of the end's own kernels.
+    /// the body itself. The last two are new histories of the end's own kernels.
     ///
     /// # Errors
     /// Fields of different lengths count as [`AbsorbingError::ExteriorData`], as do data that do not end within the sites given: the outermost K are above 1e-6 of the
@@ -37,7 +37,7 @@ impl FreeWave {
         dt: f64,
         [u, v]: [&[f64]; 2],
         body: [f64; 2],
-        histories: [Box<dyn History>; 2],
+        [inner, outer]: [Box<dyn History>; 2],
     ) -> std::result::Result<Self, AbsorbingError> {
         let reach = stencil.reach();
         for (field, body) in [u, v].into_iter().zip(body) {
@@ -65,7 +65,8 @@ impl FreeWave {
             u: padded(u),
             increment: padded(v),
             padded: vec![0.0; sites + 2 * reach],
-            histories,
+            inner,
+            outer,
             acceleration: vec![0.0; sites],
         };
         wave.accelerate(0.5);
@@ -100,9 +101,9 @@ impl FreeWave {
     fn accelerate(&mut self, weight: f64) {
         let (reach, sites) = (self.stencil.reach(), self.u.len());
         self.padded[reach..reach + sites].copy_from_slice(&self.u);
-        let [inner, outer] = &mut self.histories;
         let (mut own, mut ghosts) = (vec![0.0; reach], vec![0.0; reach]);
-        for (history, at) in [(inner, None), (outer, Some(sites - 1))] {
+        let ends = [(&mut self.inner, None), (&mut self.outer, Some(sites - 1))];
+        for (history, at) in ends {
             // The site at a distance from this end, within; those beyond are at 1 and farther.
             let place = |depth: usize| reach + at.map_or(depth, |last| last - depth);
             let beyond = |n: usize| at.map_or(reach - 1 - n, |last| reach + last + 1 + n);
@@ -127,22 +128,15 @@ impl FreeWave {
                 .sum();
         }
     }
+}
 
-    pub(super) fn save(&self, name: &str, archive: &mut Archive) {
-        archive.put(format!("{name}/free/u"), Values::F64(self.u.clone()));
-        let increment = Values::F64(self.increment.clone());
-        archive.put(format!("{name}/free/increment"), increment);
-        for (history, side) in self.histories.iter().zip(["inner", "outer"]) {
-            history.save(&format!("{name}/free/{side}"), archive);
-        }
-    }
-
-    pub(super) fn restore(&mut self, name: &str, archive: &Archive) -> Result<()> {
-        archive.f64_into(&format!("{name}/free/u"), &mut self.u)?;
-        archive.f64_into(&format!("{name}/free/increment"), &mut self.increment)?;
-        for (history, side) in self.histories.iter_mut().zip(["inner", "outer"]) {
-            history.restore(&format!("{name}/free/{side}"), archive)?;
-        }
-        Ok(())
+pericles::saved! {
+    impl SavedUnder(name) for FreeWave {
+        u: array("{name}/free/u"),
+        increment: array("{name}/free/increment"),
+        inner: under("{name}/free/inner"),
+        outer: under("{name}/free/outer"),
+        stencil, dt: fixed,
+        padded, acceleration: scratch,
     }
 }

@@ -2,11 +2,9 @@
 
 use super::history::History;
 use super::{AbsorbingError, LatticeStep, OuterLayer};
-use pericles::Result;
 use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange, WithinStep};
-use pericles::{Archive, Saved, Values};
 
 /// An absorbing end for the implicit midpoint rule and, its exterior being linear, the trapezoidal rule.
 ///
@@ -105,8 +103,10 @@ impl MidpointEnd {
         exchange
     }
 
-    /// Finds what the past pulls in the coming step.
-    fn look_ahead(&mut self) {
+    /// Finds what the ghosts pull in the present state, and what the past pulls in the coming step.
+    fn update_pulls(&mut self) {
+        self.layer
+            .pull_into(&self.own, &self.beyond, &mut self.pull);
         self.middle.fill(0.0);
         self.history.ghosts_into(&mut self.ghosts);
         self.history.settle(&self.middle, &mut self.ghosts);
@@ -136,9 +136,7 @@ impl Boundary for MidpointEnd {
             false => Exchange::default(),
         };
         self.started = true;
-        self.layer
-            .pull_into(&self.own, &self.beyond, &mut self.pull);
-        self.look_ahead();
+        self.update_pulls();
         exchange
     }
 
@@ -179,25 +177,17 @@ impl WithinStep for MidpointEnd {
     }
 }
 
-impl Saved for MidpointEnd {
-    fn save(&self, archive: &mut Archive) {
-        let name = self.layer.name();
-        let arrays = [("own", &self.own), ("beyond", &self.beyond)];
-        for (what, array) in arrays {
-            archive.put(format!("{name}/{what}"), Values::F64(array.clone()));
-        }
-        self.history.save(&name, archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let name = self.layer.name();
-        archive.f64_into(&format!("{name}/own"), &mut self.own)?;
-        archive.f64_into(&format!("{name}/beyond"), &mut self.beyond)?;
-        self.history.restore(&name, archive)?;
-        self.layer
-            .pull_into(&self.own, &self.beyond, &mut self.pull);
-        self.look_ahead();
-        self.started = true;
+pericles::saved! {
+    impl Saved for MidpointEnd {
+        own: array("{}/own", layer.name()),
+        beyond: array("{}/beyond", layer.name()),
+        history: under("{}", layer.name()),
+        started: set(true),
+        past, pull: rebuilt,
+        layer, dt, corner: fixed,
+        before, middle, ghosts: scratch,
+    } then |end| {
+        end.update_pulls();
         Ok(())
     }
 }

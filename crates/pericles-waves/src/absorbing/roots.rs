@@ -200,7 +200,7 @@ fn chebyshev_zeros(centre: C, a: &[f64]) -> Vec<C> {
     eigenvalues(colleague)
 }
 
-/// The eigenvalues of a complex matrix; numbers that are none if the iterations for them do not end.
+/// The eigenvalues of a complex matrix; NaN if the iteration for them does not converge.
 pub(super) fn eigenvalues(matrix: DMatrix<C>) -> Vec<C> {
     let count = matrix.nrows();
     match Schur::try_new(matrix, f64::EPSILON, ITERATIONS * count) {

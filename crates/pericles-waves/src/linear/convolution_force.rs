@@ -11,7 +11,6 @@ use super::tensor_spectra::{Product, pair};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
 use super::{refuse, require_convolution};
-use pericles::Saved;
 use pericles::family::{Crack, VolumeCorrection};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
@@ -346,5 +345,9 @@ impl<const D: usize> ForceOperator for ConvolutionForce<D> {
     }
 }
 
-/// A linear operator has no memory: nothing is stored.
-impl<const D: usize> Saved for ConvolutionForce<D> {}
+pericles::saved! {
+    impl<const D: usize> Saved for ConvolutionForce<D> {
+        cloud, engine, diagonal, signed_bound, springs, directed_bonds: fixed,
+        fields: scratch,
+    }
+}

@@ -6,7 +6,6 @@ use super::energy::{elastic_energy, origin};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
 use super::{refuse, require_convolution};
-use pericles::Saved;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
@@ -278,5 +277,9 @@ impl ForceOperator for GaussForce {
     }
 }
 
-/// A linear operator has no memory: nothing is stored.
-impl Saved for GaussForce {}
+pericles::saved! {
+    impl Saved for GaussForce {
+        cloud, same, across, sums, directed_bonds: fixed,
+        work: scratch,
+    }
+}

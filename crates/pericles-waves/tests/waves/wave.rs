@@ -9,10 +9,11 @@ use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, DamageMeasure, ForceOperator, LinearOperator, Linearisation};
+use pericles::operator::{BondBody, ForceOperator, LinearOperator, Linearisation};
+use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{Implicit, ImplicitRule, Integrator, LinearSolver, State, VelocityVerlet};
-use pericles::{Interrupt, PointScalar, Saved, System};
+use pericles::{Interrupt, PointScalar, Simulation, System};
 use pericles_waves::ForceForm;
 use pericles_waves::exact::{ExactSolution, LineSolution, Miss};
 use pericles_waves::linear::{ConvolutionForce, GaussForce, SpectralForce};
@@ -86,15 +87,7 @@ fn bonds(
     form: ForceForm,
 ) -> Box<dyn ForceOperator> {
     let constants = material.constants(cloud, state_of(cloud)).unwrap();
-    let body = BondBody {
-        cloud,
-        material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(cloud, material, &constants);
     pericles_waves::assemble(&body.into(), form)
         .unwrap()
         .operator
@@ -757,34 +750,28 @@ fn the_factor_is_taken_where_it_is_cheaper() {
 }
 
 #[test]
-fn a_run_by_a_factor_goes_on_where_it_stopped() {
-    let dt = 0.1 + 1.0 / 3.0;
-    let march = |body: &mut System, scheme: &mut Implicit, state: &mut State, to: u64| {
-        while state.step < to {
-            let t = (state.step + 1) as f64 * dt;
-            scheme.step(body, state, t, Interrupt::never()).unwrap();
-        }
+fn runs_go_on_where_they_stopped() {
+    let direct = |body: &System| -> Box<dyn Integrator> {
+        let rule = ImplicitRule::Midpoint;
+        Box::new(Implicit::with_solver(rule, LinearSolver::Direct, body).unwrap())
     };
-    let scheme = |body: &System| {
-        Implicit::with_solver(ImplicitRule::Midpoint, LinearSolver::Direct, body).unwrap()
-    };
-    let mut body = driven_bar(ForceForm::Grid);
-    let mut whole = scheme(&body);
-    let mut state = start(&body, 0.1);
-    whole.start(&mut body, &mut state);
-    march(&mut body, &mut whole, &mut state, 7);
-    let mut archive = pericles::Archive::default();
-    whole.save(&mut archive);
-    let (mut resumed, mut again) = (scheme(&body), state.clone());
-    resumed.restore(&archive).unwrap();
-    march(&mut body, &mut whole, &mut state, 20);
-    march(
-        &mut driven_bar(ForceForm::Grid),
-        &mut resumed,
-        &mut again,
-        20,
-    );
-    assert_eq!(state, again);
+    let series = |body: &System| trigonometric(FunctionMethod::Chebyshev, body);
+    let krylov = |body: &System| trigonometric(FunctionMethod::Lanczos, body);
+    let schemes: [&dyn Fn(&System) -> Box<dyn Integrator>; 3] = [&direct, &series, &krylov];
+    for (scheme, form) in
+        schemes
+            .into_iter()
+            .zip([ForceForm::Grid, ForceForm::List, ForceForm::Convolution])
+    {
+        let make = || {
+            let body = driven_bar(form);
+            let (scheme, state) = (scheme(&body), start(&body, 0.1));
+            Simulation::new(body, scheme, state, 0.1 + 1.0 / 3.0, 20)
+        };
+        let name = make().integrator().name();
+        let checked = check_resume(make, [7]);
+        assert!(checked.is_ok(), "{name}: {}", checked.unwrap_err());
+    }
 }
 
 #[test]

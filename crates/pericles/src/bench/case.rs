@@ -169,17 +169,13 @@ impl Case {
     pub fn system(&self) -> Result<(System, State)> {
         let cloud = self.cloud()?;
         let material = self.material();
+        let constants = self.constants(&cloud)?;
         let body = BondBody {
-            cloud: &cloud,
-            material: &material,
-            constants: &self.constants(&cloud)?,
-            cracks: &[],
-            no_fail: &[],
-            stiffness: &[],
             damage: DamageMeasure {
                 count: true,
                 ..DamageMeasure::default()
             },
+            ..BondBody::new(&cloud, &material, &constants)
         };
         let mut operator = body.operator(self.form)?.operator;
         operator.use_instruction_set(self.instruction_set);

@@ -1,7 +1,6 @@
 //! Layers in which motion dies away: an approximate absorbing side of bodies in any dimension.
 
 use super::{Boundary, Exchange};
-use crate::archive::{Archive, Saved, Values};
 use crate::error::{PericlesError, Result};
 use crate::scalar::PointScalar;
 use crate::space::{Face, PointCloud};
@@ -184,15 +183,10 @@ impl Boundary for DampingLayer {
     }
 }
 
-impl Saved for DampingLayer {
-    fn save(&self, archive: &mut Archive) {
-        archive.put(
-            format!("{}/pull", self.name),
-            Values::F64(self.pull.clone()),
-        );
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        archive.f64_into(&format!("{}/pull", self.name), &mut self.pull)
+crate::saved! {
+    impl Saved for DampingLayer {
+        pull: array("{name}/pull"),
+        points, damping, mass, total, dimension, name: fixed,
+        pull_before: scratch,
     }
 }

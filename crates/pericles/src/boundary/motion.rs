@@ -320,14 +320,11 @@ impl PrescribedMotion {
             }
         }
     }
+}
 
-    /// The noted reactions (N/m³), for checkpoints.
-    pub(crate) fn reactions(&self) -> &[f64] {
-        &self.reaction
-    }
-
-    /// The same, to be restored.
-    pub(crate) fn reactions_mut(&mut self) -> &mut [f64] {
-        &mut self.reaction
+crate::saved! {
+    impl SavedUnder(place) for PrescribedMotion {
+        reaction: array("{place}/reaction"),
+        name, points, kind, along, function, until, start: fixed,
     }
 }

@@ -363,14 +363,19 @@ pub enum PericlesError {
         /// The ratio asked for.
         tolerance: f64,
     },
-    /// A boundary that the scheme of the run cannot take along.
+    /// A boundary in a run by a scheme that takes the forces elsewhere within a step.
     #[error(
-        "absorbing end: a boundary of this run is made for {}, not for {scheme}",
-        schemes_of(needed)
+        "absorbing end: {what} is made for {}, not for {scheme}{}",
+        schemes_of(needed),
+        kind.why_not()
     )]
     BoundaryScheme {
+        /// The boundary.
+        what: &'static str,
         /// The scheme of the run.
         scheme: &'static str,
+        /// Where the scheme takes the forces.
+        kind: StepKind,
         /// The kinds of steps that the boundary is made for.
         needed: &'static [StepKind],
     },

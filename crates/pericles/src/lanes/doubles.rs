@@ -1,7 +1,6 @@
 //! Eight doubles as an array: what every machine has.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
+use super::lanewise::lanewise;
 use super::numbers::{LANES, Lanes, Real, Row, Vector, vector};
 
 /// Eight numbers.
@@ -44,29 +43,7 @@ impl F64x8 {
     }
 }
 
-macro_rules! lanewise {
-    ($trait:ident, $method:ident, $op:tt) => {
-        impl $trait for F64x8 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self::from_fn(|k| self.0[k] $op other.0[k])
-            }
-        }
-    };
-}
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
-
-impl Neg for F64x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self::from_fn(|k| -self.0[k])
-    }
-}
+lanewise!(F64x8);
 
 impl Real for F64x8 {
     #[inline(always)]
@@ -86,26 +63,7 @@ impl Vector for F64x8 {
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self::from_fn(|k| {
-            if self.0[k] > other.0[k] {
-                self.0[k]
-            } else {
-                other.0[k]
-            }
-        })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self::from_fn(|k| {
-            if self.0[k] < other.0[k] {
-                self.0[k]
-            } else {
-                other.0[k]
-            }
-        })
-    }
+    lanewise!(max and min);
     #[inline(always)]
     fn masked(self, mask: u8) -> Self {
         F64x8::masked(self, mask)

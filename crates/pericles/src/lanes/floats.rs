@@ -2,8 +2,7 @@
 //!
 //! They are two chunks of eight that lie anywhere, so that loops which take chunks one by one take two at a time.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
+use super::lanewise::lanewise;
 use super::numbers::{LANES, Real, Vector};
 
 /// Numbers of two chunks.
@@ -38,29 +37,7 @@ impl F32x16 {
     }
 }
 
-macro_rules! lanewise {
-    ($trait:ident, $method:ident, $op:tt) => {
-        impl $trait for F32x16 {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self::from_fn(|k| self.0[k] $op other.0[k])
-            }
-        }
-    };
-}
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
-
-impl Neg for F32x16 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self::from_fn(|k| -self.0[k])
-    }
-}
+lanewise!(F32x16);
 
 impl Real for F32x16 {
     #[inline(always)]
@@ -80,26 +57,7 @@ impl Vector for F32x16 {
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self::from_fn(|k| {
-            if self.0[k] > other.0[k] {
-                self.0[k]
-            } else {
-                other.0[k]
-            }
-        })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self::from_fn(|k| {
-            if self.0[k] < other.0[k] {
-                self.0[k]
-            } else {
-                other.0[k]
-            }
-        })
-    }
+    lanewise!(max and min);
     #[inline(always)]
     fn masked(self, mask: u16) -> Self {
         Self::from_fn(|k| if mask >> k & 1 == 1 { self.0[k] } else { 0.0 })

@@ -15,6 +15,7 @@ mod floats;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod floats_x86;
 mod instruction_set;
+mod lanewise;
 mod numbers;
 
 pub use doubles::F64x8;

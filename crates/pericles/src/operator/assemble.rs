@@ -44,6 +44,25 @@ pub struct AssembledBonds {
 /// Places of the padded box per point above which the list is better: the box is mostly empty, or very short along x.
 const SPARSE: usize = 8;
 
+impl<'a> BondBody<'a> {
+    /// A body without pre-cracks, of one stiffness, all of whose bonds may break, with the default measure of damage.
+    pub fn new(
+        cloud: &'a Arc<PointCloud>,
+        material: &'a BondMaterial,
+        constants: &'a BondConstants,
+    ) -> Self {
+        Self {
+            cloud,
+            material,
+            constants,
+            cracks: &[],
+            no_fail: &[],
+            stiffness: &[],
+            damage: DamageMeasure::default(),
+        }
+    }
+}
+
 impl BondBody<'_> {
     /// The faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {

@@ -1,6 +1,6 @@
 //! Damage by breaking bonds: which are left, and what those lost took with them. One account for every form of operator.
 
-use crate::archive::{Archive, Counter, Values};
+use crate::archive::{Archive, Counter, SavedUnder, Values};
 use crate::error::Result;
 use crate::step_end::{BreakingBond, StepEnd};
 
@@ -154,38 +154,39 @@ pub(super) fn bonds_left(blocks: &[BlockDamage]) -> u64 {
     bytes.map(|byte| u64::from(byte.count_ones())).sum()
 }
 
-/// Writes the blocks under names that begin with `prefix`.
-pub(super) fn save(blocks: &[BlockDamage], prefix: &str, archive: &mut Archive) {
-    let intact = blocks.iter().flat_map(|block| &block.intact).copied();
-    let broken = blocks.iter().map(|block| block.tally.broken.get());
-    let dissipated = blocks.iter().map(|block| block.tally.dissipated);
-    archive.put(format!("{prefix}/intact"), Values::U8(intact.collect()));
-    archive.put(format!("{prefix}/broken"), Values::U64(broken.collect()));
-    archive.put(
-        format!("{prefix}/dissipated"),
-        Values::F64(dissipated.collect()),
-    );
-}
-
-/// Takes back what [`save`] wrote.
-///
-/// # Errors
-/// An archive of other blocks.
-pub(super) fn restore(blocks: &mut [BlockDamage], prefix: &str, archive: &Archive) -> Result<()> {
-    let groups = blocks.iter().map(|block| block.intact.len()).sum();
-    let mut intact = vec![0; groups];
-    let mut broken = vec![0; blocks.len()];
-    let mut dissipated = vec![0.0; blocks.len()];
-    archive.u8_into(&format!("{prefix}/intact"), &mut intact)?;
-    archive.u64_into(&format!("{prefix}/broken"), &mut broken)?;
-    archive.f64_into(&format!("{prefix}/dissipated"), &mut dissipated)?;
-    let mut rest = &intact[..];
-    for (k, block) in blocks.iter_mut().enumerate() {
-        let (own, after) = rest.split_at(block.intact.len());
-        block.intact.copy_from_slice(own);
-        rest = after;
-        block.tally.broken = broken[k].into();
-        block.tally.dissipated = dissipated[k];
+impl SavedUnder for Vec<BlockDamage> {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        let groups = self.iter().map(|block| block.intact.len()).sum();
+        let mut all = Vec::with_capacity(groups);
+        let (mut directed, mut energies) = (Vec::new(), Vec::new());
+        for BlockDamage { intact, tally } in self {
+            let Tally {
+                broken,
+                dissipated,
+                coarse: _,
+                events: _,
+            } = tally;
+            all.extend_from_slice(intact);
+            directed.push(broken.get());
+            energies.push(*dissipated);
+        }
+        archive.put(format!("{name}/intact"), Values::U8(all));
+        archive.put(format!("{name}/broken"), Values::U64(directed));
+        archive.put(format!("{name}/dissipated"), Values::F64(energies));
     }
-    Ok(())
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        let groups = self.iter().map(|block| block.intact.len()).sum();
+        let mut rest = archive.exactly(&format!("{name}/intact"), groups)?;
+        let broken = archive.exactly::<u64>(&format!("{name}/broken"), self.len())?;
+        let dissipated = archive.exactly(&format!("{name}/dissipated"), self.len())?;
+        for (k, block) in self.iter_mut().enumerate() {
+            let (own, after) = rest.split_at(block.intact.len());
+            block.intact.copy_from_slice(own);
+            rest = after;
+            block.tally.broken = Counter::from(broken[k]);
+            block.tally.dissipated = dissipated[k];
+        }
+        Ok(())
+    }
 }

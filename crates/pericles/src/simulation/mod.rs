@@ -49,11 +49,16 @@ pub fn check_compatibility(
     integrator: &dyn Integrator,
     steps: u64,
 ) -> Result<(), PericlesError> {
-    let scheme = integrator.name();
+    let (scheme, kind) = (integrator.name(), integrator.step_kind());
     for boundary in system.boundaries() {
         let needed = boundary.step_kinds();
-        if !needed.is_empty() && !needed.contains(&integrator.step_kind()) {
-            return Err(PericlesError::BoundaryScheme { scheme, needed });
+        if !needed.is_empty() && !needed.contains(&kind) {
+            return Err(PericlesError::BoundaryScheme {
+                what: "a boundary of this run",
+                scheme,
+                kind,
+                needed,
+            });
         }
         if let Some(made_for) = boundary.steps().filter(|made_for| *made_for < steps) {
             return Err(PericlesError::BoundarySteps { steps, made_for });
@@ -415,19 +420,38 @@ impl Simulation {
 
 impl Saved for Simulation {
     fn save(&self, archive: &mut Archive) {
+        let Self {
+            // In `save_motion`.
+            state: _,
+            system: _,
+            integrator: _,
+            stops,
+            observers,
+            // Given with the run, found at its start, or found anew.
+            dt: _,
+            steps: _,
+            start: _,
+            frequency: _,
+            allow_unstable: _,
+            stopped: _,
+            step_ratio: _,
+            instability: _,
+        } = self;
         self.save_motion(archive);
-        self.stops.save(archive);
-        for scheduled in &self.observers {
-            scheduled.observer.save(archive);
-        }
+        stops.save(archive);
+        observers.save(archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
         self.restore_motion(archive)?;
         self.stops.restore(archive)?;
-        for scheduled in &mut self.observers {
-            scheduled.observer.restore(archive)?;
-        }
-        Ok(())
+        self.observers.restore(archive)
+    }
+}
+
+crate::saved! {
+    impl Saved for Scheduled {
+        observer: part,
+        schedule: fixed,
     }
 }

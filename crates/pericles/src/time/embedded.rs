@@ -230,9 +230,21 @@ impl Integrator for AdaptiveRungeKutta {
 
 impl Saved for AdaptiveRungeKutta {
     fn save(&self, archive: &mut Archive) {
-        let proposed = self.proposed.unwrap_or(0.0);
+        let Self {
+            proposed,
+            accepted,
+            rejected,
+            tolerance: _,
+            form: _,
+            error: _,
+            zone: _,
+            stage: _,
+            a: _,
+            next: _,
+        } = self;
+        let proposed = proposed.unwrap_or(0.0);
         archive.put("scheme/proposed", Values::F64(vec![proposed]));
-        let counts = vec![self.accepted.get(), self.rejected.get()];
+        let counts = vec![accepted.get(), rejected.get()];
         archive.put("scheme/counts", Values::U64(counts));
     }
 

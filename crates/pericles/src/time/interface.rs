@@ -3,7 +3,7 @@
 use super::Tableau;
 use super::runge_kutta::Stages;
 use super::zone::Sum;
-use crate::archive::{Archive, Values};
+use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 
 /// How displacements of fine points are guessed at the stages of the coarse step. Order r needs an error of O(dt^r) only.
@@ -203,31 +203,26 @@ impl History {
         self.levels[0].dt = dt;
         self.known = (self.known + 1).min(self.levels.len());
     }
+}
 
-    pub(super) fn save(&self, archive: &mut Archive) {
-        archive.put("scheme/levels", Values::U64(vec![self.known as u64]));
-        for (k, level) in self.levels.iter().enumerate() {
-            archive.put(
-                format!("scheme/level/{k}"),
-                Values::F64(level.array.clone()),
-            );
-            archive.put(
-                format!("scheme/level_step/{k}"),
-                Values::F64(vec![level.dt]),
-            );
+impl Saved for History {
+    fn save(&self, archive: &mut Archive) {
+        let Self { levels, known } = self;
+        archive.put("scheme/levels", Values::U64(vec![*known as u64]));
+        for (k, Level { array, dt }) in levels.iter().enumerate() {
+            archive.put(format!("scheme/level/{k}"), Values::F64(array.clone()));
+            archive.put(format!("scheme/level_step/{k}"), Values::F64(vec![*dt]));
         }
     }
 
-    pub(super) fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let mut known = [0];
-        archive.u64_into("scheme/levels", &mut known)?;
-        self.known = (known[0] as usize).min(self.levels.len());
-        for (k, level) in self.levels.iter_mut().enumerate() {
-            archive.f64_into(&format!("scheme/level/{k}"), &mut level.array)?;
-            archive.f64_into(
-                &format!("scheme/level_step/{k}"),
-                std::slice::from_mut(&mut level.dt),
-            )?;
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let Self { levels, known } = self;
+        let mut stored = [0];
+        archive.u64_into("scheme/levels", &mut stored)?;
+        *known = (stored[0] as usize).min(levels.len());
+        for (k, Level { array, dt }) in levels.iter_mut().enumerate() {
+            archive.f64_into(&format!("scheme/level/{k}"), array)?;
+            archive.f64_into(&format!("scheme/level_step/{k}"), std::slice::from_mut(dt))?;
         }
         Ok(())
     }

@@ -35,7 +35,7 @@ pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
 pub use verlet::VelocityVerlet;
 
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::Saved;
 use crate::compatibility::Requirement;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
@@ -104,21 +104,13 @@ impl State {
     }
 }
 
-impl Saved for State {
-    fn save(&self, archive: &mut Archive) {
-        archive.put("state/t", Values::F64(vec![self.t]));
-        archive.put("state/step", Values::U64(vec![self.step]));
-        archive.put("state/u", Values::F64(self.u.clone()));
-        archive.put("state/v", Values::F64(self.v.clone()));
-        archive.put("state/a", Values::F64(self.a.clone()));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        archive.f64_into("state/t", std::slice::from_mut(&mut self.t))?;
-        archive.u64_into("state/step", std::slice::from_mut(&mut self.step))?;
-        archive.f64_into("state/u", &mut self.u)?;
-        archive.f64_into("state/v", &mut self.v)?;
-        archive.f64_into("state/a", &mut self.a)
+crate::saved! {
+    impl Saved for State {
+        t: array("state/t"),
+        step: array("state/step"),
+        u: array("state/u"),
+        v: array("state/v"),
+        a: array("state/a"),
     }
 }
 

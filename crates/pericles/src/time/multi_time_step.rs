@@ -8,7 +8,6 @@ use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State, Tableau};
-use crate::archive::{Archive, Saved};
 use crate::compatibility::Requirement;
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
@@ -388,14 +387,10 @@ impl Step<'_> {
     }
 }
 
-impl Saved for MultiTimeStep {
-    fn save(&self, archive: &mut Archive) {
-        self.refinement.save(archive);
-        self.history.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.refinement.restore(archive)?;
-        self.history.restore(archive)
+crate::saved! {
+    impl Saved for MultiTimeStep {
+        refinement, history: part,
+        name, order, limit, form, inside, predictor, everywhere: fixed,
+        work: scratch,
     }
 }

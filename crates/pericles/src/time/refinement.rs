@@ -5,7 +5,7 @@ use super::fine_region::{Fine, Follow, check, mark_regions};
 use super::frequency::{HighestFrequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
-use crate::archive::{Archive, Counter, Values};
+use crate::archive::{Archive, Counter, Saved, Values};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::operator::LocalForce;
@@ -207,25 +207,38 @@ impl Refinement {
             Err(error) => Err(error),
         }
     }
+}
 
-    pub(super) fn save(&self, archive: &mut Archive) {
+impl Saved for Refinement {
+    fn save(&self, archive: &mut Archive) {
+        let Self {
+            zones,
+            follow,
+            steps,
+            starting_steps,
+            fine_total,
+            fine_most,
+            border_total,
+            ratio: _,
+            cost: _,
+            stale: _,
+        } = self;
         let counts = [
-            self.steps.get(),
-            self.starting_steps.get(),
-            self.fine_total.get(),
-            self.fine_most,
-            self.border_total.get(),
+            steps.get(),
+            starting_steps.get(),
+            fine_total.get(),
+            *fine_most,
+            border_total.get(),
         ];
         archive.put("scheme/refinement", Values::U64(counts.to_vec()));
-        if let Some(looking) = &self.follow {
-            let marks = self.zones.is_fine.iter().map(|&fine| u8::from(fine));
+        if let Some(looking) = follow {
+            let marks = zones.is_fine.iter().map(|&fine| u8::from(fine));
             archive.put("scheme/fine", Values::U8(marks.collect()));
-            archive.put("scheme/hold", Values::U8(looking.left.clone()));
-            archive.put("scheme/damage", Values::F64(looking.damage.clone()));
+            looking.save(archive);
         }
     }
 
-    pub(super) fn restore(&mut self, archive: &Archive) -> Result<()> {
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut counts = [0; 5];
         archive.u64_into("scheme/refinement", &mut counts)?;
         let [steps, starting_steps, fine_total, fine_most, border_total] = counts;
@@ -237,14 +250,22 @@ impl Refinement {
         if let Some(looking) = &mut self.follow {
             let mut marks = vec![0; self.zones.is_fine.len()];
             archive.u8_into("scheme/fine", &mut marks)?;
-            archive.u8_into("scheme/hold", &mut looking.left)?;
-            archive.f64_into("scheme/damage", &mut looking.damage)?;
+            looking.restore(archive)?;
             for (fine, mark) in self.zones.is_fine.iter_mut().zip(marks) {
                 *fine = mark != 0;
             }
             self.stale = true;
         }
         Ok(())
+    }
+}
+
+crate::saved! {
+    impl Saved for Looking {
+        left: array("scheme/hold"),
+        damage: array("scheme/damage"),
+        follow: fixed,
+        now, marks: scratch,
     }
 }
 

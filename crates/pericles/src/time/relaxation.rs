@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::{InnerIterations, Integrator, State};
-use crate::archive::{Archive, Saved, Values};
 use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
@@ -380,17 +379,11 @@ impl Integrator for Relaxation {
     }
 }
 
-impl Saved for Relaxation {
-    fn save(&self, archive: &mut Archive) {
-        let account = vec![self.damped, self.largest];
-        archive.put("relaxation/account", Values::F64(account));
-        self.inner.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let mut account = [0.0; 2];
-        archive.f64_into("relaxation/account", &mut account)?;
-        [self.damped, self.largest] = account;
-        self.inner.restore(archive)
+crate::saved! {
+    impl Saved for Relaxation {
+        damped, largest: array("relaxation/account"),
+        inner: part,
+        options, mobility: fixed,
+        free, force, first_force, velocity, start, before, iterations: scratch,
     }
 }

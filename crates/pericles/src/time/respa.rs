@@ -6,7 +6,6 @@ use super::refinement_report::RefinementReport;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State};
-use crate::archive::{Archive, Saved, Values};
 use crate::compatibility::{Need, Requirement};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
@@ -232,16 +231,12 @@ impl Integrator for Respa {
     }
 }
 
-impl Saved for Respa {
-    fn save(&self, archive: &mut Archive) {
-        self.refinement.save(archive);
-        archive.put("scheme/slow", Values::F64(self.slow.clone()));
-        archive.put("scheme/fast", Values::F64(self.fast.clone()));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.refinement.restore(archive)?;
-        archive.f64_into("scheme/slow", &mut self.slow)?;
-        archive.f64_into("scheme/fast", &mut self.fast)
+crate::saved! {
+    impl Saved for Respa {
+        refinement: part,
+        slow: array("scheme/slow"),
+        fast: array("scheme/fast"),
+        everywhere: fixed,
+        mean: scratch,
     }
 }

@@ -2,7 +2,6 @@
 
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
-use crate::archive::Saved;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::operator::On;
@@ -172,5 +171,10 @@ impl Integrator for RungeKutta {
     }
 }
 
-/// The method carries nothing from step to step but the state.
-impl Saved for RungeKutta {}
+// The method carries nothing from step to step but the state.
+crate::saved! {
+    impl Saved for RungeKutta {
+        name, order, limit, form, zone: fixed,
+        stage, a, next: scratch,
+    }
+}

@@ -8,7 +8,7 @@ use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
 use pericles::observe::{FragmentCount, Fragments};
-use pericles::operator::{BondBody, BondForm, DamageMeasure};
+use pericles::operator::{BondBody, BondForm};
 use pericles::space::{Grid, Shape};
 
 /// A plate of 12 × 8 cells cut to the right of its fourth and its tenth column, and around the cell in its lower left corner.
@@ -37,19 +37,15 @@ fn pieces(form: BondForm) -> Fragments {
     };
     let cut = |from, to| (Crack::Segment { from, to }, EndRule::Closed);
     let constants = material.constants(&cloud, StressState::PlaneStress);
+    let constants = constants.unwrap();
     let body = BondBody {
-        cloud: &cloud,
-        material: &material,
-        constants: &constants.unwrap(),
         cracks: &[
             cut([4.0, -1.0], [4.0, 9.0]),
             cut([10.0, -1.0], [10.0, 9.0]),
             cut([1.0, -1.0], [1.0, 1.0]),
             cut([-1.0, 1.0], [1.0, 1.0]),
         ],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
+        ..BondBody::new(&cloud, &material, &constants)
     };
     Fragments::of(&*body.operator(form).unwrap().operator)
 }

@@ -4,7 +4,7 @@ use crate::common;
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondStretch, Fracture, GreenBond, LinearBond, StressState};
-use pericles::operator::{BondBody, DamageMeasure, FastLaw};
+use pericles::operator::{BondBody, FastLaw};
 use pericles::space::{Face, Region};
 use pericles::time::{State, VelocityVerlet, highest_frequency};
 use pericles::{Cause, Control, Simulation, SimulationError, System};
@@ -49,15 +49,7 @@ fn float_bar() -> System {
     let correction = VolumeCorrection::Extended;
     let material = common::material(1.0, 1.0, 3.0 * SPACING, correction, Fracture::Unbreakable);
     let constants = material.constants(&cloud, StressState::Uniaxial).unwrap();
-    let body = BondBody {
-        cloud: &cloud,
-        material: &material,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, &material, &constants);
     let force = body.grid::<LinearBond, 1>().unwrap().in_floats();
     common::system(&cloud, force, 1.0)
 }

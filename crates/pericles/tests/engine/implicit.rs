@@ -35,7 +35,7 @@ fn plate(fracture: Fracture) -> (Arc<PointCloud>, System) {
 
 /// What acts on a plate that is at rest at first.
 #[derive(Debug, Clone, Copy)]
-enum Action {
+pub enum Action {
     /// A traction that grows from zero.
     Ramp,
     /// A traction that begins after some steps.
@@ -44,7 +44,7 @@ enum Action {
     Support,
 }
 
-fn loaded(action: Action) -> System {
+pub fn loaded(action: Action) -> System {
     let (cloud, mut body) = plate(Fracture::Unbreakable);
     let right = points(&cloud, |x, _, _| x > 0.02 - 3.0 * DX);
     let pull = |function| Load::traction(&cloud, right.clone(), [1e6, 0.0, 0.0], 1e-5, function);
@@ -75,17 +75,17 @@ fn loaded(action: Action) -> System {
     body
 }
 
-type MakeScheme = dyn Fn(&System) -> Box<dyn Integrator>;
+pub type MakeScheme = dyn Fn(&System) -> Box<dyn Integrator>;
 
-fn rule(rule: ImplicitRule) -> Box<MakeScheme> {
+pub fn rule(rule: ImplicitRule) -> Box<MakeScheme> {
     Box::new(move |system| Box::new(Implicit::new(rule, system).unwrap()))
 }
 
-fn discrete_gradient() -> Box<MakeScheme> {
+pub fn discrete_gradient() -> Box<MakeScheme> {
     Box::new(|system| Box::new(DiscreteGradient::new(1e-10, system).unwrap()))
 }
 
-fn newmark(solver: InnerSolver) -> Box<MakeScheme> {
+pub fn newmark(solver: InnerSolver) -> Box<MakeScheme> {
     Box::new(move |system| {
         let options = NewmarkOptions {
             solver,
@@ -95,7 +95,7 @@ fn newmark(solver: InnerSolver) -> Box<MakeScheme> {
     })
 }
 
-fn from_rest(body: System, scheme: &MakeScheme, dt: f64, steps: u64) -> Simulation {
+pub fn from_rest(body: System, scheme: &MakeScheme, dt: f64, steps: u64) -> Simulation {
     let scheme = scheme(&body);
     let state = State::at_rest(body.dimension() * body.points());
     Simulation::new(body, scheme, state, dt, steps)
@@ -189,7 +189,7 @@ fn saved(run: &Simulation) -> Archive {
 }
 
 /// A plate that tears while it is pulled apart slowly.
-fn torn() -> System {
+pub fn torn() -> System {
     let (cloud, mut body) = plate(Fracture::CriticalStretch(1e-3));
     let still = vec![0.0; 2 * cloud.len()];
     for (name, from, to, far) in [("left", 0.0, 3.0 * DX, 0.0), ("right", 0.017, 0.02, 2e-5)] {

@@ -11,6 +11,7 @@ mod implicit;
 mod list;
 mod multi_time_step;
 mod properties;
+mod round_trip;
 mod single_precision;
 mod statics;
 mod surface_correction;

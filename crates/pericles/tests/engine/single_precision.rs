@@ -7,10 +7,11 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
+use pericles::operator::{BondBody, BondForm, ForceOperator, InstructionSet, On};
+use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};
+use pericles::{Control, PointScalar, Simulation, System};
 use pericles::{Path, StepEnd};
 
 const SPACING: f64 = 0.01;
@@ -74,14 +75,11 @@ fn operator(
         StressState::PlaneStrain,
         StressState::Spatial,
     ][cloud.dimension() - 1];
+    let constants = material.constants(cloud, state).unwrap();
     let body = BondBody {
-        cloud,
-        material: &material,
-        constants: &material.constants(cloud, state).unwrap(),
         cracks: &[(crack(cloud.dimension()), EndRule::Closed)],
         no_fail: &[0, 1, 2],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
+        ..BondBody::new(cloud, &material, &constants)
     };
     body.operator(form).unwrap().operator
 }
@@ -264,26 +262,7 @@ fn a_torn_plate_breaks_as_in_doubles_and_is_resumed() {
     let energies = floats.snapshot().energies();
     let balance = energies.balance() / energies.initial;
     assert!(balance.abs() < 1e-5, "{balance:e}");
-
-    let mut begun = torn(BondForm::FloatGrid);
-    let mut left = 170;
-    begun
-        .run(|_| {
-            left -= 1;
-            if left == 0 {
-                Control::Stop
-            } else {
-                Control::Continue
-            }
-        })
-        .unwrap();
-    let mut archive = Archive::default();
-    begun.save(&mut archive);
-    let mut resumed = torn(BondForm::FloatGrid);
-    resumed.restore(&archive).unwrap();
-    resumed.run(|_| Control::Continue).unwrap();
-    assert_eq!(resumed.state().u, floats.state().u);
-    assert_eq!(count(&resumed), count(&floats));
+    check_resume(|| torn(BondForm::FloatGrid), [170]).unwrap();
 }
 
 #[test]

@@ -9,7 +9,7 @@ use pericles::material::{
     BondConstants, BondMaterial, ElasticModulus, Fracture, InterfaceRule, Modulus, PairClasses,
     StressState, SurfaceCorrection, SurfaceFactors,
 };
-use pericles::operator::{BondBody, BondForm, CompositeBody, DamageMeasure, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, ForceOperator, On};
 use pericles::space::PointCloud;
 use pericles::time::{Damping, Relaxation, RelaxationOptions, State, VelocityVerlet};
 use pericles::{
@@ -48,15 +48,8 @@ fn operator(
     classes: Option<&PairClasses>,
     correction: SurfaceCorrection,
 ) -> Box<dyn ForceOperator> {
-    let body = BondBody {
-        cloud,
-        material,
-        constants: &constants(material, cloud),
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let constants = constants(material, cloud);
+    let body = BondBody::new(cloud, material, &constants);
     let composite = CompositeBody {
         body,
         classes,
@@ -259,15 +252,7 @@ fn equal_materials_are_one() {
         InterfaceRule::Harmonic,
     )
     .unwrap();
-    let body = BondBody {
-        cloud: &cloud,
-        material: &steel,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, &steel, &constants);
     let forces = |classes: Option<&PairClasses>| {
         let composite = CompositeBody {
             body: body.clone(),
@@ -364,15 +349,7 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
                 }
             }
         }
-        let body = BondBody {
-            cloud: &cloud,
-            material: &steel,
-            constants: &constants,
-            cracks: &[],
-            no_fail: &[],
-            stiffness: &[],
-            damage: DamageMeasure::default(),
-        };
+        let body = BondBody::new(&cloud, &steel, &constants);
         let energy = |correction| {
             let composite = CompositeBody {
                 body: body.clone(),
@@ -416,15 +393,7 @@ fn uniform_state(form: BondForm) {
     let mut steel = steel(Fracture::Unbreakable);
     steel.modulus.calibration = pericles::material::Calibration::Lattice;
     let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
-    let body = BondBody {
-        cloud: &cloud,
-        material: &steel,
-        constants: &constants,
-        cracks: &[],
-        no_fail: &[],
-        stiffness: &[],
-        damage: DamageMeasure::default(),
-    };
+    let body = BondBody::new(&cloud, &steel, &constants);
     let operator = body.operator(form).unwrap().operator;
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
     let n = cloud.len();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::{boxed, material};
 use pericles::family::VolumeCorrection;
 use pericles::material::{Calibration, Fracture, PairLaw, StressState, SurfaceCorrection};
-use pericles::operator::{BondBody, BondForm, CompositeBody, DamageMeasure, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, ForceOperator, On};
 use pericles::space::PointCloud;
 
 const DX: f64 = 1e-3;
@@ -28,15 +28,7 @@ fn corrected(
     material.modulus.calibration = Calibration::Lattice;
     let constants = material.constants(cloud, state).unwrap();
     let composite = CompositeBody {
-        body: BondBody {
-            cloud,
-            material: &material,
-            constants: &constants,
-            cracks: &[],
-            no_fail: &[],
-            stiffness: &[],
-            damage: DamageMeasure::default(),
-        },
+        body: BondBody::new(cloud, &material, &constants),
         classes: None,
         correction,
     };

@@ -1,10 +1,11 @@
 //! Implicit schemes.
 
+use pericles::round_trip::check_resume;
 use pericles::time::{
     DiscreteGradient, InnerSolver, Integrator, Newmark, NewmarkOptions, State, VelocityVerlet,
     highest_frequency,
 };
-use pericles::{Archive, Control, PericlesError, Saved, Simulation, SimulationError, System};
+use pericles::{Control, PericlesError, Simulation, SimulationError, System};
 
 use super::sphere::*;
 
@@ -189,27 +190,6 @@ fn implicit_schemes_go_on_from_a_checkpoint() {
             let integrator = scheme(&system);
             Simulation::new(system, integrator, sphere.thrown(1.0), 0.05, 12)
         };
-        let mut whole = make();
-        whole.run(|_| Control::Continue).unwrap();
-        let mut first = make();
-        first
-            .run(|run| {
-                if run.state().step == 5 {
-                    Control::Stop
-                } else {
-                    Control::Continue
-                }
-            })
-            .unwrap();
-        let mut archive = Archive::default();
-        first.save(&mut archive);
-        let mut second = make();
-        second.restore(&archive).unwrap();
-        second.run(|_| Control::Continue).unwrap();
-        assert_eq!(second.state(), whole.state());
-        assert_eq!(
-            second.integrator().inner_iterations(),
-            whole.integrator().inner_iterations()
-        );
+        check_resume(make, [5]).unwrap();
     }
 }

@@ -6,8 +6,8 @@ use super::History;
 use super::record::Record;
 use crate::absorbing::GhostKernels;
 use crate::absorbing::blocks::{BLOCK, Levels, LineWork, Spectrum, accumulate, add_scaled};
-use pericles::Archive;
-use pericles::Result;
+use pericles::archive::SavedUnder;
+use pericles::{Archive, Result};
 
 /// Online convolution in O(K N log² N + K² N log N) for N steps, equal to direct sums to round-off.
 ///
@@ -115,13 +115,27 @@ impl History for BlockedHistory {
         self.past.steps = 0;
         self.results.iter_mut().for_each(|result| result.fill(0.0));
     }
+}
 
-    fn save(&self, name: &str, archive: &mut Archive) {
-        self.past.save(name, archive);
+impl SavedUnder for BlockedHistory {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        let Self {
+            past,
+            // Convolved again.
+            results: _,
+            kernels: _,
+            near: _,
+            levels: _,
+            heads: _,
+            blocks: _,
+            products: _,
+            now: _,
+        } = self;
+        past.save(name, archive);
     }
 
     /// Convolves the stored past again: the same operations in the same order.
-    fn restore(&mut self, name: &str, archive: &Archive) -> Result<()> {
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
         let (stored, steps) = self.past.stored(name, archive)?;
         self.reset();
         for step in 0..steps {

@@ -3,8 +3,8 @@
 use super::History;
 use super::record::Record;
 use crate::absorbing::GhostKernels;
-use pericles::Archive;
-use pericles::Result;
+use pericles::archive::SavedUnder;
+use pericles::{Archive, Result};
 
 /// Direct sums: 2 K² N²/2 operations for N steps. The twin of the fast forms.
 pub struct DirectHistory {
@@ -64,12 +64,19 @@ impl History for DirectHistory {
     fn reset(&mut self) {
         self.past.steps = 0;
     }
+}
 
-    fn save(&self, name: &str, archive: &mut Archive) {
-        self.past.save(name, archive);
+impl SavedUnder for DirectHistory {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        let Self {
+            past,
+            kernels: _,
+            now: _,
+        } = self;
+        past.save(name, archive);
     }
 
-    fn restore(&mut self, name: &str, archive: &Archive) -> Result<()> {
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
         let (stored, steps) = self.past.stored(name, archive)?;
         for (site, stored) in self.past.sites.iter_mut().zip(stored.chunks(steps.max(1))) {
             site[..steps].copy_from_slice(stored);

@@ -4,8 +4,8 @@ use realfft::num_complex::Complex;
 
 use super::History;
 use crate::absorbing::fit::ExponentialKernels;
-use pericles::Result;
-use pericles::{Archive, Values};
+use pericles::archive::SavedUnder;
+use pericles::{Archive, Result, Values};
 
 /// One state per exponential, S ← λ S + Σ_m b_m u_m, and ghosts Re Σ a_n S: 8 K p operations a step and O(K p) memory for p exponentials, for any number of
 /// steps.
@@ -63,15 +63,17 @@ impl History for ExponentialHistory {
     fn reset(&mut self) {
         self.states.fill(Complex::default());
     }
+}
 
-    fn save(&self, name: &str, archive: &mut Archive) {
-        let numbers = self.states.iter().flat_map(|state| [state.re, state.im]);
+impl SavedUnder for ExponentialHistory {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        let Self { states, kernels: _ } = self;
+        let numbers = states.iter().flat_map(|state| [state.re, state.im]);
         archive.put(format!("{name}/states"), Values::F64(numbers.collect()));
     }
 
-    fn restore(&mut self, name: &str, archive: &Archive) -> Result<()> {
-        let mut numbers = vec![0.0; 2 * self.states.len()];
-        archive.f64_into(&format!("{name}/states"), &mut numbers)?;
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        let numbers = archive.exactly(&format!("{name}/states"), 2 * self.states.len())?;
         for (state, pair) in self.states.iter_mut().zip(numbers.chunks(2)) {
             *state = Complex::new(pair[0], pair[1]);
         }

@@ -13,11 +13,10 @@ pub use cost::{HistoryCost, HistoryForm};
 pub use direct::DirectHistory;
 pub use exponential::ExponentialHistory;
 
-use pericles::Archive;
-use pericles::Result;
+use pericles::archive::SavedUnder;
 
 /// A convolution in time that gives the ghosts of the next step from all steps before, and what of them hangs on the present one.
-pub trait History: Send + Sync {
+pub trait History: SavedUnder + Send + Sync {
     /// Name as in decks.
     fn name(&self) -> &'static str;
 
@@ -38,13 +37,4 @@ pub trait History: Send + Sync {
 
     /// Forgets all.
     fn reset(&mut self);
-
-    /// Puts what is remembered into an archive, under names that begin with `name`.
-    fn save(&self, name: &str, archive: &mut Archive);
-
-    /// Takes it back, in place of all that is remembered now; the same bits follow as without the pause.
-    ///
-    /// # Errors
-    /// [`pericles::PericlesError::BadArchive`] if it is missing or of another size.
-    fn restore(&mut self, name: &str, archive: &Archive) -> Result<()>;
 }

@@ -29,7 +29,8 @@ impl Record {
     }
 
     pub(super) fn save(&self, name: &str, archive: &mut Archive) {
-        let known = self.sites.iter().flat_map(|site| &site[..self.steps]);
+        let Self { sites, steps } = self;
+        let known = sites.iter().flat_map(|site| &site[..*steps]);
         archive.put(
             format!("{name}/past"),
             Values::F64(known.copied().collect()),

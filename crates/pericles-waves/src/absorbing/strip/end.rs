@@ -6,11 +6,9 @@ use super::lattice::{Matrix, StripLattice};
 use crate::absorbing::history::{BlockedHistory, History};
 use crate::absorbing::{GhostKernels, Side};
 use crate::linear::LineTransform;
-use pericles::Result;
 use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange};
-use pericles::{Archive, Saved, Values};
 
 /// Weight of the initial displacement in the history, as for bars.
 const FIRST: f64 = 0.5;
@@ -125,10 +123,6 @@ impl StripEnd {
             self.pull[place * rows..(place + 1) * rows].copy_from_slice(&self.line);
         }
     }
-
-    fn name(&self, mode: usize, part: usize) -> String {
-        format!("strip/{}/{mode}/{part}", self.side.name())
-    }
 }
 
 impl Mode {
@@ -192,27 +186,20 @@ impl Boundary for StripEnd {
     }
 }
 
-impl Saved for StripEnd {
-    fn save(&self, archive: &mut Archive) {
-        let name = format!("strip/{}/pull", self.side.name());
-        archive.put(name, Values::F64(self.pull.clone()));
-        for (q, mode) in self.modes.iter().enumerate() {
-            for (part, history) in mode.histories.iter().enumerate() {
-                history.save(&self.name(q, part), archive);
-            }
-        }
+pericles::saved! {
+    impl Saved for StripEnd {
+        pull: array("strip/{}/pull", side.name()),
+        modes: under("strip/{}", side.name()),
+        started: set(true),
+        side, lattice, entries, beyond, transform: fixed,
+        line, spectrum, scratch, pull_before: scratch,
     }
+}
 
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let name = format!("strip/{}/pull", self.side.name());
-        archive.f64_into(&name, &mut self.pull)?;
-        for q in 0..self.modes.len() {
-            for part in 0..2 {
-                let name = self.name(q, part);
-                self.modes[q].histories[part].restore(&name, archive)?;
-            }
-        }
-        self.started = true;
-        Ok(())
+pericles::saved! {
+    impl SavedUnder(name) for Mode {
+        histories: under("{name}"),
+        couplings: fixed,
+        own, ghosts, pull: scratch,
     }
 }

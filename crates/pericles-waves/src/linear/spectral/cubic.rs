@@ -11,7 +11,6 @@ use super::super::wanted::for_each_wanted;
 use super::super::{refuse, require_unbreakable};
 use super::symbol::Symbol;
 use pericles::Result;
-use pericles::Saved;
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
@@ -354,5 +353,9 @@ impl ForceOperator for SpectralCubicForce {
     }
 }
 
-/// Nothing is stored.
-impl Saved for SpectralCubicForce {}
+pericles::saved! {
+    impl Saved for SpectralCubicForce {
+        cloud, coarse, fine, linear, odd, even, family: fixed,
+        work: scratch,
+    }
+}

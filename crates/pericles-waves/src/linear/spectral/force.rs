@@ -13,7 +13,6 @@ use super::super::wanted::for_each_wanted;
 use super::super::{refuse, require_unbreakable};
 use super::box_transform::BoxTransform;
 use super::symbol::Symbol;
-use pericles::Saved;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
@@ -369,5 +368,9 @@ impl<const D: usize> ForceOperator for SpectralForce<D> {
     }
 }
 
-/// A linear operator has no memory: nothing is stored.
-impl<const D: usize> Saved for SpectralForce<D> {}
+pericles::saved! {
+    impl<const D: usize> Saved for SpectralForce<D> {
+        cloud, transform, unit, symbol, largest, family: fixed,
+        spectra, fields: scratch,
+    }
+}

@@ -1,9 +1,10 @@
 //! Layers in which motion dies away.
 
 use pericles::boundary::{DampingLayer, DampingProfile};
+use pericles::round_trip::check_resume;
 use pericles::space::Face;
 use pericles::time::VelocityVerlet;
-use pericles::{Archive, Control, Saved, Simulation, System};
+use pericles::{Simulation, System};
 
 use crate::absorbing::bar::{bar, pulse, run};
 
@@ -68,20 +69,7 @@ fn damping_is_resumed() {
         let state = pulse(&system, 12.0);
         Simulation::new(system, Box::new(VelocityVerlet), state, DT, 200)
     };
-    let mut whole = make();
-    whole.run(|_| Control::Continue).unwrap();
-    let mut first = make();
-    let stop = |s: &Simulation| match s.state().step {
-        77 => Control::Stop,
-        _ => Control::Continue,
-    };
-    first.run(stop).unwrap();
-    let mut archive = Archive::default();
-    first.save(&mut archive);
-    let mut second = make();
-    second.restore(&archive).unwrap();
-    second.run(|_| Control::Continue).unwrap();
-    assert_eq!(whole.state(), second.state());
+    check_resume(make, [77]).unwrap();
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Fields that go on beyond the end at the start.
 
+use pericles::round_trip::check_resume;
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, Saved, Simulation, System};
+use pericles::{Control, Simulation, System};
 use pericles_waves::absorbing::history::{BlockedHistory, History};
 use pericles_waves::absorbing::{
     AbsorbingEnd, AbsorbingError, FreeWave, GhostKernels, OuterLayer, Side, factor_kernels,
@@ -59,20 +60,7 @@ fn a_field_beyond_the_end_comes_in_and_leaves() {
 
 #[test]
 fn the_field_beyond_is_resumed() {
-    let mut whole = with_ends();
-    whole.run(|_| Control::Continue).unwrap();
-    let mut first = with_ends();
-    let stop = |s: &Simulation| match s.state().step {
-        120 => Control::Stop,
-        _ => Control::Continue,
-    };
-    first.run(stop).unwrap();
-    let mut archive = Archive::default();
-    first.save(&mut archive);
-    let mut second = with_ends();
-    second.restore(&archive).unwrap();
-    second.run(|_| Control::Continue).unwrap();
-    assert_eq!(whole.state(), second.state());
+    check_resume(with_ends, [120]).unwrap();
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Ends that are part of implicit steps.
 
 use pericles::cache::NoCache;
+use pericles::round_trip::check_resume;
 use pericles::time::{Implicit, ImplicitRule, LinearSolver, State, VelocityVerlet};
-use pericles::{Archive, Control, PericlesError, Saved, Simulation, SimulationError, System};
+use pericles::{Control, PericlesError, Simulation, SimulationError, System};
 use pericles_waves::absorbing::history::{BlockedHistory, DirectHistory, History, HistoryForm};
 use pericles_waves::absorbing::{
     AbsorbingError, EndPlan, GhostKernels, KernelMethod, LatticeStencil, LatticeStep, MidpointEnd,
@@ -101,22 +102,7 @@ fn stop_and_resume_gives_the_same_bits() {
             let scheme = Implicit::new(ImplicitRule::Midpoint, &system).unwrap();
             Simulation::new(system, Box::new(scheme), state, dt, steps)
         };
-        let mut whole = make();
-        whole.run(|_| Control::Continue).unwrap();
-        let mut first = make();
-        let stop = |s: &Simulation| match s.state().step {
-            90 => Control::Stop,
-            _ => Control::Continue,
-        };
-        first.run(stop).unwrap();
-        let [mut middle, mut all, mut part] = [(); 3].map(|()| Archive::default());
-        first.save(&mut middle);
-        let mut second = make();
-        second.restore(&middle).unwrap();
-        second.run(|_| Control::Continue).unwrap();
-        whole.save(&mut all);
-        second.save(&mut part);
-        assert_eq!(all, part);
+        check_resume(make, [90]).unwrap();
     }
 }
 

@@ -4,9 +4,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use pericles::family::VolumeCorrection;
+use pericles::round_trip::check_resume;
 use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};
+use pericles::{Control, PointScalar, Simulation, System};
 use pericles_waves::absorbing::factor_kernels;
 use pericles_waves::absorbing::strip::{StripEnd, StripLattice};
 use pericles_waves::absorbing::{AbsorbingError, GhostKernels, LatticeStencil, Side};
@@ -149,20 +150,7 @@ fn without_waves_across_each_component_is_a_bar() {
 #[test]
 fn stop_and_resume_gives_the_same_bits() {
     let steps = 100;
-    let mut whole = with_ends(14, steps);
-    whole.run(|_| Control::Continue).unwrap();
-    let mut first = with_ends(14, steps);
-    let stop = |s: &Simulation| match s.state().step {
-        70 => Control::Stop,
-        _ => Control::Continue,
-    };
-    first.run(stop).unwrap();
-    let mut archive = Archive::default();
-    first.save(&mut archive);
-    let mut second = with_ends(14, steps);
-    second.restore(&archive).unwrap();
-    second.run(|_| Control::Continue).unwrap();
-    assert_eq!(whole.state(), second.state());
+    check_resume(|| with_ends(14, steps), [70]).unwrap();
 }
 
 #[test]

@@ -5,9 +5,6 @@ use std::sync::PoisonError;
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
 use super::padded::Frame;
-use crate::archive::{Archive, Saved};
-use crate::error::Result;
-use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
     Breakable, Capabilities, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
@@ -223,13 +220,11 @@ impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
-    fn save(&self, archive: &mut Archive) {
-        damage::save(&self.blocks, "operator/grid", archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        damage::restore(&mut self.blocks, "operator/grid", archive)?;
-        self.check_bonds()
-    }
+crate::saved! {
+    impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
+        blocks: under("operator/grid"),
+        cloud, layout, stencil, held, cuts, precut, directed_bonds, critical_stretch, damage: fixed,
+        instruction_set, law: fixed,
+        doubles, floats, direction: scratch,
+    } then |force| force.check_bonds()
 }

@@ -47,6 +47,15 @@ pub struct BondForce<L: FastLaw, const D: usize> {
     law: std::marker::PhantomData<L>,
 }
 
+crate::saved! {
+    impl<L: FastLaw, const D: usize> Saved for BondForce<L, D> {
+        blocks: under("operator"),
+        cloud, bonds, reference, unit, stiffness, breakable, critical_stretch, pairs, damage: fixed,
+        reach, instruction_set, law: fixed,
+        packed: scratch,
+    }
+}
+
 impl<L: FastLaw, const D: usize> BondForce<L, D> {
     /// The operator of a material on a body.
     ///

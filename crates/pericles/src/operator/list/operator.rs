@@ -2,9 +2,6 @@
 
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
-use crate::archive::{Archive, Saved};
-use crate::error::Result;
-use crate::operator::damage;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
     BondAt, BondView, Breakable, Capabilities, ForceOperator, InstructionSet, LatticeSprings,
@@ -164,15 +161,5 @@ impl<L: FastLaw, const D: usize> LinearOperator for BondForce<L, D> {
     fn half_bandwidth(&self) -> Option<usize> {
         let of_point = |i: usize| self.bonds.family(i).map(move |(_, j)| i.abs_diff(j));
         (D == 1).then(|| (0..self.points()).flat_map(of_point).max().unwrap_or(0))
-    }
-}
-
-impl<L: FastLaw, const D: usize> Saved for BondForce<L, D> {
-    fn save(&self, archive: &mut Archive) {
-        damage::save(&self.blocks, "operator", archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        damage::restore(&mut self.blocks, "operator", archive)
     }
 }

@@ -7,7 +7,6 @@ pub use solver::LinearSolver;
 use solver::StepSolver;
 
 use super::{Integrator, State};
-use crate::archive::{Archive, Saved};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
@@ -410,18 +409,11 @@ impl Integrator for Implicit {
     }
 }
 
-/// The scheme carries nothing from step to step but the state, and what its solver remembers.
-impl Saved for Implicit {
-    fn save(&self, archive: &mut Archive) {
-        if let Some(solver) = &self.solver {
-            solver.save(archive);
-        }
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        match &mut self.solver {
-            Some(solver) => solver.restore(archive),
-            None => Ok(()),
-        }
+// The scheme carries nothing from step to step but the state, and what its solver remembers.
+crate::saved! {
+    impl Saved for Implicit {
+        solver: part,
+        rule, mass, stiffest: fixed,
+        half, right, change, force, next, work: scratch,
     }
 }

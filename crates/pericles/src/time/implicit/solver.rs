@@ -1,7 +1,6 @@
 //! The linear systems of implicit steps: by a factor that is kept, or by iteration.
 
 use super::{add_and_weigh, ends};
-use crate::archive::{Archive, Saved, Values};
 use crate::error::Result;
 use crate::operator::{ForceOperator, LinearOperator};
 use crate::solve::{BandedCholesky, SolveLimits, Work, conjugate_gradient};
@@ -171,17 +170,11 @@ fn factorise(system: &System, mass: &[f64], tau: f64, reach: usize) -> Result<Ba
     BandedCholesky::new(&mut apply, mass.len(), reach)
 }
 
-/// A factor is that of the first of many steps whose lengths differ by rounding; which step that was is remembered.
-impl Saved for StepSolver {
-    fn save(&self, archive: &mut Archive) {
-        archive.put("implicit/factored", Values::F64(vec![self.factored]));
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.factor = None;
-        archive.f64_into(
-            "implicit/factored",
-            std::slice::from_mut(&mut self.factored),
-        )
+// A factor is that of the first of many steps whose lengths differ by rounding; which step that was is remembered.
+crate::saved! {
+    impl Saved for StepSolver {
+        factored: array("implicit/factored"),
+        factor: set(None),
+        choice, shape: fixed,
     }
 }

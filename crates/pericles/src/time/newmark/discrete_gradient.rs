@@ -2,7 +2,6 @@
 
 use super::InnerIterations;
 use super::equation::{StepEquation, centre, root_masses};
-use crate::archive::{Archive, Saved};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
@@ -330,20 +329,11 @@ impl Integrator for DiscreteGradient {
     }
 }
 
-impl Saved for DiscreteGradient {
-    fn save(&self, archive: &mut Archive) {
-        self.iterations.save(archive);
-        archive.put(
-            "discrete-gradient/correction",
-            crate::Values::F64(vec![self.correction]),
-        );
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.iterations.restore(archive)?;
-        archive.f64_into(
-            "discrete-gradient/correction",
-            std::slice::from_mut(&mut self.correction),
-        )
+crate::saved! {
+    impl Saved for DiscreteGradient {
+        iterations: part,
+        correction: array("discrete-gradient/correction"),
+        tolerance, zone, root_mass: fixed,
+        work, vectors, known, scaled, next, mean: scratch,
     }
 }

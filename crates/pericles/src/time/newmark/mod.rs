@@ -212,21 +212,11 @@ impl InnerIterations {
         // A checkpoint may hold any number.
         self.total = self.total.saturating_add(iterations);
     }
+}
 
-    pub(in crate::time) fn save(&self, archive: &mut crate::Archive) {
-        use crate::Values;
-        archive.put(
-            "inner/iterations",
-            Values::U64(vec![self.last, self.most, self.total]),
-        );
-        archive.put("inner/change", Values::F64(vec![self.change]));
-    }
-
-    pub(in crate::time) fn restore(&mut self, archive: &crate::Archive) -> Result<()> {
-        let mut counts = [0; 3];
-        archive.u64_into("inner/iterations", &mut counts)?;
-        archive.f64_into("inner/change", std::slice::from_mut(&mut self.change))?;
-        [self.last, self.most, self.total] = counts;
-        Ok(())
+crate::saved! {
+    impl Saved for InnerIterations {
+        last, most, total: array("inner/iterations"),
+        change: array("inner/change"),
     }
 }

@@ -3,7 +3,6 @@
 use super::anderson::Anderson;
 use super::equation::{StepEquation, root_masses};
 use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
-use crate::archive::{Archive, Saved};
 use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
@@ -356,12 +355,10 @@ impl Integrator for Newmark {
     }
 }
 
-impl Saved for Newmark {
-    fn save(&self, archive: &mut Archive) {
-        self.iterations.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.iterations.restore(archive)
+crate::saved! {
+    impl Saved for Newmark {
+        iterations: part,
+        options, zone: fixed,
+        predicted, next, inner: scratch,
     }
 }

@@ -1,6 +1,7 @@
 //! What must be the same to the last bit: schemes that come to the same thing, restart, threads; and the count of evaluations.
 
 use pericles::material::BondStretch;
+use pericles::round_trip::check_resume;
 use pericles::space::PointSet;
 use pericles::time::{
     AdaptiveRungeKutta, Fine, Follow, Integrator, Interpolant, MultiTimeStepOptions, Predictor,
@@ -86,40 +87,17 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
         &following_respa,
         &pair,
     ];
-    let everything = |simulation: &Simulation| {
-        let mut archive = Archive::default();
-        simulation.save(&mut archive);
-        archive
-    };
     for scheme in schemes {
         let start = || {
             let (system, state, fine, end) = cracking_plate();
             let integrator = scheme(&system, &fine);
             Simulation::new(system, integrator, state, end / 64.0, 64)
         };
-        let mut whole = start();
-        whole.run(|_| Control::Continue).unwrap();
-        assert!(whole.system().operator().broken_bonds() > 20);
-        for stop in [1, 2, 41] {
-            let mut first = start();
-            first
-                .run(|s| {
-                    if s.state().step == stop {
-                        Control::Stop
-                    } else {
-                        Control::Continue
-                    }
-                })
-                .unwrap();
-            let mut second = start();
-            second.restore(&everything(&first)).unwrap();
-            second.run(|_| Control::Continue).unwrap();
-            let name = whole.integrator().name();
-            assert!(
-                everything(&whole) == everything(&second),
-                "{name} at {stop}"
-            );
-        }
+        let name = start().integrator().name();
+        let checked = check_resume(start, [1, 2, 41]);
+        let end = checked.unwrap_or_else(|wrong| panic!("{name}: {wrong}"));
+        let directed: u64 = end.u64s("operator/broken").unwrap().iter().sum();
+        assert!(directed > 40);
     }
 }
 

@@ -96,15 +96,7 @@ fn divided_everywhere_it_is_the_body_of_small_cells() {
             ..material
         };
         let constants = small.constants(&plain, state).unwrap();
-        let body = BondBody {
-            cloud: &plain,
-            material: &small,
-            constants: &constants,
-            cracks: &[],
-            no_fail: &[],
-            stiffness: &[],
-            damage: DamageMeasure::default(),
-        };
+        let body = BondBody::new(&plain, &small, &constants);
         let expected = body.operator(BondForm::List).unwrap().operator;
         assert_eq!(force.directed_bonds(), expected.directed_bonds());
         // The points come in another order.

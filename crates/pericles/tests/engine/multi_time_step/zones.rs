@@ -7,7 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, ForceOperator, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{
     Fine, Follow, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
@@ -88,13 +88,9 @@ impl Body {
     fn operator(&self, form: BondForm) -> Box<dyn ForceOperator> {
         let constants = self.material.constants(&self.cloud, self.state).unwrap();
         let body = BondBody {
-            cloud: &self.cloud,
-            material: &self.material,
-            constants: &constants,
             cracks: &self.cracks,
             no_fail: &self.no_fail,
-            stiffness: &[],
-            damage: DamageMeasure::default(),
+            ..BondBody::new(&self.cloud, &self.material, &constants)
         };
         body.operator(form).unwrap().operator
     }

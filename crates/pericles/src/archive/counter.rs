@@ -1,0 +1,49 @@
+//! Counts that go on from a checkpoint.
+
+/// A count that goes on from a checkpoint. What a checkpoint holds may be any number, so it stays at the largest one in place of an overflow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(crate) struct Counter(u64);
+
+impl Counter {
+    /// Counts `more`.
+    pub(crate) fn add(&mut self, more: u64) {
+        self.0 = self.0.saturating_add(more);
+    }
+
+    /// The count.
+    pub(crate) fn get(self) -> u64 {
+        self.0
+    }
+}
+
+impl From<u64> for Counter {
+    fn from(count: u64) -> Self {
+        Self(count)
+    }
+}
+
+impl std::iter::Sum for Counter {
+    fn sum<I: Iterator<Item = Self>>(counters: I) -> Self {
+        counters.fold(Self::default(), |mut sum, counter| {
+            sum.add(counter.0);
+            sum
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counters_stay_at_the_largest_number() {
+        let mut counter = Counter::from(u64::MAX - 1);
+        counter.add(1);
+        counter.add(7);
+        assert_eq!(counter.get(), u64::MAX);
+        let sum: Counter = [3, u64::MAX, 5].map(Counter::from).into_iter().sum();
+        assert_eq!(sum.get(), u64::MAX);
+        let sum: Counter = [3, 4].map(Counter::from).into_iter().sum();
+        assert_eq!(sum.get(), 7);
+    }
+}

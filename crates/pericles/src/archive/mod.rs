@@ -1,0 +1,258 @@
+//! Stored state: what a run must keep to go on as if it had never stopped.
+//!
+//! An [`Archive`] holds named arrays of numbers. A type that carries state from step to step implements [`Saved`], as a rule by listing all its fields in [`saved!`](crate::saved): saving and
+//! restoring are made of the one list, and a type with a field that the list leaves out does not compile. [`round_trip`](crate::round_trip) checks whole runs.
+
+mod counter;
+mod entry;
+mod registered;
+
+pub(crate) use counter::Counter;
+pub use entry::{Entry, Number};
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::error::{PericlesError, Result};
+
+/// An array of an archive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Floating-point numbers.
+    F64(Vec<f64>),
+    /// Counts.
+    U64(Vec<u64>),
+    /// Bytes.
+    U8(Vec<u8>),
+}
+
+/// Named arrays; the file format is not this library's business.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Archive {
+    arrays: BTreeMap<String, Values>,
+}
+
+/// A type that may carry state from step to step: operators (damage), boundaries, integrators, observers.
+///
+/// Types with fields list them in [`saved!`](crate::saved). The default implementation saves nothing.
+pub trait Saved {
+    /// Adds the state to the archive.
+    fn save(&self, archive: &mut Archive) {
+        let _ = archive;
+    }
+
+    /// Takes the state back.
+    ///
+    /// # Errors
+    /// [`PericlesError::BadArchive`] if an array is missing or has another size; the object is then unchanged or to be thrown away.
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let _ = archive;
+        Ok(())
+    }
+}
+
+/// A type with state of which a run may have several: each is saved under a name of its own.
+///
+/// Elements of vectors and arrays are numbered from 0, as in `motion/0`.
+pub trait SavedUnder {
+    /// Adds the state to the archive, in arrays whose names begin with `name`.
+    fn save_under(&self, name: &str, archive: &mut Archive);
+
+    /// Takes the state back.
+    ///
+    /// # Errors
+    /// As [`Saved::restore`].
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()>;
+}
+
+impl Archive {
+    /// Adds an array; an array of the same name is replaced.
+    pub fn put(&mut self, name: impl Into<String>, values: Values) {
+        self.arrays.insert(name.into(), values);
+    }
+
+    /// All arrays by name.
+    pub fn arrays(&self) -> &BTreeMap<String, Values> {
+        &self.arrays
+    }
+
+    /// All arrays, given away.
+    pub fn into_arrays(self) -> BTreeMap<String, Values> {
+        self.arrays
+    }
+
+    /// The numbers stored under `name`, of any length.
+    ///
+    /// # Errors
+    /// [`PericlesError::BadArchive`] if the array is missing or of another type.
+    pub fn numbers<T: Number>(&self, name: &str) -> Result<&[T]> {
+        let stored = self.arrays.get(name).and_then(T::of);
+        stored.ok_or_else(|| missing(name))
+    }
+
+    /// The numbers stored under `name`, which must be `count`.
+    ///
+    /// # Errors
+    /// [`PericlesError::BadArchive`] if the array is missing, of another type or of another length.
+    pub fn exactly<T: Number>(&self, name: &str, count: usize) -> Result<&[T]> {
+        let stored = self.numbers(name)?;
+        check_length(name, stored.len(), count)?;
+        Ok(stored)
+    }
+
+    /// The names of the arrays that differ from those of another archive in any bit, and of those that only one of the two has.
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let names = self.arrays.keys().chain(other.arrays.keys());
+        let names: BTreeSet<&String> = names.collect();
+        let differs = |name: &&String| match (self.arrays.get(*name), other.arrays.get(*name)) {
+            (Some(ours), Some(theirs)) => !ours.has_the_bits_of(theirs),
+            _ => true,
+        };
+        names.into_iter().filter(differs).cloned().collect()
+    }
+
+    /// Fills `target` with the numbers stored under `name`.
+    pub fn f64_into(&self, name: &str, target: &mut [f64]) -> Result<()> {
+        copy(name, self.numbers(name)?, target)
+    }
+
+    /// Fills `target` with the bytes stored under `name`.
+    pub fn u8_into(&self, name: &str, target: &mut [u8]) -> Result<()> {
+        copy(name, self.numbers(name)?, target)
+    }
+
+    /// Fills `target` with the counts stored under `name`.
+    pub fn u64_into(&self, name: &str, target: &mut [u64]) -> Result<()> {
+        copy(name, self.numbers(name)?, target)
+    }
+
+    /// The array of counts stored under `name`, of any length.
+    pub fn u64s(&self, name: &str) -> Result<&[u64]> {
+        self.numbers(name)
+    }
+
+    /// The array of numbers stored under `name`, of any length.
+    pub fn f64s(&self, name: &str) -> Result<&[f64]> {
+        self.numbers(name)
+    }
+}
+
+impl Values {
+    fn has_the_bits_of(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::F64(ours), Self::F64(theirs)) => ours
+                .iter()
+                .map(|x| x.to_bits())
+                .eq(theirs.iter().map(|x| x.to_bits())),
+            _ => self == other,
+        }
+    }
+}
+
+/// A part that a model has or has not; a checkpoint does not change which.
+impl<S: Saved> Saved for Option<S> {
+    fn save(&self, archive: &mut Archive) {
+        self.iter().for_each(|part| part.save(archive));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.iter_mut().try_for_each(|part| part.restore(archive))
+    }
+}
+
+impl<S: Saved> Saved for Vec<S> {
+    fn save(&self, archive: &mut Archive) {
+        self.iter().for_each(|part| part.save(archive));
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        self.iter_mut().try_for_each(|part| part.restore(archive))
+    }
+}
+
+impl<S: Saved + ?Sized> Saved for Box<S> {
+    fn save(&self, archive: &mut Archive) {
+        (**self).save(archive);
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        (**self).restore(archive)
+    }
+}
+
+/// A part that a model has or has not; a checkpoint does not change which.
+impl<S: SavedUnder> SavedUnder for Option<S> {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        self.iter().for_each(|part| part.save_under(name, archive));
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        self.iter_mut()
+            .try_for_each(|part| part.restore_under(name, archive))
+    }
+}
+
+impl<S: SavedUnder> SavedUnder for [S] {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        for (k, part) in self.iter().enumerate() {
+            part.save_under(&format!("{name}/{k}"), archive);
+        }
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        for (k, part) in self.iter_mut().enumerate() {
+            part.restore_under(&format!("{name}/{k}"), archive)?;
+        }
+        Ok(())
+    }
+}
+
+impl<S: SavedUnder> SavedUnder for Vec<S> {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        self[..].save_under(name, archive);
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        self[..].restore_under(name, archive)
+    }
+}
+
+impl<S: SavedUnder, const N: usize> SavedUnder for [S; N] {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        self[..].save_under(name, archive);
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        self[..].restore_under(name, archive)
+    }
+}
+
+impl<S: SavedUnder + ?Sized> SavedUnder for Box<S> {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        (**self).save_under(name, archive);
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        (**self).restore_under(name, archive)
+    }
+}
+
+fn missing(name: &str) -> PericlesError {
+    PericlesError::BadArchive {
+        reason: format!("the array \"{name}\" is missing or of another type"),
+    }
+}
+
+fn check_length(name: &str, found: usize, needed: usize) -> Result<()> {
+    if found == needed {
+        return Ok(());
+    }
+    Err(PericlesError::BadArchive {
+        reason: format!("the array \"{name}\" has {found} entries, the model needs {needed}"),
+    })
+}
+
+fn copy<T: Copy>(name: &str, stored: &[T], target: &mut [T]) -> Result<()> {
+    check_length(name, stored.len(), target.len())?;
+    target.copy_from_slice(stored);
+    Ok(())
+}

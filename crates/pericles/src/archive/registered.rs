@@ -1,0 +1,243 @@
+//! Checkpoints by registration.
+
+/// Implements [`Saved`](crate::Saved) for a type from the list of all its fields.
+///
+/// Saving and restoring are made of the one list, and both take the type apart without `..`: a field that the list leaves out does not compile. After each field, or several fields with commas
+/// between, the list says how it goes through a checkpoint:
+///
+/// | | the field |
+/// |---|---|
+/// | `array("name")` | is an [`Entry`](crate::archive::Entry), stored in the array of this name; several fields become one array. The name is a format string with its arguments, which may use other fields |
+/// | `part` | is [`Saved`](crate::Saved) itself |
+/// | `under("name")` | is [`SavedUnder`](crate::archive::SavedUnder) this name |
+/// | `fixed` | does not change after construction |
+/// | `scratch` | is written before it is read in every step, or does not influence results |
+/// | `rebuilt` | follows from the others: when it is next needed, or by the function after `then` |
+/// | `set(value)` | has this value after a checkpoint is restored |
+///
+/// `then |object| …` after the list is called when all fields are restored; it may refuse.
+///
+/// ```
+/// use pericles::{Archive, Saved, saved};
+///
+/// /// Takes a tenth off the step whenever a step fails.
+/// struct Careful {
+///     most: u32,
+///     step: f64,
+///     failed: u64,
+///     force: Vec<f64>,
+///     started: bool,
+/// }
+///
+/// saved! {
+///     impl Saved for Careful {
+///         step: array("careful/step"),
+///         failed: array("careful/failed"),
+///         most: fixed,
+///         force: scratch,
+///         started: set(true),
+///     }
+/// }
+///
+/// let made = |step| Careful { most: 10, step, failed: 0, force: vec![0.0; 4], started: false };
+/// let mut archive = Archive::default();
+/// made(0.9).save(&mut archive);
+/// let mut restored = made(1.0);
+/// restored.restore(&archive)?;
+/// assert_eq!(restored.step, 0.9);
+/// assert!(restored.started);
+/// # Ok::<(), pericles::PericlesError>(())
+/// ```
+///
+/// A list without one of the fields is an error:
+///
+/// ```compile_fail,E0027
+/// struct Careful {
+///     step: f64,
+///     failed: u64,
+/// }
+///
+/// pericles::saved! {
+///     impl Saved for Careful {
+///         step: array("careful/step"),
+///     }
+/// }
+/// ```
+///
+/// Types of which a run may have several implement [`SavedUnder`](crate::archive::SavedUnder), with a name for the names of their arrays; structures of numbers that are part of one array
+/// implement [`Entry`](crate::archive::Entry). Generic types have parameters as in `impl<L: Law> …`, `impl<const D: usize> …` or `impl<L: Law, const D: usize> …`.
+///
+/// ```
+/// use pericles::{Archive, Saved, saved};
+///
+/// #[derive(Default)]
+/// struct Spring {
+///     force: Vec<f64>,
+///     exchanged: Exchanged,
+/// }
+///
+/// #[derive(Default)]
+/// struct Exchanged {
+///     work: f64,
+///     impulse: [f64; 3],
+/// }
+///
+/// #[derive(Default)]
+/// struct Supports {
+///     springs: Vec<Spring>,
+/// }
+///
+/// saved! {
+///     impl Entry<Number = f64> for Exchanged { work, impulse }
+/// }
+///
+/// saved! {
+///     impl SavedUnder(name) for Spring {
+///         force: array("{name}/force"),
+///         exchanged: array("{name}/exchanged"),
+///     }
+/// }
+///
+/// saved! {
+///     impl Saved for Supports {
+///         springs: under("supports"),
+///     }
+/// }
+///
+/// let supports = Supports { springs: vec![Spring::default(), Spring::default()] };
+/// let mut archive = Archive::default();
+/// supports.save(&mut archive);
+/// let names: Vec<&String> = archive.arrays().keys().collect();
+/// assert_eq!(names, ["supports/0/exchanged", "supports/0/force", "supports/1/exchanged", "supports/1/force"]);
+/// ```
+#[macro_export]
+macro_rules! saved {
+    // Structures that are part of an array.
+    (impl Entry<Number = $number:ty> for $type:ty { $($field:ident),+ $(,)? }) => {
+        impl $crate::archive::Entry for $type {
+            type Number = $number;
+
+            fn count(&self) -> usize {
+                let Self { $($field),+ } = self;
+                0 $(+ $crate::archive::Entry::count($field))+
+            }
+
+            fn append_to(&self, array: &mut ::std::vec::Vec<$number>) {
+                let Self { $($field),+ } = self;
+                $($crate::archive::Entry::append_to($field, array);)+
+            }
+
+            fn take_from<'a>(&mut self, array: &'a [$number]) -> &'a [$number] {
+                let Self { $($field),+ } = self;
+                $(let array = $crate::archive::Entry::take_from($field, array);)+
+                array
+            }
+        }
+    };
+
+    // Parameters of generic types.
+    (impl<$law:ident: $bound:ident, const $size:ident: usize> $($rest:tt)*) => {
+        $crate::saved! { @impl [$law: $bound, const $size: usize] $($rest)* }
+    };
+    (impl<$law:ident: $bound:ident> $($rest:tt)*) => {
+        $crate::saved! { @impl [$law: $bound] $($rest)* }
+    };
+    (impl<const $size:ident: usize> $($rest:tt)*) => {
+        $crate::saved! { @impl [const $size: usize] $($rest)* }
+    };
+    (impl $($rest:tt)*) => {
+        $crate::saved! { @impl [] $($rest)* }
+    };
+
+    // Implementations.
+    (@impl [$($generics:tt)*] Saved for $type:ty {
+        $($($field:ident),+: $how:ident $(($($what:tt)*))?),* $(,)?
+    } $(then $then:expr)?) => {
+        impl<$($generics)*> $crate::Saved for $type {
+            fn save(&self, archive: &mut $crate::Archive) {
+                let Self { $($($field),+),* } = self;
+                $($crate::saved! { @save archive [$($field),+] $how $(($($what)*))? })*
+                let _ = archive;
+            }
+
+            fn restore(&mut self, archive: &$crate::Archive) -> $crate::Result<()> {
+                let Self { $($($field),+),* } = self;
+                $($crate::saved! { @restore archive [$($field),+] $how $(($($what)*))? })*
+                $(
+                    let then: fn(&mut Self) -> $crate::Result<()> = $then;
+                    then(self)?;
+                )?
+                let _ = archive;
+                Ok(())
+            }
+        }
+    };
+    (@impl [$($generics:tt)*] SavedUnder($name:ident) for $type:ty {
+        $($($field:ident),+: $how:ident $(($($what:tt)*))?),* $(,)?
+    } $(then $then:expr)?) => {
+        impl<$($generics)*> $crate::archive::SavedUnder for $type {
+            fn save_under(&self, $name: &str, archive: &mut $crate::Archive) {
+                let Self { $($($field),+),* } = self;
+                $($crate::saved! { @save archive [$($field),+] $how $(($($what)*))? })*
+            }
+
+            fn restore_under(
+                &mut self,
+                $name: &str,
+                archive: &$crate::Archive,
+            ) -> $crate::Result<()> {
+                let Self { $($($field),+),* } = self;
+                $($crate::saved! { @restore archive [$($field),+] $how $(($($what)*))? })*
+                $(
+                    let then: fn(&mut Self) -> $crate::Result<()> = $then;
+                    then(self)?;
+                )?
+                Ok(())
+            }
+        }
+    };
+
+    // Fields.
+    (@save $archive:ident [$($field:ident),+] array($($name:tt)*)) => {{
+        let mut numbers = ::std::vec::Vec::with_capacity(0 $(+ $crate::archive::Entry::count($field))+);
+        $($crate::archive::Entry::append_to($field, &mut numbers);)+
+        let name = ::std::fmt::format(::std::format_args!($($name)*));
+        $archive.put(name, $crate::archive::Number::values(numbers));
+    }};
+    (@restore $archive:ident [$($field:ident),+] array($($name:tt)*)) => {{
+        let name = ::std::fmt::format(::std::format_args!($($name)*));
+        let count = 0 $(+ $crate::archive::Entry::count(&*$field))+;
+        let numbers = $archive.exactly(&name, count)?;
+        $(let numbers = $crate::archive::Entry::take_from(&mut *$field, numbers);)+
+        let _ = numbers;
+    }};
+    (@save $archive:ident [$($field:ident),+] part) => {
+        $($crate::Saved::save($field, $archive);)+
+    };
+    (@restore $archive:ident [$($field:ident),+] part) => {
+        $($crate::Saved::restore(&mut *$field, $archive)?;)+
+    };
+    (@save $archive:ident [$field:ident] under($($name:tt)*)) => {{
+        let name = ::std::fmt::format(::std::format_args!($($name)*));
+        $crate::archive::SavedUnder::save_under($field, &name, $archive);
+    }};
+    (@restore $archive:ident [$field:ident] under($($name:tt)*)) => {{
+        let name = ::std::fmt::format(::std::format_args!($($name)*));
+        $crate::archive::SavedUnder::restore_under(&mut *$field, &name, $archive)?;
+    }};
+    (@restore $archive:ident [$($field:ident),+] set($value:expr)) => {
+        $(*$field = $value;)+
+    };
+    (@save $archive:ident [$($field:ident),+] set($value:expr)) => {
+        $(let _ = $field;)+
+    };
+    (@$way:ident $archive:ident [$($field:ident),+] fixed) => {
+        $(let _ = $field;)+
+    };
+    (@$way:ident $archive:ident [$($field:ident),+] scratch) => {
+        $(let _ = $field;)+
+    };
+    (@$way:ident $archive:ident [$($field:ident),+] rebuilt) => {
+        $(let _ = $field;)+
+    };
+}
