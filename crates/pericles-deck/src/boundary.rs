@@ -9,7 +9,6 @@ use crate::reader::Table;
 
 /// A boundary with memory.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum BoundaryCondition {
     /// An exact absorbing end of a bar.
     Absorbing {

@@ -90,20 +90,21 @@ fn rows(item: &Item<'_>) -> Option<TimeFunction> {
 
 /// A function of time given as an expression.
 #[derive(Debug)]
-pub(crate) struct Course {
+pub struct Course {
     value: Expression,
     /// As far as there are any.
     rates: Option<Rates>,
 }
 
 impl Course {
-    pub(crate) fn new(value: Expression) -> Self {
+    /// The function of an expression of t, or of place and t.
+    pub fn new(value: Expression) -> Self {
         let rates = value.rates();
         Self { value, rates }
     }
 
     /// The function (order 0), its integral from t = 0 (−1) or one of its first two derivatives (1, 2) at a place. NaN for a derivative that does not exist.
-    pub(crate) fn at(&self, order: i32, place: [f64; 3], t: f64) -> f64 {
+    pub fn at(&self, order: i32, place: [f64; 3], t: f64) -> f64 {
         match order {
             -1 => integral(|t| self.value.value(place, t), t),
             0 => self.value.value(place, t),
@@ -115,7 +116,7 @@ impl Course {
     }
 
     /// The fault of a prescribed motion that has jumps or kinks.
-    pub(crate) fn rough(&self) -> Fault {
+    pub fn rough(&self) -> Fault {
         Fault::BadExpression {
             text: self.value.text().into(),
             reason: "it has no derivative in time where abs, ceil, floor, round, sign or step of t has a jump or kink, and a prescribed motion needs one; allowed: a smooth expression, or \
@@ -125,7 +126,7 @@ impl Course {
     }
 
     /// Whether it has derivatives.
-    pub(crate) fn has_rates(&self) -> bool {
+    pub fn has_rates(&self) -> bool {
         self.rates.is_some()
     }
 }

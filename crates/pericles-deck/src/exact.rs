@@ -20,7 +20,6 @@ pub struct Exact {
 
 /// Solutions of bars and lines; modulus, density and micromodulus are those of the material.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub enum KnownSolution {
     /// A Gaussian start on the line with a Gaussian micromodulus of this length.
     NonlocalPulse {

@@ -37,10 +37,22 @@ pub struct Material {
     pub interface: MaterialInterface,
     /// What is done about the bonds that points near surfaces lack.
     pub surface_correction: SurfaceCorrection,
-    /// How damage is measured.
-    pub damage: DamageMeasure,
+    /// How damage is measured, if it is given.
+    pub damage: Option<DamageMeasure>,
     /// How bonds are kept: a matter of speed only.
     pub form: ForceForm,
+}
+
+impl Material {
+    /// The word of `material.model` for its law, whatever its treatment.
+    pub fn model_name(&self) -> &'static str {
+        match self.bonds.law {
+            PairLaw::BondStretch => "bond-stretch",
+            PairLaw::Linear => "linear",
+            PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
+            PairLaw::Literal57 | PairLaw::Treated(CubicLaw::Literal57, _) => "literal57",
+        }
+    }
 }
 
 /// A part of other stiffness.
@@ -315,7 +327,8 @@ fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
     length.map(Extent::Finite)
 }
 
-fn damage(table: &Table<'_>) -> Option<DamageMeasure> {
+fn damage(table: &Table<'_>) -> Option<Option<DamageMeasure>> {
+    let given = table.has("damage");
     let table = table.table_or_empty("damage")?;
     let count = table.choice_or_first(
         "measure",
@@ -324,8 +337,9 @@ fn damage(table: &Table<'_>) -> Option<DamageMeasure> {
     );
     let count_precut = table.or("count_precut", false, |item| item.boolean());
     table.finish();
-    Some(DamageMeasure {
+    let measure = DamageMeasure {
         count: count?,
         count_precut: count_precut?,
-    })
+    };
+    Some(given.then_some(measure))
 }

@@ -18,8 +18,8 @@ pub struct Output {
     pub history: Schedule,
     /// Fields, or components of them, whose least and greatest value are columns of the history.
     pub extremes: Vec<(Field, Option<usize>)>,
-    /// The table of crack tips.
-    pub cracks: CrackOutput,
+    /// The table of crack tips, if it is given; see [`Output::cracks`].
+    pub cracks: Option<CrackOutput>,
     /// The table of fragments.
     pub fragments: FragmentOutput,
     /// Precision of numbers in field files.
@@ -261,16 +261,21 @@ fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
     }
 }
 
-/// By default as often as the history.
-fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<CrackOutput> {
+impl CrackOutput {
     /// Damage of a point on a straight crack is close to a half; this finds cracks without their surroundings.
     const THRESHOLD: f64 = 0.35;
+}
+
+/// By default as often as the history.
+fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
+    const THRESHOLD: f64 = CrackOutput::THRESHOLD;
     if is_never(table, "cracks") {
-        return Some(CrackOutput {
+        return Some(Some(CrackOutput {
             schedule: Schedule::Never,
             threshold: THRESHOLD,
-        });
+        }));
     }
+    let given = table.has("cracks");
     let table = table.table_or_empty("cracks")?;
     let schedule = schedule(&table, history.unwrap_or(Schedule::Count(200)));
     let threshold = table.or("threshold", THRESHOLD, |item| {
@@ -281,10 +286,11 @@ fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<CrackOutput> {
         )
     });
     table.finish();
-    Some(CrackOutput {
+    let cracks = CrackOutput {
         schedule: schedule?,
         threshold: threshold?,
-    })
+    };
+    Some(given.then_some(cracks))
 }
 
 /// Only where asked for: they take a pass over all bonds.
@@ -370,8 +376,16 @@ fn quantity(field: Field) -> Quantity {
 }
 
 impl Output {
+    /// The table of crack tips: as it is given, else as often as the history.
+    pub fn cracks(&self) -> CrackOutput {
+        self.cracks.unwrap_or(CrackOutput {
+            schedule: self.history,
+            threshold: CrackOutput::THRESHOLD,
+        })
+    }
+
     /// Whether stress or strain is wanted, which only listed bonds give.
-    pub(crate) fn wants_tensors(&self) -> bool {
+    pub fn wants_tensors(&self) -> bool {
         let drawn = self.pictures.iter().map(|picture| picture.field);
         let extremes = self.extremes.iter().map(|(field, _)| *field);
         self.names

@@ -14,7 +14,6 @@ use crate::vocabulary::FINE_REGIONS;
 
 /// Schemes of time integration.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum Scheme {
     /// Velocity Verlet.
     VelocityVerlet,

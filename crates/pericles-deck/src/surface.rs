@@ -1,7 +1,6 @@
 //! Material and distances of bodies that are surfaces.
 
 use pericles::material::{BondMaterial, Calibration, ElasticModulus, Fracture, Modulus};
-use pericles::operator::DamageMeasure;
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 use pericles_waves::ForceForm;
@@ -156,7 +155,7 @@ pub(crate) fn no_bonds() -> Material {
         parts: Vec::new(),
         interface: Default::default(),
         surface_correction: Default::default(),
-        damage: DamageMeasure::default(),
+        damage: None,
         form: ForceForm::List,
     }
 }

@@ -22,7 +22,10 @@ fn parse(text: &str) -> Deck {
 #[test]
 fn every_entry_arrives() {
     let deck = parse(COMPLETE);
-    assert_eq!(deck.title.as_deref(), Some("Everything a plate can have"));
+    assert_eq!(
+        deck.model.title.as_deref(),
+        Some("Everything a plate can have")
+    );
     let triangle = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let corner = Region::Intersection(vec![
         Region::Box {
@@ -58,7 +61,7 @@ fn every_entry_arrives() {
         quadrature: Quadrature::Midpoint,
         rectangular: None,
     };
-    assert_eq!(deck.body, body);
+    assert_eq!(deck.model.body, body);
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {
@@ -81,10 +84,11 @@ fn every_entry_arrives() {
             calibration: FractureCalibration::Lattice,
         },
     };
-    assert_eq!(deck.material.name.as_deref(), Some("soda-lime glass"));
-    assert_eq!(deck.material.bonds, bonds);
-    assert_eq!(deck.material.no_fail, ["top", "bottom"]);
-    assert!(deck.material.damage.count && deck.material.damage.count_precut);
+    assert_eq!(deck.model.material.name.as_deref(), Some("soda-lime glass"));
+    assert_eq!(deck.model.material.bonds, bonds);
+    assert_eq!(deck.model.material.no_fail, ["top", "bottom"]);
+    let damage = deck.model.material.damage.unwrap();
+    assert!(damage.count && damage.count_precut);
 
     let layer = |upper| Region::Layer {
         face: Face { axis: 1, upper },
@@ -95,6 +99,7 @@ fn every_entry_arrives() {
         max: [-0.049, OPEN, OPEN],
     };
     let sets: Vec<(&str, &Region)> = deck
+        .model
         .sets
         .iter()
         .map(|set| (set.name.as_str(), set.members.region().unwrap()))
@@ -109,17 +114,20 @@ fn every_entry_arrives() {
     );
 
     let segment = |from, to| Crack::Segment { from, to };
-    assert_eq!(deck.cracks[0].surface, segment([-0.05, 0.02], [0.0, 0.02]));
-    assert_eq!(deck.cracks[0].ends, EndRule::Closed);
-    assert_eq!(deck.cracks[1].surface, segment([0.01; 2], [0.02; 2]));
-    assert_eq!(deck.cracks[1].ends, EndRule::Open);
+    assert_eq!(
+        deck.model.cracks[0].surface,
+        segment([-0.05, 0.02], [0.0, 0.02])
+    );
+    assert_eq!(deck.model.cracks[0].ends, EndRule::Closed);
+    assert_eq!(deck.model.cracks[1].surface, segment([0.01; 2], [0.02; 2]));
+    assert_eq!(deck.model.cracks[1].ends, EndRule::Open);
 }
 
 #[test]
 fn conditions_time_and_output_arrive() {
     let deck = parse(COMPLETE);
     assert_eq!(
-        deck.initial,
+        deck.model.initial,
         [
             Initial {
                 set: "all".into(),
@@ -138,7 +146,7 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.prescribe,
+        deck.model.prescribe,
         [
             Prescribe {
                 set: "left edge".into(),
@@ -160,7 +168,7 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.loads,
+        deck.model.loads,
         [
             Load {
                 set: "top".into(),
@@ -183,7 +191,7 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.probes,
+        deck.model.probes,
         [
             Probe {
                 name: "middle".into(),
@@ -196,7 +204,7 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.time,
+        deck.model.time,
         Time {
             end: 46e-6,
             step: TimeStep::Fixed(25e-9),
@@ -224,17 +232,17 @@ fn conditions_time_and_output_arrive() {
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(
-        deck.output,
+        deck.model.output,
         Output {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
             extremes: Vec::new(),
             energy_bound: None,
-            cracks: CrackOutput {
+            cracks: Some(CrackOutput {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,
-            },
+            }),
             fragments: FragmentOutput {
                 schedule: Schedule::Every(40),
                 smallest: 0.01,
@@ -243,7 +251,7 @@ fn conditions_time_and_output_arrive() {
             pictures: vec![damage, uplift],
         }
     );
-    assert_eq!(deck.checkpoint, Checkpoint::Every(500));
+    assert_eq!(deck.model.checkpoint, Checkpoint::Every(500));
 }
 
 /// The least a deck must say.
@@ -263,17 +271,20 @@ end = "1 ms"
 #[test]
 fn defaults_are_filled_in_and_recorded() {
     let deck = parse(LEAST);
-    assert_eq!(deck.body.state, StressState::Uniaxial);
-    assert_eq!(deck.body.grid.section, 1.0);
-    assert_eq!(deck.material.bonds.fracture, Fracture::Unbreakable);
+    assert_eq!(deck.model.body.state, StressState::Uniaxial);
+    assert_eq!(deck.model.body.grid.section, 1.0);
+    assert_eq!(deck.model.material.bonds.fracture, Fracture::Unbreakable);
     assert_eq!(
-        deck.material.bonds.volume_correction,
+        deck.model.material.bonds.volume_correction,
         VolumeCorrection::Extended
     );
-    assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
-    assert_eq!(deck.output.fields, Schedule::Count(20));
-    assert_eq!(deck.output.cracks.schedule, deck.output.history);
-    assert_eq!(deck.checkpoint, Checkpoint::Wall(600.0));
+    assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
+    assert_eq!(deck.model.output.fields, Schedule::Count(20));
+    assert_eq!(
+        deck.model.output.cracks().schedule,
+        deck.model.output.history
+    );
+    assert_eq!(deck.model.checkpoint, Checkpoint::Wall(600.0));
     assert_eq!(deck.source(), LEAST);
     let expected = json!({
         "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "periodic": false, "quadrature": "midpoint" },
@@ -299,10 +310,10 @@ fn the_record_is_a_deck_that_says_the_same() {
         let first = parse(text);
         let again = parse(&toml::to_string(first.to_json()).unwrap());
         assert_eq!(again.to_json(), first.to_json());
-        assert_eq!(again.body, first.body);
-        assert_eq!(again.material, first.material);
-        assert_eq!(again.prescribe, first.prescribe);
-        assert_eq!(again.output, first.output);
+        assert_eq!(again.model.body, first.model.body);
+        assert_eq!(again.model.material, first.model.material);
+        assert_eq!(again.model.prescribe, first.model.prescribe);
+        assert_eq!(again.model.output, first.model.output);
     }
 }
 
@@ -310,7 +321,9 @@ fn the_record_is_a_deck_that_says_the_same() {
 fn shapes() {
     let body = |text: &str| {
         let rest = "\n[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n";
-        parse(&format!("[body]\nspacing = 0.1\n{text}{rest}")).body
+        parse(&format!("[body]\nspacing = 0.1\n{text}{rest}"))
+            .model
+            .body
     };
     let bar = body("shape='bar'\nsize=[2]\narea='1 cm2'\norigin=3");
     assert_eq!(bar.grid.section, 1e-4);
@@ -374,7 +387,7 @@ fn cracks_of_each_dimension() {
     let cracks = |body: &str, crack: &str| {
         let rest = "[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n[[crack]]\n";
         let deck = parse(&format!("[body]\nspacing=0.1\n{body}\n{rest}{crack}"));
-        deck.cracks[0].surface.clone()
+        deck.model.cracks[0].surface.clone()
     };
     assert_eq!(
         cracks("shape='bar'\nlength=1", "section='50 cm'"),
@@ -419,28 +432,28 @@ fn overrides_change_what_is_read() {
         "checkpoint={ wall = '1 min' }",
     ])
     .unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
-    assert_eq!(deck.body.grid.spacing, 0.5e-3);
-    assert_eq!(deck.cracks[1].ends, EndRule::Closed);
-    let LoadAmplitude::Traction { traction, .. } = &deck.loads[1].amplitude else {
+    assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
+    assert_eq!(deck.model.body.grid.spacing, 0.5e-3);
+    assert_eq!(deck.model.cracks[1].ends, EndRule::Closed);
+    let LoadAmplitude::Traction { traction, .. } = &deck.model.loads[1].amplitude else {
         panic!("a traction is overridden by a traction")
     };
     assert_eq!(*traction, [0.0, -24e6, 0.0].map(Into::into));
     assert_eq!(
-        deck.prescribe[1].function,
+        deck.model.prescribe[1].function,
         TimeFunction::Pulse {
             start: 2e-6,
             duration: 2e-6
         }
     );
     assert_eq!(
-        deck.material.bonds.modulus.value,
+        deck.model.material.bonds.modulus.value,
         ElasticModulus::Bulk(48e9)
     );
-    assert_eq!(deck.material.bonds.horizon, 2e-3);
-    assert_eq!(deck.output.history, Schedule::Interval(1e-6));
-    assert_eq!(deck.title.as_deref(), Some("Another one"));
-    assert_eq!(deck.checkpoint, Checkpoint::Wall(60.0));
+    assert_eq!(deck.model.material.bonds.horizon, 2e-3);
+    assert_eq!(deck.model.output.history, Schedule::Interval(1e-6));
+    assert_eq!(deck.model.title.as_deref(), Some("Another one"));
+    assert_eq!(deck.model.checkpoint, Checkpoint::Wall(60.0));
     assert_eq!(deck.source(), COMPLETE);
     assert_eq!(deck.overrides().count(), 10);
     assert_eq!(deck.overrides().next(), Some("time.dt = auto"));
@@ -450,7 +463,7 @@ fn overrides_change_what_is_read() {
 fn overrides_make_tables_and_point_at_themselves() {
     let deck = with(&["sets.right.layer.side=+x", "sets.right.layer.cells=2"]).unwrap();
     assert_eq!(
-        deck.sets[3].members.region(),
+        deck.model.sets[3].members.region(),
         Some(&Region::Layer {
             face: Face::named("+x").unwrap(),
             depth: 0.5e-3
@@ -480,7 +493,7 @@ fn overrides_make_tables_and_point_at_themselves() {
 #[test]
 fn files_are_read_and_missing_ones_named() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/complete.toml");
-    assert_eq!(Deck::read(path, &[]).unwrap().loads.len(), 2);
+    assert_eq!(Deck::read(path, &[]).unwrap().model.loads.len(), 2);
     let error = Deck::read("no/such/deck.toml", &[]).unwrap_err();
     assert!(matches!(error, DeckError::Unreadable { .. }));
     assert!(error.to_string().contains("no/such/deck.toml"));
@@ -501,6 +514,6 @@ fn documented() -> String {
 #[test]
 fn the_documented_deck_is_right() {
     let deck = parse(&documented());
-    assert_eq!(deck.cracks.len(), 1);
-    assert_eq!(deck.loads.len(), 2);
+    assert_eq!(deck.model.cracks.len(), 1);
+    assert_eq!(deck.model.loads.len(), 2);
 }

@@ -1,10 +1,11 @@
 //! What is known of a run before its first step: what reports, `check` and `run.json` say of a model.
 
 use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
-use pericles_deck::{Deck, LoadReport, Model};
+use pericles_deck::{Deck, Model, ModelWarning};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
+use crate::build::{Assembly, LoadReport};
 use crate::refinement::RefinementFacts;
 use crate::units::{bytes, count, quantity, significant};
 
@@ -184,27 +185,27 @@ impl EndFacts {
 }
 
 impl Facts {
-    /// The facts about a model of a deck.
-    pub fn of(deck: &Deck, model: &Model) -> Self {
-        let operator = model.system.operator();
-        let (points, dimension) = (model.cloud.len(), model.cloud.dimension());
+    /// The facts about an assembled model. Warnings name the keys they concern.
+    pub fn of(model: &Model, assembly: &Assembly) -> Self {
+        let operator = assembly.system.operator();
+        let (points, dimension) = (assembly.cloud.len(), assembly.cloud.dimension());
         let directed_bonds = operator.directed_bonds();
-        let constants = &model.constants;
+        let constants = &assembly.constants;
         let finite = |x: f64| x.is_finite().then_some(x);
         Self {
             dimension,
             points,
-            spacing: model.cloud.spacing(),
-            horizon: deck
+            spacing: assembly.cloud.spacing(),
+            horizon: model
                 .surface
                 .as_ref()
-                .map_or(deck.material.bonds.horizon, |surface| {
+                .map_or(model.material.bonds.horizon, |surface| {
                     surface.material.horizon
                 }),
             bonds: directed_bonds / 2,
             directed_bonds,
-            precut_bonds: model.precut_bonds,
-            operator: model.form.name(),
+            precut_bonds: assembly.precut_bonds,
+            operator: assembly.form.name(),
             youngs_modulus: constants.young,
             micromodulus: constants.micromodulus,
             critical_stretch: finite(constants.critical_stretch),
@@ -220,42 +221,54 @@ impl Facts {
                 .collect(),
             stiffness_error: constants.stiffness_error,
             shear_error: constants.shear_error,
-            dt: model.dt,
-            steps: model.steps,
-            highest_frequency: model.body_frequency.map(|f| f.estimate),
-            highest_frequency_bound: model.body_frequency.map(|f| f.bound),
-            highest_frequency_failure_probability: model
+            dt: assembly.dt,
+            steps: assembly.steps,
+            highest_frequency: assembly.body_frequency.map(|f| f.estimate),
+            highest_frequency_bound: assembly.body_frequency.map(|f| f.bound),
+            highest_frequency_failure_probability: assembly
                 .body_frequency
                 .map(|f| f.failure_probability),
-            frequency_converged: model.body_frequency.map(|f| f.converged),
-            limiting_frequency: model.frequency.map(|f| f.estimate),
-            limiting_frequency_bound: model.frequency.map(|f| f.bound),
-            stable_step: model.stable_step(),
-            memory_estimate: deck.memory_estimate(model),
-            scheme: model.integrator.name(),
-            refinement: RefinementFacts::of(deck, model),
-            loads: model
+            frequency_converged: assembly.body_frequency.map(|f| f.converged),
+            limiting_frequency: assembly.frequency.map(|f| f.estimate),
+            limiting_frequency_bound: assembly.frequency.map(|f| f.bound),
+            stable_step: assembly.stable_step(),
+            memory_estimate: assembly.memory_estimate(model),
+            scheme: assembly.integrator.name(),
+            refinement: RefinementFacts::of(model, assembly),
+            loads: assembly
                 .loads
                 .iter()
                 .map(|load| LoadFacts::of(load, dimension))
                 .collect(),
-            ends: model.ends.iter().map(EndFacts::of).collect(),
+            ends: assembly.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
-            warnings: model
+            warnings: assembly
                 .warnings
                 .iter()
-                .chain(&deck.judge_waves(model))
+                .chain(&assembly.judge_waves(model))
                 .map(|w| w.line())
                 .collect(),
-            changed_defaults: changed_defaults(deck, model),
+            changed_defaults: Vec::new(),
+        }
+    }
+
+    /// The facts about the assembly of a deck: warnings say where in the text they belong, and defaults that the deck relies on are known.
+    pub fn of_deck(deck: &Deck, assembly: &Assembly) -> Self {
+        let waves = assembly.judge_waves(&deck.model);
+        let warnings = assembly.warnings.iter().chain(&waves);
+        let located = |warning: &ModelWarning| deck.located(warning.clone()).line();
+        Self {
+            warnings: warnings.map(located).collect(),
+            changed_defaults: changed_defaults(deck, assembly),
+            ..Self::of(&deck.model, assembly)
         }
     }
 }
 
 /// What this deck leaves to defaults that differ from those of the last release.
-fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
+fn changed_defaults(deck: &Deck, assembly: &Assembly) -> Vec<String> {
     let mut changed = Vec::new();
-    let (material, constants) = (&deck.material.bonds, &model.constants);
+    let (material, constants) = (&deck.model.material.bonds, &assembly.constants);
     let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
     if lattice && !deck.gives("material.fracture_calibration") {
         let continuum = BondMaterial {
@@ -265,7 +278,7 @@ fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
             },
             ..material.clone()
         };
-        let before = continuum.constants(&model.cloud, deck.body.state);
+        let before = continuum.constants(&assembly.cloud, deck.model.body.state);
         let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
         changed.push(format!(
             "fracture_calibration = \"lattice\" gives the critical stretch {}; \"continuum\", the former default, gives {}",
@@ -273,7 +286,7 @@ fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
             significant(before, 4)
         ));
     }
-    if deck.material.surface_correction == SurfaceCorrection::Energy {
+    if deck.model.material.surface_correction == SurfaceCorrection::Energy {
         changed.push(
             "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one for all directions"
                 .into(),

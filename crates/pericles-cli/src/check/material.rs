@@ -2,7 +2,7 @@
 
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, Calibration, ElasticWaves};
-use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
+use pericles_deck::{Model, SurfaceDeck, VertexAreas};
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::line::Line;
 
-pub(super) fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
+pub(super) fn material(model: &Model, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
     let mut lines = vec![
         Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
         Line::new(
@@ -20,20 +20,20 @@ pub(super) fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> V
             format!(
                 "{:.6e} (SI, of the force density c α {})",
                 facts.micromodulus,
-                match deck.material.bonds.influence.acts_on {
+                match model.material.bonds.influence.acts_on {
                     ActsOn::Stretch => "s",
                     ActsOn::Displacement => "η",
                 }
             ),
         ),
-        Line::new("stiffness error", stiffness_error(deck, facts)),
+        Line::new("stiffness error", stiffness_error(model, facts)),
     ];
     let strength = facts.critical_stretch.zip(facts.fracture_energy);
     lines.push(Line::new("breaking", breaking(strength)));
     if !facts.crack_planes.is_empty() {
         lines.push(Line::new("crack planes", crack_planes(facts)));
     }
-    for (part, constants) in deck.material.parts.iter().zip(parts) {
+    for (part, constants) in model.material.parts.iter().zip(parts) {
         let strength = Some((constants.critical_stretch, constants.fracture_energy))
             .filter(|(stretch, _)| stretch.is_finite());
         let text = format!(
@@ -54,8 +54,8 @@ pub(super) fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> V
             }),
         ));
     }
-    let density = deck.material.bonds.density;
-    let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
+    let density = model.material.bonds.density;
+    let speeds = ElasticWaves::of(facts.youngs_modulus, density, model.body.state);
     let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
@@ -84,7 +84,7 @@ fn speed(speed: f64) -> String {
 }
 
 /// How far the grid's interior is from the stiffness asked for, and what can be done about it.
-fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
+fn stiffness_error(model: &Model, facts: &Facts) -> String {
     /// Worth a word.
     const NOTICED: f64 = 0.01;
     let mut line = format!("{} in bulk", deviation(facts.stiffness_error));
@@ -92,7 +92,7 @@ fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
         line += &format!(", {} in shear along the axes", deviation(facts.shear_error));
     }
     line += ", of the grid's interior";
-    let calibration = deck.material.bonds.modulus.calibration;
+    let calibration = model.material.bonds.modulus.calibration;
     if facts.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
         line += "; modulus = \"lattice\" makes it 0 in bulk";
     }

@@ -2,7 +2,7 @@
 
 mod wavevectors;
 
-use pericles_deck::{Deck, KernelQuality, Model, PlaneWaves};
+use pericles_deck::Model;
 use pericles_dispersion::spectrum::{SpectrumRun, measure};
 use pericles_dispersion::tuning::{TunedTable, bond_classes, continuum_speeds};
 use pericles_dispersion::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
@@ -11,7 +11,7 @@ use pericles_run::dispersion::{
     Curves, STEPS, write_bonds, write_classes, write_polar, write_spectrum,
 };
 use pericles_run::units::{percent, quantity, significant};
-use pericles_run::{RunError, readers};
+use pericles_run::{Assembly, KernelQuality, PlaneWaves, RunError, build, readers};
 use serde_json::{Value as Json, json};
 
 use crate::args::DispersionArgs;
@@ -29,20 +29,22 @@ use wavevectors::AtWaveVector;
 pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let model = deck.build_with(readers())?;
-    let lattice = deck.bond_lattice(&model)?;
-    let study = Analysis::of(&deck, &model, lattice, args)?;
+    let assembly = build(&deck, &readers())?;
+    let model = &deck.model;
+    let lattice = assembly.bond_lattice(model);
+    let lattice = lattice.map_err(|error| deck.refusal(error))?;
+    let study = Analysis::of(model, &assembly, lattice, args)?;
     if args.measure && !study.stability.is_stable() {
         return Err(CliError::UnstableSpectrum);
     }
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-dispersion")?;
-    let left_out = left_out(&deck);
+    let left_out = left_out(model);
     for part in &left_out {
         console::note(format_args!(
             "warning: plane waves are those of [material] in the interior of the body: {part}"
         ));
     }
-    let title = deck.title.clone().unwrap_or_default();
+    let title = model.title.clone().unwrap_or_default();
     let curves = study.curves();
     curves.write(&folder.file("curves.csv"))?;
     curves.draw(&folder.file("curves.png"), &title)?;
@@ -55,7 +57,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
             &["p", "s1", "s2"][..study.lattice.dimension()],
         )?;
     }
-    study.write_classes(&deck, &folder)?;
+    study.write_classes(model, &folder)?;
     if !study.wavevectors.is_empty() {
         wavevectors::write(&folder.file("wavevectors.csv"), &study.wavevectors)?;
     }
@@ -63,10 +65,15 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
         false => Json::Null,
         true => study.measure(&folder, &title)?,
     };
-    let mut summary = study.summary(&deck, &measured);
+    let mut summary = study.summary(model, &measured);
     summary["left_out"] = json!(left_out);
-    summary["tuning"] = deck.material.tuned.as_ref().map_or(Json::Null, tuning);
-    summary["plane_waves"] = deck.plane_waves(&model).map_or(Json::Null, plane_waves);
+    summary["tuning"] = deck
+        .model
+        .material
+        .tuned
+        .as_ref()
+        .map_or(Json::Null, tuning);
+    summary["plane_waves"] = assembly.plane_waves(model).map_or(Json::Null, plane_waves);
     let text = serde_json::to_string_pretty(&summary)?;
     write_atomically(&folder.file("dispersion.json"), |file| {
         use std::io::Write;
@@ -74,7 +81,11 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     })?;
     if !args.execution.quiet {
         study.print(&measured)?;
-        deck.material.tuned.as_ref().map_or(Ok(()), print_tuning)?;
+        deck.model
+            .material
+            .tuned
+            .as_ref()
+            .map_or(Ok(()), print_tuning)?;
         console::print(format_args!("results in {}", folder.path().display()))?;
     }
     Ok(Exit::Done)
@@ -98,8 +109,8 @@ struct Analysis {
 
 impl Analysis {
     fn of(
-        deck: &Deck,
         model: &Model,
+        assembly: &Assembly,
         lattice: BondLattice,
         args: &DispersionArgs,
     ) -> Result<Self, CliError> {
@@ -110,11 +121,11 @@ impl Analysis {
         };
         let wavevectors = args.wavevector.iter().map(|k| {
             let k = k.of(dimension, "--wavevector")?;
-            Ok(AtWaveVector::of(&lattice, k, model.dt))
+            Ok(AtWaveVector::of(&lattice, k, assembly.dt))
         });
         let wavevectors = wavevectors.collect::<Result<_, CliError>>()?;
-        let bar = (model.constants.young / deck.material.bonds.density).sqrt();
-        let speeds = continuum_speeds(deck.body.state);
+        let bar = (assembly.constants.young / model.material.bonds.density).sqrt();
+        let speeds = continuum_speeds(model.body.state);
         let speeds: Vec<f64> = (0..lattice.dimension())
             .map(|branch| {
                 let speed = if branch == 0 {
@@ -134,7 +145,7 @@ impl Analysis {
             targets: targets.collect(),
             speeds,
             bar,
-            dt: model.dt,
+            dt: assembly.dt,
             wavevectors,
             lattice,
         })
@@ -150,13 +161,13 @@ impl Analysis {
     }
 
     /// α of each class as the deck has it, with its bonds' share κ.
-    fn write_classes(&self, deck: &Deck, folder: &OutputFolder) -> Result<(), IoError> {
+    fn write_classes(&self, model: &Model, folder: &OutputFolder) -> Result<(), IoError> {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
         }
         let classes = bond_classes(&self.lattice);
-        let material = &deck.material.bonds;
-        let spacing = deck.body.grid.spacing;
+        let material = &model.material.bonds;
+        let spacing = model.body.grid.spacing;
         let alpha = classes
             .iter()
             .map(|class| {
@@ -228,15 +239,15 @@ impl Analysis {
             .collect()
     }
 
-    fn summary(&self, deck: &Deck, measured: &Json) -> Json {
+    fn summary(&self, model: &Model, measured: &Json) -> Json {
         let found = &self.stability;
-        let state = deck.body.state;
+        let state = model.body.state;
         json!({
-            "title": deck.title,
+            "title": model.title,
             "state": state.name(),
             "poisson_ratio": state.poisson_ratio(),
             "spacing": self.lattice.spacing(),
-            "horizon": deck.material.bonds.horizon,
+            "horizon": model.material.bonds.horizon,
             "bar_wave_speed": self.bar,
             "continuum_speeds": self.speeds,
             "long_wave_speed_ratios": self.anisotropy(),
@@ -325,8 +336,8 @@ impl Analysis {
 }
 
 /// What a deck has that the plane waves of its first material know nothing of.
-fn left_out(deck: &Deck) -> Vec<String> {
-    let material = &deck.material;
+fn left_out(model: &Model) -> Vec<String> {
+    let material = &model.material;
     let counted = |count: usize, what: &str| match count {
         0 => None,
         1 => Some(format!("one {what} is left out")),
@@ -336,7 +347,7 @@ fn left_out(deck: &Deck) -> Vec<String> {
     [
         counted(material.parts.len(), "other material"),
         counted(material.inclusions.len(), "inclusion"),
-        counted(deck.body.finer.len(), "region with a finer grid"),
+        counted(model.body.finer.len(), "region with a finer grid"),
         correction.then(|| "the surface correction is left out".to_owned()),
     ]
     .into_iter()

@@ -91,7 +91,7 @@ pub(super) enum SurfaceKind {
 
 impl SurfaceFormula {
     /// How many vertices it will have, about; so many that no surface is made is no error here.
-    pub(crate) fn vertices(&self) -> f64 {
+    pub fn vertices(&self) -> f64 {
         match *self {
             Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } => {
                 10.0 * 4f64.powi(level.min(i32::MAX as u32) as i32) + 2.0

@@ -113,7 +113,7 @@ fn read(overrides: &[&str]) -> Result<Deck, RunError> {
 }
 
 fn watched(deck: &Deck, context: &Context<'_>) -> Result<Recorded, RunError> {
-    let columns = (LENGTH / deck.body.grid.spacing).round() as usize;
+    let columns = (LENGTH / deck.model.body.grid.spacing).round() as usize;
     record(deck, |cloud| Symmetry::up_down(cloud, columns), context)
 }
 
@@ -169,8 +169,8 @@ impl Course {
 
 fn base_rows(deck: &Deck, recorded: &Recorded, course: &Course) -> Vec<Row> {
     let facts = &recorded.facts;
-    let density = deck.material.bonds.density;
-    let rayleigh = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state)
+    let density = deck.model.material.bonds.density;
+    let rayleigh = ElasticWaves::of(facts.youngs_modulus, density, deck.model.body.state)
         .transverse
         .map_or(f64::NAN, |transverse| transverse.rayleigh);
     let peak = course.peak_speed();
