@@ -4,7 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
-use crate::body::{self, SurfaceRead};
+use crate::body::{self, BodyRead, SurfaceRead};
 use crate::boundary;
 use crate::conditions::{self, Prescribe};
 use crate::crack;
@@ -13,8 +13,8 @@ use crate::error::DeckError;
 use crate::exact;
 use crate::fault::Fault;
 use crate::finding::Finding;
-use crate::material;
-use crate::model::Model;
+use crate::material::{self, Material};
+use crate::model::{Body, Model, Solid};
 use crate::output;
 use crate::overrides;
 use crate::reader::{Ledger, Record, Survey, Table};
@@ -23,7 +23,7 @@ use crate::remark::{BuildError, Remark};
 use crate::set::{self, SetNames};
 use crate::source::Sources;
 use crate::subject::Subject;
-use crate::surface::{self, SurfaceDeck};
+use crate::surface::{self, SurfaceBody};
 use crate::time;
 
 /// A deck: the model it describes, and where in the text each value stands.
@@ -105,7 +105,8 @@ impl Deck {
 
     /// Refuses tuned coefficients with which waves grow, unless `time.allow_unstable` accepts them.
     pub(crate) fn refuse_unstable_table(&self) -> Result<(), DeckError> {
-        match &self.model.material.tuned {
+        let solid = self.model.body.solid();
+        match solid.and_then(|solid| solid.material.tuned.as_ref()) {
             Some(table)
                 if !table.assessment.stability.is_stable() && !self.model.time.allow_unstable =>
             {
@@ -126,18 +127,19 @@ fn model(root: Table<'_>) -> Option<Model> {
     let frame = body.frame;
     let (sets, names) = set::read(root.table_or_empty("sets"), frame);
     let material = root.required("material").and_then(|item| item.table());
-    let (material, surface) = match &body.surface {
-        Some(read) => (
-            Some(surface::no_bonds()),
-            surface_of(&root, read, material, frame, &names).map(Some),
-        ),
+    let (made, gaussian) = match &body.surface {
+        Some(read) => {
+            let surface = surface_of(&root, read, material, frame, &names);
+            (surface.map(Body::Surface), Some(None))
+        }
         None => {
             root.forbid(
                 "geodesics",
                 "only surfaces (shape = \"icosphere\", \"torus\" …) have distances along them",
             );
-            let read = material.and_then(|table| material::read(table, &body, &names));
-            (read, Some(None))
+            let material = material.and_then(|table| material::read(table, &body, &names));
+            let gaussian = material.as_ref().map(exact::gaussian_length);
+            (solid_of(&body, material).map(Body::Solid), gaussian)
         }
     };
     let cracks = each(&root, "crack", |table| crack::read(table, frame));
@@ -153,7 +155,7 @@ fn model(root: Table<'_>) -> Option<Model> {
     let boundaries = each(&root, "boundary", boundary::read);
     let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
     let exact = root.maybe("exact", |item| {
-        exact::read(item.table()?, frame.dimension, material.as_ref())
+        exact::read(item.table()?, frame.dimension, gaussian)
     });
     let time = root
         .required("time")
@@ -168,9 +170,7 @@ fn model(root: Table<'_>) -> Option<Model> {
     root.finish();
     Some(Model {
         title: title?,
-        body: body.body?,
-        material: material?,
-        surface: surface?,
+        body: made?,
         sets: sets?,
         cracks: cracks?,
         initial: initial?,
@@ -199,6 +199,15 @@ pub(crate) fn document(
     Ok((root, sources))
 }
 
+/// A body of points with volumes, as far as it and its material could be read.
+fn solid_of(body: &BodyRead, material: Option<Material>) -> Option<Solid> {
+    Some(Solid {
+        shape: body.shape.clone()?,
+        state: body.state?,
+        material: material?,
+    })
+}
+
 /// What is said of a surface outside `[body]`.
 fn surface_of(
     root: &Table<'_>,
@@ -206,14 +215,14 @@ fn surface_of(
     material: Option<Table<'_>>,
     frame: Frame,
     names: &SetNames,
-) -> Option<SurfaceDeck> {
+) -> Option<SurfaceBody> {
     root.forbid("crack", "surfaces have no pre-cracks");
     let geodesics = root
         .table_or_empty("geodesics")
         .and_then(surface::geodesics);
     let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
     let (method, ball) = geodesics?;
-    Some(SurfaceDeck {
+    Some(SurfaceBody {
         shape: read.shape.clone()?,
         areas: read.areas?,
         material,

@@ -65,10 +65,11 @@ enum Kind {
     BarMode,
 }
 
+/// `[exact]`; `gaussian` is the length of the Gaussian micromodulus, none of a body that has another one, and unknown if the material could not be read.
 pub(crate) fn read(
     table: Table<'_>,
     dimension: Option<usize>,
-    material: Option<&Material>,
+    gaussian: Option<Option<f64>>,
 ) -> Option<Exact> {
     const KINDS: [(&str, Kind); 4] = [
         ("nonlocal-pulse", Kind::NonlocalPulse),
@@ -108,8 +109,7 @@ pub(crate) fn read(
     let solution = match kind {
         Kind::NonlocalPulse => {
             let pulse = pulse();
-            let length = material.and_then(|material| {
-                let length = gaussian_length(material);
+            let length = gaussian.and_then(|length| {
                 if length.is_none() {
                     item.report(Fault::NoExactSolution {
                         reason: "it belongs to model = \"linear\" with influence = { function = \"gaussian\", acts_on = \"displacement\" } and horizon = \"infinite\"",
@@ -146,7 +146,7 @@ pub(crate) fn read(
 }
 
 /// The length of a Gaussian micromodulus that is nowhere cut.
-fn gaussian_length(material: &Material) -> Option<f64> {
+pub(crate) fn gaussian_length(material: &Material) -> Option<f64> {
     /// Lengths beyond which the Gaussian is below 1e-16 of its height.
     const ALL: f64 = 6.1;
     let bonds = &material.bonds;

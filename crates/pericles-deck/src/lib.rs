@@ -22,7 +22,7 @@
 //!     end = "1 ms"
 //! "#;
 //! let deck = Deck::parse(text, "bar.toml", &[]).unwrap();
-//! assert_eq!(deck.model.body.grid.section, 4e-4);
+//! assert_eq!(deck.model.body.solid().unwrap().shape.section(), 4e-4);
 //!
 //! // The same deck with another horizon and a typo.
 //! let changes = ["material.m=4".to_owned(), "time.ende=1".to_owned()];
@@ -115,7 +115,9 @@ mod units;
 mod vocabulary;
 mod wording;
 
-pub use body::{Body, PointsFile, Quadrature, SurfaceFormula, SurfaceShape, VertexAreas};
+pub use body::{
+    Lattice, PointsFile, Quadrature, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas,
+};
 pub use boundary::BoundaryCondition;
 pub use caution::{AreaDoubt, Caution};
 pub use component::{Component, VectorField};
@@ -130,7 +132,7 @@ pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
 pub use key_path::KeyPath;
 pub use material::{Inclusion, Material};
-pub use model::Model;
+pub use model::{Body, Model, Solid};
 pub use output::{Checkpoint, CrackOutput, FragmentOutput, Output, Picture, Precision};
 pub use part::{MaterialInterface, Part, PartPlace};
 pub use quantity::{metres, seconds};
@@ -141,5 +143,5 @@ pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
-pub use surface::SurfaceDeck;
+pub use surface::SurfaceBody;
 pub use time::{Time, TimeStep};

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use crate::body::{Body, SurfaceShape};
+use pericles::material::StressState;
+
+use crate::body::{SolidShape, SurfaceShape};
 use crate::boundary::BoundaryCondition;
 use crate::conditions::{Initial, Load, Prescribe, Probe};
 use crate::crack::PreCrack;
@@ -10,7 +12,7 @@ use crate::exact::Exact;
 use crate::material::Material;
 use crate::output::{Checkpoint, Output};
 use crate::set::NamedSet;
-use crate::surface::SurfaceDeck;
+use crate::surface::SurfaceBody;
 use crate::time::Time;
 
 /// What is simulated and what is written, as plain data in SI units: what a [`Deck`](crate::Deck) says, without its text.
@@ -18,12 +20,8 @@ use crate::time::Time;
 pub struct Model {
     /// A title for people.
     pub title: Option<String>,
-    /// `[body]`
+    /// `[body]` and `[material]`, of a surface `[geodesics]` as well.
     pub body: Body,
-    /// `[material]`
-    pub material: Material,
-    /// A surface with its material, if the body is one; `body` and `material` are then those of a unit cube that is not used.
-    pub surface: Option<SurfaceDeck>,
     /// `[sets]`, without the set "all" of all points.
     pub sets: Vec<NamedSet>,
     /// `[[crack]]`
@@ -48,19 +46,88 @@ pub struct Model {
     pub checkpoint: Checkpoint,
 }
 
+/// The body, with what it is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Body {
+    /// Points with volumes and bonds along straight lines.
+    Solid(Solid),
+    /// The vertices of a surface, with bonds along it.
+    Surface(SurfaceBody),
+}
+
+/// A body of points with volumes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Where its points are.
+    pub shape: SolidShape,
+    /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
+    pub state: StressState,
+    /// `[material]`
+    pub material: Material,
+}
+
+impl Body {
+    /// The body, if it is one of points with volumes.
+    pub fn solid(&self) -> Option<&Solid> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            Self::Surface(_) => None,
+        }
+    }
+
+    /// The body, if it is one of points with volumes, to change it.
+    pub fn solid_mut(&mut self) -> Option<&mut Solid> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            Self::Surface(_) => None,
+        }
+    }
+
+    /// The surface, if it is one.
+    pub fn surface(&self) -> Option<&SurfaceBody> {
+        match self {
+            Self::Solid(_) => None,
+            Self::Surface(surface) => Some(surface),
+        }
+    }
+
+    /// Horizon of the bonds, m.
+    pub fn horizon(&self) -> f64 {
+        match self {
+            Self::Solid(solid) => solid.material.bonds.horizon,
+            Self::Surface(surface) => surface.material.horizon,
+        }
+    }
+
+    /// Sets whose bonds never break.
+    pub fn no_fail(&self) -> &[String] {
+        match self {
+            Self::Solid(solid) => &solid.material.no_fail,
+            Self::Surface(surface) => &surface.no_fail,
+        }
+    }
+
+    /// The file that the points come from.
+    fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Solid(Solid {
+                shape: SolidShape::Points(file),
+                ..
+            }) => Some(&file.path),
+            Self::Surface(SurfaceBody {
+                shape: SurfaceShape::File { path, .. },
+                ..
+            }) => Some(path),
+            Self::Solid(_) | Self::Surface(_) => None,
+        }
+    }
+}
+
 impl Model {
     /// The files that the model names. A relative path starts at the folder of the deck.
     pub fn files(&self) -> Vec<&Path> {
-        let listed = self.body.listed.iter().map(|listed| listed.path.as_path());
-        let surface = self
-            .surface
-            .iter()
-            .filter_map(|surface| match &surface.shape {
-                SurfaceShape::File { path, .. } => Some(path.as_path()),
-                SurfaceShape::Formula(_) => None,
-            });
         let initial = self.initial.iter();
         let initial = initial.filter_map(|initial| initial.file.as_deref());
-        listed.chain(surface).chain(initial).collect()
+        self.body.file().into_iter().chain(initial).collect()
     }
 }

@@ -12,6 +12,10 @@ use pericles::space::{Face, Grid, Region, Shape};
 use pericles_deck::*;
 use serde_json::json;
 
+mod common;
+
+use common::{grid, solid};
+
 const COMPLETE: &str = include_str!("complete.toml");
 const OPEN: f64 = f64::INFINITY;
 
@@ -51,17 +55,16 @@ fn every_entry_arrives() {
         section: 1e-3,
         holes: vec![ball, corner],
     };
-    let state = StressState::PlaneStrain;
-    let body = Body {
+    let lattice = Lattice {
         grid,
-        listed: None,
         finer: vec![],
-        state,
         periodic: false,
         quadrature: Quadrature::Midpoint,
         rectangular: None,
     };
-    assert_eq!(deck.model.body, body);
+    let solid = solid(&deck);
+    assert_eq!(solid.shape, SolidShape::Lattice(lattice));
+    assert_eq!(solid.state, StressState::PlaneStrain);
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {
@@ -84,10 +87,10 @@ fn every_entry_arrives() {
             calibration: FractureCalibration::Lattice,
         },
     };
-    assert_eq!(deck.model.material.name.as_deref(), Some("soda-lime glass"));
-    assert_eq!(deck.model.material.bonds, bonds);
-    assert_eq!(deck.model.material.no_fail, ["top", "bottom"]);
-    let damage = deck.model.material.damage.unwrap();
+    assert_eq!(solid.material.name.as_deref(), Some("soda-lime glass"));
+    assert_eq!(solid.material.bonds, bonds);
+    assert_eq!(solid.material.no_fail, ["top", "bottom"]);
+    let damage = solid.material.damage.unwrap();
     assert!(damage.count && damage.count_precut);
 
     let layer = |upper| Region::Layer {
@@ -271,11 +274,11 @@ end = "1 ms"
 #[test]
 fn defaults_are_filled_in_and_recorded() {
     let deck = parse(LEAST);
-    assert_eq!(deck.model.body.state, StressState::Uniaxial);
-    assert_eq!(deck.model.body.grid.section, 1.0);
-    assert_eq!(deck.model.material.bonds.fracture, Fracture::Unbreakable);
+    assert_eq!(solid(&deck).state, StressState::Uniaxial);
+    assert_eq!(grid(&deck).section, 1.0);
+    assert_eq!(solid(&deck).material.bonds.fracture, Fracture::Unbreakable);
     assert_eq!(
-        deck.model.material.bonds.volume_correction,
+        solid(&deck).material.bonds.volume_correction,
         VolumeCorrection::Extended
     );
     assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
@@ -307,11 +310,15 @@ fn defaults_are_filled_in_and_recorded() {
 #[test]
 fn the_record_is_a_deck_that_says_the_same() {
     for text in [COMPLETE, LEAST] {
-        let first = parse(text);
+        let mut first = parse(text);
         let again = parse(&toml::to_string(first.to_json()).unwrap());
+        // The record holds defaults too.
+        let output = &mut first.model.output;
+        output.cracks = Some(output.cracks());
+        let material = &mut first.model.body.solid_mut().unwrap().material;
+        material.damage = Some(material.damage.unwrap_or_default());
         assert_eq!(again.to_json(), first.to_json());
         assert_eq!(again.model.body, first.model.body);
-        assert_eq!(again.model.material, first.model.material);
         assert_eq!(again.model.prescribe, first.model.prescribe);
         assert_eq!(again.model.output, first.model.output);
     }
@@ -321,41 +328,40 @@ fn the_record_is_a_deck_that_says_the_same() {
 fn shapes() {
     let body = |text: &str| {
         let rest = "\n[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n";
-        parse(&format!("[body]\nspacing = 0.1\n{text}{rest}"))
-            .model
-            .body
+        let deck = parse(&format!("[body]\nspacing = 0.1\n{text}{rest}"));
+        (grid(&deck).clone(), solid(&deck).state)
     };
     let bar = body("shape='bar'\nsize=[2]\narea='1 cm2'\norigin=3");
-    assert_eq!(bar.grid.section, 1e-4);
+    assert_eq!(bar.0.section, 1e-4);
     assert_eq!(
-        bar.grid.shape,
+        bar.0.shape,
         Shape::Box {
             origin: [3.0, 0.0, 0.0],
             size: vec![2.0]
         }
     );
     let ring = body("shape='disc'\ncenter=[1,2]\nradius=3\ninner_radius=2\nplane='stress'");
-    assert_eq!(ring.state, StressState::PlaneStress);
+    assert_eq!(ring.1, StressState::PlaneStress);
     let centre = [1.0, 2.0, 0.0];
     assert_eq!(
-        ring.grid.shape,
+        ring.0.shape,
         Shape::Disc {
             centre,
             radius: 3.0
         }
     );
     assert_eq!(
-        ring.grid.holes,
+        ring.0.holes,
         [Region::Ball {
             centre,
             radius: 2.0
         }]
     );
     let tube = body("shape='cylinder'\naxis='x'\nradius=3\ninner_radius=2\nheight=5");
-    assert_eq!(tube.state, StressState::Spatial);
+    assert_eq!(tube.1, StressState::Spatial);
     let base = [0.0; 3];
     assert_eq!(
-        tube.grid.shape,
+        tube.0.shape,
         Shape::Cylinder {
             base,
             axis: 0,
@@ -364,7 +370,7 @@ fn shapes() {
         }
     );
     assert_eq!(
-        tube.grid.holes,
+        tube.0.holes,
         [Region::Cylinder {
             centre: base,
             axis: 0,
@@ -373,13 +379,13 @@ fn shapes() {
     );
     let ball = body("shape='ball'\nradius=3");
     assert_eq!(
-        ball.grid.shape,
+        ball.0.shape,
         Shape::Ball {
             centre: base,
             radius: 3.0
         }
     );
-    assert_eq!(body("shape='block'\nsize=[1,2,3]").grid.dimension(), 3);
+    assert_eq!(body("shape='block'\nsize=[1,2,3]").0.dimension(), 3);
 }
 
 #[test]
@@ -433,7 +439,7 @@ fn overrides_change_what_is_read() {
     ])
     .unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
-    assert_eq!(deck.model.body.grid.spacing, 0.5e-3);
+    assert_eq!(grid(&deck).spacing, 0.5e-3);
     assert_eq!(deck.model.cracks[1].ends, EndRule::Closed);
     let LoadAmplitude::Traction { traction, .. } = &deck.model.loads[1].amplitude else {
         panic!("a traction is overridden by a traction")
@@ -447,10 +453,10 @@ fn overrides_change_what_is_read() {
         }
     );
     assert_eq!(
-        deck.model.material.bonds.modulus.value,
+        solid(&deck).material.bonds.modulus.value,
         ElasticModulus::Bulk(48e9)
     );
-    assert_eq!(deck.model.material.bonds.horizon, 2e-3);
+    assert_eq!(solid(&deck).material.bonds.horizon, 2e-3);
     assert_eq!(deck.model.output.history, Schedule::Interval(1e-6));
     assert_eq!(deck.model.title.as_deref(), Some("Another one"));
     assert_eq!(deck.model.checkpoint, Checkpoint::Wall(60.0));

@@ -66,9 +66,9 @@ mod watch;
 pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
-    Assembly, Discretisation, ExactReference, FileError, Grids, KernelQuality, LoadReport,
-    PlaneWaves, PointsReader, Resources, Sets, SurfaceReader, TableReader, assemble, body_points,
-    build, discretise,
+    Assembly, Discretisation, ExactReference, FileError, Grids, Interior, KernelQuality,
+    LoadReport, PlaneWaves, PointsReader, Resources, Sets, SurfaceReader, TableReader, assemble,
+    body_points, build, discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;

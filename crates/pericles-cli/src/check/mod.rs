@@ -8,7 +8,7 @@ mod waves;
 use std::path::Path;
 
 use pericles::observe::Probe;
-use pericles_deck::{Model, Scheme};
+use pericles_deck::{Body, Model, Scheme};
 use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
 use pericles_run::{Assembled, Assembly, Facts, Means};
@@ -46,9 +46,12 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let model = &deck.model;
     let mut lines = body(model, &facts);
     lines.extend(neighbours(&assembly));
-    match &model.surface {
-        Some(surface) => lines.extend(surface_material(surface)),
-        None => lines.extend(material(model, &facts, &assembly.parts)),
+    match (&model.body, &assembly.constants) {
+        (Body::Solid(solid), Some(constants)) => {
+            lines.extend(material(solid, constants, &facts, &assembly.parts));
+        }
+        (Body::Solid(_), None) => {}
+        (Body::Surface(surface), _) => lines.extend(surface_material(surface)),
     }
     lines.extend(plane_waves(model, &assembly));
     lines.extend(time(&facts));
@@ -154,10 +157,10 @@ fn run_time(
 }
 
 fn body(model: &Model, facts: &Facts) -> Vec<Line> {
-    let body = match &model.surface {
-        Some(_) => Line::new("body", "surface in 3D"),
-        None => {
-            let state = model.body.state.name();
+    let body = match &model.body {
+        Body::Surface(_) => Line::new("body", "surface in 3D"),
+        Body::Solid(solid) => {
+            let state = solid.state.name();
             let text = format!("{}D, {state}", facts.dimension);
             Line::new("body", text).with("state", state)
         }

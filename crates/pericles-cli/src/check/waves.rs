@@ -18,7 +18,7 @@ pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
     let spacings = length / assembly.cloud.spacing();
     let mut lines = Vec::new();
     if let Some(longest) = waves.model {
-        let horizons = longest / model.material.bonds.horizon;
+        let horizons = longest / model.body.horizon();
         let text = format!(
             "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
             quantity(longest, "m"),
@@ -39,7 +39,8 @@ pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
     );
     let value = json!({ "tolerance": grid.tolerance, "wavelength": length, "spacings": spacings });
     lines.push(Line::new("grid dispersion", text).with("grid_dispersion", value));
-    if let (Some(pair), Some(table)) = (waves.tuning, &model.material.tuned) {
+    let table = (model.body.solid()).and_then(|solid| solid.material.tuned.as_ref());
+    if let (Some(pair), Some(table)) = (waves.tuning, table) {
         lines.push(tuned_kernel(pair, table.tuning.lower_bound));
     }
     lines

@@ -1,7 +1,23 @@
 //! Decks that several tests share.
 #![allow(dead_code)] // each test uses its part
 
-use pericles_deck::DeckError;
+use pericles::space::Grid;
+use pericles_deck::{Deck, DeckError, Lattice, Solid};
+
+/// The body of a deck that is no surface.
+pub fn solid(deck: &Deck) -> &Solid {
+    deck.model.body.solid().unwrap()
+}
+
+/// Its cells.
+pub fn lattice(deck: &Deck) -> &Lattice {
+    solid(deck).shape.lattice().unwrap()
+}
+
+/// Its grid.
+pub fn grid(deck: &Deck) -> &Grid {
+    &lattice(deck).grid
+}
 
 /// A right deck of a wave on a ring.
 pub const WAVE: &str = r#"[body]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pericles::System;
-use pericles_deck::{BuildError, Deck, DeckError, Model};
+use pericles_deck::{Body, BuildError, Deck, DeckError, Fault, Model};
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
@@ -11,7 +11,7 @@ use super::body::BodyParts;
 use super::boundary::exterior_frequency;
 use super::damping::strongest;
 use super::discretise::{Discretisation, discretise};
-use super::refusal::at;
+use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 /// Makes forces and conditions of a model on its points, and finds the time step.
@@ -43,16 +43,20 @@ pub fn assemble(
         bonds,
         cracks,
         density,
-    } = match (&model.surface, surface) {
-        (Some(deck), Some(surface)) => {
-            assembler.surface_parts(deck, surface, &discretisation, resources, &mut warnings)?
+    } = match (&model.body, surface) {
+        (Body::Surface(body), Some(surface)) => {
+            assembler.surface_parts(body, surface, &discretisation, resources, &mut warnings)?
         }
-        _ => assembler.grid_parts(&discretisation, &mut warnings)?,
+        (Body::Surface(_), None) => {
+            let reason = "the points are not those of a surface".into();
+            return Err(at_path("body", Fault::BadDiscretisation { reason }));
+        }
+        (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
     };
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
         .map_err(|error| at("material.density", error))?;
     let mut state = assembler.initial_state(cloud, sets, resources)?;
-    let exact = assembler.exact_reference(cloud, constants.young, &mut warnings)?;
+    let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
     if let (Some(exact), Some(true)) = (&exact, model.exact.map(|exact| exact.start)) {
         exact
             .solution
@@ -67,7 +71,7 @@ pub fn assemble(
     let integrator = assembler.integrator(&system, sets)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
     let exterior = exterior_frequency(&ends);
-    let layers = assembler.damping_layers(&system, &constants)?;
+    let layers = assembler.damping_layers(&system, constants.as_ref())?;
     let damping = strongest(&layers, cloud);
     let steps = assembler.steps(
         &system,
@@ -78,7 +82,7 @@ pub fn assemble(
         &mut warnings,
     )?;
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
-    assembler.judge_breaking(&system, &state, &constants, &steps, &mut warnings);
+    assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, &steps)?;
     assembler.refuse_lost_values(&system, &steps)?;

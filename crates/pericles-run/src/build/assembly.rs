@@ -25,8 +25,8 @@ pub struct Assembly {
     pub sets: Sets,
     /// The surface, if the body is one.
     pub surface: Option<Arc<Surface>>,
-    /// The constants of the bonds; not numbers for a surface.
-    pub constants: BondConstants,
+    /// The constants of the bonds; none for a surface, whose pair law has its own.
+    pub constants: Option<BondConstants>,
     /// The constants of the other materials, in the order of `[[material.part]]`.
     pub parts: Vec<BondConstants>,
     /// How the bonds are kept.

@@ -11,14 +11,14 @@ use pericles::operator::{BondBody, CompositeBody};
 use pericles::space::{PointCloud, PointSet};
 use pericles::{PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, Fault, Inclusion, KeyPath, ModelWarning, Remark, SurfaceDeck,
+    BuildError, Caution, Fault, Inclusion, KeyPath, ModelWarning, Remark, Solid, SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
 
 /// Force and material of a body.
 pub(super) struct BodyParts {
-    pub(super) constants: BondConstants,
+    pub(super) constants: Option<BondConstants>,
     pub(super) parts: Vec<BondConstants>,
     pub(super) bonds: AssembledForce,
     pub(super) cracks: Vec<TrackedCrack>,
@@ -29,24 +29,27 @@ impl Assembler<'_> {
     /// Of a body on a grid or of listed points.
     pub(super) fn grid_parts(
         &self,
+        solid: &Solid,
         discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let Discretisation {
             cloud, grids, sets, ..
         } = discretisation;
-        let material = &self.model.material.bonds;
-        let constants = self.constants_of(material, cloud).map_err(at_material)?;
-        warnings.extend(self.judge_speed(&constants));
-        warnings.extend(self.judge_classes(&constants));
-        warnings.extend(self.judge_solid(&constants));
-        let no_fail = self.union_of(sets, &self.model.material.no_fail)?;
-        let stiffness = self.stiffness_of(&self.model.material.inclusions, cloud, sets)?;
+        let material = &solid.material.bonds;
+        let constants = self
+            .constants_of(solid, material, cloud)
+            .map_err(at_material)?;
+        warnings.extend(self.judge_speed(solid, &constants));
+        warnings.extend(self.judge_classes(solid, &constants));
+        warnings.extend(self.judge_solid(solid, &constants));
+        let no_fail = self.union_of(sets, &solid.material.no_fail)?;
+        let stiffness = self.stiffness_of(&solid.material.inclusions, cloud, sets)?;
         let Composition {
             classes,
             density,
             parts,
-        } = self.parts(cloud, sets, &constants, warnings)?;
+        } = self.parts(solid, cloud, sets, &constants, warnings)?;
         let body = BondBody {
             cloud,
             material,
@@ -54,16 +57,16 @@ impl Assembler<'_> {
             cracks: &[],
             no_fail: &no_fail,
             stiffness: &stiffness,
-            damage: self.model.material.damage.unwrap_or_default(),
+            damage: solid.material.damage.unwrap_or_default(),
         };
         let composite = CompositeBody {
             body,
             classes: classes.as_ref(),
-            correction: self.model.material.surface_correction,
+            correction: solid.material.surface_correction,
         };
-        let (bonds, cracks) = self.bonds(composite, grids, warnings)?;
+        let (bonds, cracks) = self.bonds(solid, composite, grids, warnings)?;
         if self.model.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
-            let reason = if self.model.body.periodic {
+            let reason = if solid.shape.is_periodic() {
                 "periodic bodies keep no list of bonds"
             } else {
                 "they are sums over single bonds; use bonds = \"list\", \"grid\" or \"fastest\""
@@ -74,7 +77,7 @@ impl Assembler<'_> {
             bonds,
             cracks,
             density,
-            constants,
+            constants: Some(constants),
             parts,
         })
     }
@@ -82,7 +85,7 @@ impl Assembler<'_> {
     /// Of a surface.
     pub(super) fn surface_parts(
         &self,
-        deck: &SurfaceDeck,
+        body: &SurfaceBody,
         surface: &Surface,
         discretisation: &Discretisation,
         resources: &Resources<'_>,
@@ -90,9 +93,9 @@ impl Assembler<'_> {
     ) -> Result<BodyParts, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
         self.refuse_body_forces()?;
-        let operator = self.surface_operator(deck, surface, cloud, sets, resources.cache)?;
+        let operator = self.surface_operator(body, surface, cloud, sets, resources.cache)?;
         let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
-        for caution in surface.cautions(deck.material.horizon, neighbours) {
+        for caution in surface.cautions(body.material.horizon, neighbours) {
             warnings.push(Remark::new("material.horizon", Caution::Surface(caution)));
         }
         Ok(BodyParts {
@@ -102,17 +105,8 @@ impl Assembler<'_> {
                 form: ForceForm::List,
             },
             cracks: Vec::new(),
-            density: PointScalar::Uniform(deck.material.density),
-            constants: BondConstants {
-                young: f64::NAN,
-                micromodulus: f64::NAN,
-                critical_stretch: deck.material.critical_stretch,
-                fracture_energy: f64::NAN,
-                fracture_calibration: None,
-                crack_planes: Vec::new(),
-                stiffness_error: f64::NAN,
-                shear_error: f64::NAN,
-            },
+            density: PointScalar::Uniform(body.material.density),
+            constants: None,
             parts: Vec::new(),
         })
     }
@@ -178,6 +172,7 @@ impl Assembler<'_> {
     /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
+        solid: &Solid,
         composite: CompositeBody<'_>,
         grids: &Grids,
         warnings: &mut Vec<ModelWarning>,
@@ -205,16 +200,16 @@ impl Assembler<'_> {
             ..composite
         };
         let assembled = if grids.ratios.len() > 1 {
-            self.graded_bonds(&composite, grids)?
+            self.graded_bonds(solid, &composite, grids)?
         } else {
-            let form = match self.model.material.form {
+            let form = match solid.material.form {
                 ForceForm::Fastest
-                    if self.model.output.wants_tensors() && !self.model.body.periodic =>
+                    if self.model.output.wants_tensors() && !solid.shape.is_periodic() =>
                 {
                     ForceForm::List
                 }
                 ForceForm::Fastest
-                    if self.model.time.scheme.has_two_steps() && !self.model.body.periodic =>
+                    if self.model.time.scheme.has_two_steps() && !solid.shape.is_periodic() =>
                 {
                     composite.fastest_form().into()
                 }

@@ -11,7 +11,7 @@ use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
 use pericles::{PericlesError, System};
 use pericles_deck::{
-    ALL, BoundaryCondition, BuildError, Caution, Fault, KeyPath, ModelWarning, Remark,
+    ALL, BoundaryCondition, BuildError, Caution, Fault, KeyPath, ModelWarning, Remark, Solid,
 };
 use pericles_waves::absorbing::{
     AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
@@ -38,7 +38,7 @@ impl Assembler<'_> {
         integrator: &dyn Integrator,
         resources: &Resources<'_>,
     ) -> Result<Vec<End>, BuildError> {
-        let no_fail = self.union_of(sets, &self.model.material.no_fail)?;
+        let no_fail = self.union_of(sets, self.model.body.no_fail())?;
         let mut ends = Vec::new();
         let mut sides: Vec<Side> = Vec::new();
         let mut exterior = 0.0;
@@ -172,7 +172,9 @@ impl Assembler<'_> {
                 dt: steps.dt,
             };
             step.check(&stencil).map_err(refuse)?;
-            warnings.extend(self.judge_reach(&stencil, system.cloud()));
+            if let Some(solid) = self.model.body.solid() {
+                warnings.extend(self.judge_reach(solid, &stencil, system.cloud()));
+            }
             let neglected = end.layer.neglected;
             if neglected > NOTABLE_FIELD {
                 let side = end.layer.side.name();
@@ -242,8 +244,13 @@ impl Assembler<'_> {
     }
 
     /// Warns where the longest bonds of a table of classes have no stiffness: the exterior, read off the bonds, does not know of them.
-    fn judge_reach(&self, stencil: &LatticeStencil, cloud: &PointCloud) -> Option<ModelWarning> {
-        let material = &self.model.material.bonds;
+    fn judge_reach(
+        &self,
+        solid: &Solid,
+        stencil: &LatticeStencil,
+        cloud: &PointCloud,
+    ) -> Option<ModelWarning> {
+        let material = &solid.material.bonds;
         if !matches!(material.influence.function, InfluenceFunction::Classes(_)) {
             return None;
         }

@@ -18,16 +18,19 @@ impl Assembler<'_> {
         &self,
         system: &System,
         state: &State,
-        constants: &BondConstants,
+        constants: Option<&BondConstants>,
         steps: &Steps,
         warnings: &mut Vec<ModelWarning>,
     ) {
         let dynamic = !matches!(self.model.time.scheme, Scheme::Relaxation(_));
-        if !dynamic || self.model.surface.is_some() || !system.operator().can_break() {
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
+            return;
+        };
+        if !dynamic || !system.operator().can_break() {
             return;
         }
-        let density = self.model.material.bonds.density;
-        let waves = ElasticWaves::of(constants.young, density, self.model.body.state);
+        let density = solid.material.bonds.density;
+        let waves = ElasticWaves::of(constants.young, density, solid.state);
         let limit = waves.transverse.map_or(waves.pressure, |t| t.rayleigh);
         let first = |key: &str| KeyPath::from(key).index(0);
         // A body that moves as a whole is at rest for an observer that moves with it.

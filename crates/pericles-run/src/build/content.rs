@@ -8,6 +8,7 @@ use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles_deck::{
     BuildError, Caution, Component, KeyPath, LoadAmplitude, Model, ModelWarning, Remark, Scheme,
+    Solid,
 };
 use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
@@ -57,12 +58,12 @@ impl KernelQuality {
 }
 
 impl Assembly {
-    /// The bonds of a point inside the body: what plane waves know of it. Of several materials the first one is taken.
+    /// The interior of the body: what plane waves know of it.
     ///
     /// # Errors
     /// A body whose points lie on no regular grid.
-    pub fn bond_lattice(&self, model: &Model) -> Result<BondLattice, BuildError> {
-        Assembler { model }.bond_lattice(self)
+    pub fn interior<'a>(&'a self, model: &'a Model) -> Result<Interior<'a>, BuildError> {
+        Assembler { model }.interior(self)
     }
 
     /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
@@ -78,29 +79,43 @@ impl Assembly {
     }
 }
 
-impl Assembler<'_> {
-    /// The bonds of a point inside the body: what plane waves know of it. Of several materials the first one is taken.
-    ///
-    /// # Errors
-    /// A body whose points lie on no regular grid.
-    fn bond_lattice(self, assembly: &Assembly) -> Result<BondLattice, BuildError> {
-        let material = &self.model.material.bonds;
-        self.lattice_of(assembly, material, &assembly.constants)
-            .map_err(|error| match error.extension() {
-                Some(DispersionError::NoLattice) => at("body", error),
-                _ => at(HORIZON, error),
-            })
+/// The interior of a body on a grid; of several materials the first one.
+pub struct Interior<'a> {
+    /// The bonds of a point.
+    pub lattice: BondLattice,
+    /// The body.
+    pub solid: &'a Solid,
+    /// The constants of the bonds.
+    pub constants: &'a BondConstants,
+}
+
+impl<'a> Assembler<'a> {
+    fn interior(self, assembly: &'a Assembly) -> Result<Interior<'a>, BuildError> {
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), &assembly.constants) else {
+            return Err(at("body", DispersionError::NoLattice.into()));
+        };
+        let lattice = self.lattice_of(solid, assembly, &solid.material.bonds, constants);
+        let lattice = lattice.map_err(|error| match error.extension() {
+            Some(DispersionError::NoLattice) => at("body", error),
+            _ => at(HORIZON, error),
+        })?;
+        Ok(Interior {
+            lattice,
+            solid,
+            constants,
+        })
     }
 
     fn lattice_of(
         &self,
+        solid: &Solid,
         assembly: &Assembly,
         material: &BondMaterial,
         constants: &BondConstants,
     ) -> pericles::Result<BondLattice> {
-        match &self.model.body.rectangular {
+        match solid.shape.rectangular() {
             Some(spacing) => {
-                BondLattice::of_material(spacing, self.model.body.grid.section, material, constants)
+                BondLattice::of_material(spacing, solid.shape.section(), material, constants)
             }
             None => BondLattice::of_body(&assembly.cloud, material, constants),
         }
@@ -108,13 +123,12 @@ impl Assembler<'_> {
 
     /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
     fn plane_waves(self, assembly: &Assembly) -> Option<PlaneWaves> {
-        if !self.model.material.parts.is_empty() || self.model.surface.is_some() {
+        let (solid, constants) = (self.model.body.solid()?, assembly.constants.as_ref()?);
+        if !solid.material.parts.is_empty() {
             return None;
         }
-        let material = &self.model.material.bonds;
-        let lattice = self
-            .lattice_of(assembly, material, &assembly.constants)
-            .ok()?;
+        let material = &solid.material.bonds;
+        let lattice = self.lattice_of(solid, assembly, material, constants).ok()?;
         let (horizon, end) = (material.horizon, PhaseErrors::new(&lattice).end());
         let kernel = KernelWaves::new(lattice.dimension(), &material.influence, horizon, end);
         let (model_length, grid) = match &kernel {
@@ -124,7 +138,7 @@ impl Assembler<'_> {
             ),
             None => (None, PhaseErrors::new(&lattice).resolved(TOLERANCE)),
         };
-        let tuning = self.model.material.tuned.as_ref().and_then(|_| {
+        let tuning = solid.material.tuned.as_ref().and_then(|_| {
             let constant = BondMaterial {
                 influence: Influence {
                     function: InfluenceFunction::Constant,
@@ -133,7 +147,7 @@ impl Assembler<'_> {
                 ..material.clone()
             };
             let constant = self
-                .lattice_of(assembly, &constant, &assembly.constants)
+                .lattice_of(solid, assembly, &constant, constants)
                 .ok()?;
             Some([KernelQuality::of(&lattice), KernelQuality::of(&constant)])
         });
@@ -147,10 +161,11 @@ impl Assembler<'_> {
     /// Warns of kernels that do not keep what they are made for, and of loads, motions and initial values whose waves the grid distorts. What the nonlocal model itself does to short waves
     /// is no matter of the grid and not warned of. Bodies that lie on no grid, or are of several materials, are not judged.
     fn judge_waves(self, assembly: &Assembly) -> Vec<ModelWarning> {
-        let Some(waves) = self.plane_waves(assembly) else {
+        let body = self.model.body.solid().zip(assembly.constants.as_ref());
+        let Some(((solid, constants), waves)) = body.zip(self.plane_waves(assembly)) else {
             return Vec::new();
         };
-        let mut warnings = self.judge_kernel(assembly, &waves);
+        let mut warnings = self.judge_kernel(solid, assembly, constants, &waves);
         if matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
             return warnings;
         }
@@ -234,13 +249,17 @@ impl Assembler<'_> {
     }
 
     /// Warns of waves that grow, and of tuned coefficients that do worse than a constant influence function.
-    fn judge_kernel(&self, assembly: &Assembly, waves: &PlaneWaves) -> Vec<ModelWarning> {
+    fn judge_kernel(
+        &self,
+        solid: &Solid,
+        assembly: &Assembly,
+        constants: &BondConstants,
+        waves: &PlaneWaves,
+    ) -> Vec<ModelWarning> {
         let mut cautions = Vec::new();
-        let material = &self.model.material.bonds;
+        let material = &solid.material.bonds;
         if material.influence.is_signed(material.horizon) {
-            let lattice = self
-                .lattice_of(assembly, material, &assembly.constants)
-                .ok();
+            let lattice = self.lattice_of(solid, assembly, material, constants).ok();
             let smallest = lattice.map_or(0.0, |lattice| stability(&lattice).smallest);
             if smallest < 0.0 {
                 cautions.push(Caution::GrowingWaves { smallest });

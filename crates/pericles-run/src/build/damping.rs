@@ -17,10 +17,23 @@ impl Assembler<'_> {
     pub(super) fn damping_layers(
         &self,
         system: &System,
-        constants: &BondConstants,
+        constants: Option<&BondConstants>,
     ) -> Result<Vec<(usize, Face, DampingProfile)>, BuildError> {
+        let is_layer = |boundary: &BoundaryCondition| {
+            matches!(boundary, BoundaryCondition::DampingLayer { .. })
+        };
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
+            return match self.model.boundaries.iter().position(is_layer) {
+                None => Ok(Vec::new()),
+                Some(k) => {
+                    let reason = "a closed surface has no sides".into();
+                    let error = PericlesError::BadDampingLayer { reason };
+                    Err(at_path(KeyPath::from("boundary").index(k), error.into()))
+                }
+            };
+        };
         // Of the first material, where there are several.
-        let modulus = self.model.body.state.longitudinal_modulus(constants.young);
+        let modulus = solid.state.longitudinal_modulus(constants.young);
         let speed = (modulus / system.density().at(0)).sqrt();
         let layer = |(k, boundary): (usize, &BoundaryCondition)| {
             let BoundaryCondition::DampingLayer {
@@ -36,15 +49,7 @@ impl Assembler<'_> {
             Some((k, face, profile))
         };
         let boundaries = self.model.boundaries.iter().enumerate();
-        let layers: Vec<_> = boundaries.filter_map(layer).collect();
-        match (&self.model.surface, layers.first()) {
-            (Some(_), Some((k, ..))) => {
-                let reason = "a closed surface has no sides".into();
-                let error = PericlesError::BadDampingLayer { reason };
-                Err(at_path(KeyPath::from("boundary").index(*k), error.into()))
-            }
-            _ => Ok(layers),
-        }
+        Ok(boundaries.filter_map(layer).collect())
     }
 
     /// Adds the damping layers.

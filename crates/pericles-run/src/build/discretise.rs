@@ -7,7 +7,7 @@ use super::refusal::at_path;
 use super::resources::Resources;
 use pericles::material::{Fracture, PairLaw, SurfaceCorrection};
 use pericles::space::{GradedCloud, PointCloud, PointSet};
-use pericles_deck::{ALL, BuildError, Fault, KeyPath, Model, ModelWarning, Remark};
+use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Model, ModelWarning, Remark, Solid};
 use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
 
@@ -101,14 +101,14 @@ impl Discretisation {
 pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisation, BuildError> {
     let assembler = Assembler { model };
     let mut warnings = Vec::new();
-    let (points, surface) = match &model.surface {
-        Some(deck) => {
-            let (surface, cloud) = assembler.surface_points(deck, resources)?;
+    let (points, surface) = match &model.body {
+        Body::Surface(body) => {
+            let (surface, cloud) = assembler.surface_points(body, resources)?;
             (GradedCloud::of_one_grid(cloud), Some(Arc::new(surface)))
         }
-        None => {
-            assembler.check_periodic()?;
-            (assembler.points(resources, &mut warnings)?, None)
+        Body::Solid(solid) => {
+            assembler.check_periodic(solid)?;
+            (assembler.points(solid, resources, &mut warnings)?, None)
         }
     };
     Ok(Discretisation {
@@ -132,19 +132,22 @@ pub fn body_points(
     resources: &Resources<'_>,
 ) -> Result<(PointCloud, Option<Surface>), BuildError> {
     let assembler = Assembler { model };
-    match &model.surface {
-        Some(deck) => {
-            let (surface, cloud) = assembler.surface_points(deck, resources)?;
+    match &model.body {
+        Body::Surface(body) => {
+            let (surface, cloud) = assembler.surface_points(body, resources)?;
             Ok((cloud, Some(surface)))
         }
-        None => Ok((assembler.points(resources, &mut Vec::new())?.cloud, None)),
+        Body::Solid(solid) => Ok((
+            assembler.points(solid, resources, &mut Vec::new())?.cloud,
+            None,
+        )),
     }
 }
 
 impl Assembler<'_> {
     /// Refuses everything at once that a periodic body cannot have.
-    pub(super) fn check_periodic(&self) -> Result<(), BuildError> {
-        let material = &self.model.material;
+    pub(super) fn check_periodic(&self, solid: &Solid) -> Result<(), BuildError> {
+        let material = &solid.material;
         let spectral = material.form == ForceForm::Spectral;
         let law = material.bonds.law;
         let right_law = law == PairLaw::Linear || (law == PairLaw::GreenStrain && spectral);
@@ -175,7 +178,7 @@ impl Assembler<'_> {
         .into_iter()
         .filter_map(|(found, what)| found.then_some(what))
         .collect();
-        if !self.model.body.periodic || conflicts.is_empty() {
+        if !solid.shape.is_periodic() || conflicts.is_empty() {
             return Ok(());
         }
         Err(at_path("body.periodic", Fault::NotPeriodic { conflicts }))

@@ -2,8 +2,11 @@
 
 use super::assembler::Assembler;
 use super::refusal::at_path;
+use pericles::material::BondConstants;
 use pericles::space::{PointCloud, PointSet};
-use pericles_deck::{BuildError, Caution, Fault, KnownSolution, ModelWarning, Pulse, Remark};
+use pericles_deck::{
+    BuildError, Caution, Fault, KnownSolution, ModelWarning, Pulse, Remark, Solid,
+};
 use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
 
 /// What a run is compared with.
@@ -18,13 +21,18 @@ impl Assembler<'_> {
     pub(super) fn exact_reference(
         &self,
         cloud: &PointCloud,
-        young: f64,
+        constants: Option<&BondConstants>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Option<ExactReference>, BuildError> {
         let Some(exact) = self.model.exact else {
             return Ok(None);
         };
-        let density = self.model.material.bonds.density;
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
+            let reason = "they are known for bars only";
+            return Err(at_path("exact", Fault::NoExactSolution { reason }));
+        };
+        let young = constants.young;
+        let density = solid.material.bonds.density;
         let speed = (young / density).sqrt();
         let (solution, centre): (Box<dyn ExactSolution>, f64) = match exact.solution {
             KnownSolution::NonlocalPulse {
@@ -45,7 +53,7 @@ impl Assembler<'_> {
                     centre,
                 };
                 self.check_terms(&line, cloud)?;
-                self.judge_period(&line, cloud, exact.window, warnings);
+                self.judge_period(solid, &line, cloud, exact.window, warnings);
                 (Box::new(line), centre)
             }
             KnownSolution::LocalPulse(Pulse {
@@ -117,6 +125,7 @@ impl Assembler<'_> {
     /// Warns of a period so short that the waves of the next one arrive within the run.
     fn judge_period(
         &self,
+        solid: &Solid,
         line: &LineSolution,
         cloud: &PointCloud,
         window: Option<f64>,
@@ -124,7 +133,7 @@ impl Assembler<'_> {
     ) {
         /// Share of the amplitude from which it is told.
         const NOTABLE: f64 = 1e-6;
-        if !self.model.body.periodic {
+        if !solid.shape.is_periodic() {
             return;
         }
         let period = cloud.len() as f64 * cloud.spacing();

@@ -6,20 +6,18 @@ use super::refusal::{at, at_material};
 use pericles::PericlesError;
 use pericles::material::PairLaw;
 use pericles::operator::{CompositeBody, GradedBody};
-use pericles_deck::BuildError;
+use pericles_deck::{BuildError, Solid};
 use pericles_waves::AssembledForce;
 use pericles_waves::ForceForm;
 
 impl Assembler<'_> {
     pub(super) fn graded_bonds(
         &self,
+        solid: &Solid,
         composite: &CompositeBody<'_>,
         grids: &Grids,
     ) -> Result<AssembledForce, BuildError> {
-        if !matches!(
-            self.model.material.form,
-            ForceForm::Fastest | ForceForm::List
-        ) {
+        if !matches!(solid.material.form, ForceForm::Fastest | ForceForm::List) {
             let error = PericlesError::Graded {
                 what: "bonds of this form",
                 reason: "there is no one lattice; leave `bonds` out or give \"list\"",
@@ -49,7 +47,7 @@ impl Assembler<'_> {
             ratios: &grids.ratios,
             grid_of_point: &grids.of_point,
             material: body.material,
-            state: self.model.body.state,
+            state: solid.state,
             cracks: body.cracks,
             no_fail: body.no_fail,
             stiffness: body.stiffness,

@@ -44,7 +44,7 @@ impl Assembler<'_> {
             let (field, factor, area) = match &load.amplitude {
                 LoadAmplitude::BodyForce(density) => (density, 1.0, None),
                 // On a surface a traction is the force per area itself.
-                LoadAmplitude::Traction { traction, .. } if self.model.surface.is_some() => {
+                LoadAmplitude::Traction { traction, .. } if self.model.body.surface().is_some() => {
                     (traction, 1.0, Some(volume))
                 }
                 LoadAmplitude::Traction { traction, area } => {
@@ -80,7 +80,12 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<f64, BuildError> {
         let refuse = |reason| at_path(path, Fault::UnknownArea { reason });
-        if self.model.body.listed.is_some() && cloud.dimension() > 1 {
+        let listed = self
+            .model
+            .body
+            .solid()
+            .is_some_and(|solid| solid.shape.is_listed());
+        if listed && cloud.dimension() > 1 {
             return Err(refuse("listed points have no faces"));
         }
         let named = self.model.sets.iter().find(|named| named.name == load.set);

@@ -18,7 +18,7 @@ use super::assembly::Assembly;
 use super::refusal::{HORIZON, at_path};
 use super::resources::Resources;
 use pericles::space::{GradedGrid, PointCloud, Shape};
-use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, Scheme};
+use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, Scheme, Solid};
 use pericles_waves::ForceForm;
 
 const NUMBER: f64 = 8.0;
@@ -46,13 +46,15 @@ impl Assembler<'_> {
     /// Refuses a body on a grid that does not fit, from the number of its cells.
     pub(super) fn check_grid(
         &self,
+        solid: &Solid,
         grid: &GradedGrid,
         points_per_cell: f64,
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
         let dimension = grid.grid.dimension();
-        let each = points_per_cell * self.bytes_of_point(dimension, self.neighbours(dimension));
-        let cells = match (&self.model.body.rectangular, &grid.grid.shape) {
+        let each = points_per_cell
+            * self.bytes_of_point(solid, dimension, self.neighbours(solid, dimension));
+        let cells = match (solid.shape.rectangular(), &grid.grid.shape) {
             (Some(spacing), Shape::Box { size, .. }) => {
                 let counts = size.iter().zip(spacing).map(|(side, dx)| side / dx);
                 counts.product()
@@ -74,12 +76,13 @@ impl Assembler<'_> {
     /// Refuses listed points whose bonds do not fit.
     pub(super) fn check_listed(
         &self,
+        solid: &Solid,
         cloud: &PointCloud,
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
         let (points, dimension) = (cloud.len() as f64, cloud.dimension());
-        let neighbours = self.neighbours(dimension).min(points);
-        let needed = points * self.bytes_of_point(dimension, neighbours);
+        let neighbours = self.neighbours(solid, dimension).min(points);
+        let needed = points * self.bytes_of_point(solid, dimension, neighbours);
         self.refuse_if_more(HORIZON, points, needed, resources)
     }
 
@@ -156,12 +159,12 @@ impl Assembler<'_> {
     }
 
     /// Points within the horizon of a point inside.
-    fn neighbours(&self, dimension: usize) -> f64 {
-        let material = &self.model.material.bonds;
-        let spacing = match &self.model.body.rectangular {
+    fn neighbours(&self, solid: &Solid, dimension: usize) -> f64 {
+        let material = &solid.material.bonds;
+        let spacing = match solid.shape.rectangular() {
             // The side of the square or cube of the same volume.
             Some(sides) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
-            None => self.model.body.grid.spacing,
+            None => solid.shape.spacing(),
         };
         let ratio = material.volume_correction.reach(material.horizon, spacing) / spacing;
         match dimension {
@@ -176,15 +179,15 @@ impl Assembler<'_> {
         POINT + COMPONENT[usize::from(!plain)] * NUMBER * dimension as f64
     }
 
-    fn bytes_of_point(&self, dimension: usize, neighbours: f64) -> f64 {
+    fn bytes_of_point(&self, solid: &Solid, dimension: usize, neighbours: f64) -> f64 {
         let transform = TRANSFORM * 2f64.powi(dimension as i32) * (dimension as f64).powi(2);
-        let listed = self.bytes_of_listed_bond();
-        let bonds = match self.model.material.form {
+        let listed = self.bytes_of_listed_bond(solid);
+        let bonds = match solid.material.form {
             ForceForm::List => listed * neighbours,
             ForceForm::Convolution | ForceForm::Spectral => transform,
             ForceForm::Grid | ForceForm::FloatGrid => neighbours / 8.0,
-            _ if self.model.body.periodic => transform,
-            _ if self.is_on_one_grid() => (neighbours / 8.0).max(transform),
+            _ if solid.shape.is_periodic() => transform,
+            _ if self.is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
             _ => listed * neighbours,
         };
         self.bytes_of_state(dimension) + bonds
@@ -194,12 +197,14 @@ impl Assembler<'_> {
         let (points, dimension) = (assembly.cloud.len() as f64, assembly.cloud.dimension());
         let operator = assembly.system.operator();
         let bonds = operator.directed_bonds() as f64;
-        let list = self.bytes_of_listed_bond() * bonds;
-        let found = match (&self.model.surface, assembly.form) {
-            (Some(_), _) => VERTEX * points + GEODESIC * bonds,
-            (None, ForceForm::List) => list,
+        let list = |solid: &Solid| self.bytes_of_listed_bond(solid) * bonds;
+        let found = match (self.model.body.solid(), assembly.form) {
+            (None, _) => VERTEX * points + GEODESIC * bonds,
+            (Some(solid), ForceForm::List) => list(solid),
             // Whether every part of a static body has a support is found on a list of its bonds.
-            _ if matches!(self.model.time.scheme, Scheme::Relaxation(_)) => list,
+            (Some(solid), _) if matches!(self.model.time.scheme, Scheme::Relaxation(_)) => {
+                list(solid)
+            }
             _ => 0.0,
         };
         let ends: usize = assembly.ends.iter().map(|(_, end)| end.bytes).sum();
@@ -208,8 +213,8 @@ impl Assembler<'_> {
     }
 
     /// Bytes of a bond of a list while families are found.
-    fn bytes_of_listed_bond(&self) -> f64 {
-        if self.keeps_every_bond() {
+    fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
+        if self.keeps_every_bond(solid) {
             LISTED + KEPT
         } else {
             LISTED
@@ -217,11 +222,11 @@ impl Assembler<'_> {
     }
 
     /// Whether a stencil can serve all points.
-    fn is_on_one_grid(&self) -> bool {
-        let (body, material) = (&self.model.body, &self.model.material);
-        body.listed.is_none()
-            && body.finer.is_empty()
-            && body.rectangular.is_none()
+    fn is_on_one_grid(&self, solid: &Solid) -> bool {
+        let (shape, material) = (&solid.shape, &solid.material);
+        !shape.is_listed()
+            && !shape.is_refined()
+            && shape.rectangular().is_none()
             && material.inclusions.is_empty()
             && material.parts.is_empty()
             && material.surface_correction == Default::default()
@@ -229,11 +234,11 @@ impl Assembler<'_> {
     }
 
     /// Whether bonds of a list differ one by one.
-    fn keeps_every_bond(&self) -> bool {
-        !self.model.material.inclusions.is_empty()
-            || !self.model.material.parts.is_empty()
-            || self.model.material.surface_correction != Default::default()
-            || !self.model.body.finer.is_empty()
-            || self.model.body.listed.is_some()
+    fn keeps_every_bond(&self, solid: &Solid) -> bool {
+        !solid.material.inclusions.is_empty()
+            || !solid.material.parts.is_empty()
+            || solid.material.surface_correction != Default::default()
+            || solid.shape.is_refined()
+            || solid.shape.is_listed()
     }
 }

@@ -62,7 +62,7 @@ mod surface;
 
 pub use assemble::{assemble, build};
 pub use assembly::Assembly;
-pub use content::{KernelQuality, PlaneWaves};
+pub use content::{Interior, KernelQuality, PlaneWaves};
 pub use discretise::{Discretisation, Grids, Sets, body_points, discretise};
 pub use exact::ExactReference;
 pub use loads::LoadReport;

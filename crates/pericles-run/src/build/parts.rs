@@ -6,9 +6,7 @@ use super::refusal::{at, at_path};
 use pericles::PointScalar;
 use pericles::material::{BondConstants, BondMaterial, Calibration, Fracture, PairClasses};
 use pericles::space::PointCloud;
-use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, ModelWarning, PartPlace, Quadrature, Remark,
-};
+use pericles_deck::{BuildError, Caution, Fault, KeyPath, ModelWarning, PartPlace, Remark, Solid};
 use pericles_waves::ForceForm;
 
 /// What a body is made of.
@@ -23,19 +21,20 @@ impl Assembler<'_> {
     /// The classes of bonds between materials, none if there is one material only, the density, and the constants of the parts.
     pub(super) fn parts(
         &self,
+        solid: &Solid,
         cloud: &PointCloud,
         sets: &Sets,
         constants: &BondConstants,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Composition, BuildError> {
-        let material = &self.model.material;
+        let material = &solid.material;
         self.judge_stretch(
             constants,
             &material.bonds.fracture,
             &"material".into(),
             warnings,
         );
-        self.judge_stiffness(constants, &"material".into(), warnings);
+        self.judge_stiffness(solid, constants, &"material".into(), warnings);
         if material.parts.is_empty() {
             return Ok(Composition {
                 classes: None,
@@ -54,10 +53,10 @@ impl Assembler<'_> {
                 ..material.bonds.clone()
             };
             let own = self
-                .constants_of(&own, cloud)
+                .constants_of(solid, &own, cloud)
                 .map_err(|error| at_path(&path, error.into()))?;
             self.judge_stretch(&own, &part.fracture, &path, warnings);
-            self.judge_stiffness(&own, &path, warnings);
+            self.judge_stiffness(solid, &own, &path, warnings);
             all.push(own);
             // The library refuses more materials than a byte counts.
             let number = (k + 1) as u8;
@@ -105,18 +104,18 @@ impl Assembler<'_> {
     /// a lattice.
     pub(super) fn constants_of(
         &self,
+        solid: &Solid,
         material: &BondMaterial,
         cloud: &PointCloud,
     ) -> pericles::Result<BondConstants> {
-        let constants = material.constants(cloud, self.model.body.state)?;
-        let integrals = self.model.material.form == ForceForm::Spectral
-            || self.model.body.quadrature == Quadrature::Gauss;
+        let constants = material.constants(cloud, solid.state)?;
+        let integrals = solid.material.form == ForceForm::Spectral || solid.shape.has_gauss_nodes();
         if !integrals {
             return Ok(constants);
         }
         let mut right = material.clone();
         right.modulus.calibration = Calibration::Continuum;
-        let right = right.constants(cloud, self.model.body.state)?;
+        let right = right.constants(cloud, solid.state)?;
         let error = constants.micromodulus / right.micromodulus - 1.0;
         Ok(BondConstants {
             stiffness_error: error,

@@ -6,18 +6,22 @@ use pericles::boundary::MotionKind;
 use pericles::material::BondConstants;
 use pericles::observe::Schedule;
 use pericles::time::State;
-use pericles_deck::{Caution, LoadAmplitude, Model, ModelWarning, Remark};
+use pericles_deck::{Caution, LoadAmplitude, Model, ModelWarning, Remark, Solid};
 
 impl Assembler<'_> {
     /// Warns of densities and moduli that no solid has. Decks in units of their own (ρ = 1, E = 1) are left alone.
-    pub(super) fn judge_solid(&self, constants: &BondConstants) -> Vec<ModelWarning> {
+    pub(super) fn judge_solid(
+        &self,
+        solid: &Solid,
+        constants: &BondConstants,
+    ) -> Vec<ModelWarning> {
         /// kg/m³. Osmium has 22 600.
         const DENSEST: f64 = 1e5;
         /// kg/m³. Aerogels have less than this.
         const SOLID: f64 = 100.0;
         /// Pa. The softest gels have 1000.
         const SOFTEST: f64 = 1e3;
-        let density = self.model.material.bonds.density;
+        let density = solid.material.bonds.density;
         let modulus = constants.young;
         let heavy =
             (density > DENSEST).then_some(("material.density", Caution::HeavySolid { density }));
@@ -34,21 +38,17 @@ impl Assembler<'_> {
         if system.operator().can_break() {
             return Vec::new();
         }
-        let Model {
-            material, output, ..
-        } = self.model;
-        let no_fail = match &self.model.surface {
-            Some(surface) => &surface.no_fail,
-            None => &material.no_fail,
-        };
+        let Model { body, output, .. } = self.model;
+        let solid = body.solid();
+        let measures_damage = solid.is_some_and(|solid| solid.material.damage.is_some());
         // What pre-cracks took is damage, however the bonds behave later.
         let uncracked = self.model.cracks.is_empty();
         let writes_cracks = output
             .cracks
             .is_some_and(|cracks| cracks.schedule != Schedule::Never);
         let idle = [
-            ("material.no_fail", !no_fail.is_empty()),
-            ("material.damage", material.damage.is_some() && uncracked),
+            ("material.no_fail", !body.no_fail().is_empty()),
+            ("material.damage", measures_damage && uncracked),
             ("output.cracks", writes_cracks),
             (
                 "output.fragments",

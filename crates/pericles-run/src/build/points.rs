@@ -10,20 +10,22 @@ use pericles::space::{
     rectangular_cells,
 };
 use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, Keys, ModelWarning, PointsFile, Quadrature, Remark,
+    BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Quadrature,
+    Remark, Solid, SolidShape,
 };
 
 impl Assembler<'_> {
     pub(super) fn points(
         &self,
+        solid: &Solid,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<GradedCloud, BuildError> {
-        let points = match &self.model.body.listed {
-            Some(file) => self
-                .listed_points(file, resources, warnings)
+        let points = match &solid.shape {
+            SolidShape::Points(file) => self
+                .listed_points(solid, file, resources, warnings)
                 .map(GradedCloud::of_one_grid),
-            None => self.grid_points(resources, warnings),
+            SolidShape::Lattice(lattice) => self.grid_points(solid, lattice, resources, warnings),
         }?;
         /// The distance of atoms in a crystal, m.
         const ATOMS: f64 = 1e-10;
@@ -39,6 +41,7 @@ impl Assembler<'_> {
 
     fn listed_points(
         &self,
+        solid: &Solid,
         file: &PointsFile,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
@@ -52,11 +55,11 @@ impl Assembler<'_> {
             at_path("body.file", fault)
         })?;
         let cloud = listed
-            .cloud(file.dimension, self.model.body.grid.section)
+            .cloud(file.dimension, solid.shape.section())
             .map_err(|error| at("body.file", error))?;
-        let (given, found) = (self.model.body.grid.spacing, cloud.spacing());
+        let (given, found) = (solid.shape.spacing(), cloud.spacing());
         if (1.0 / OFF..=OFF).contains(&(found / given)) {
-            self.check_listed(&cloud, resources)?;
+            self.check_listed(solid, &cloud, resources)?;
             warnings.extend(self.judge_listed(&listed, &cloud));
             return Ok(cloud);
         }
@@ -99,9 +102,9 @@ impl Assembler<'_> {
     }
 
     /// Warns of holes that take nothing from the body.
-    fn judge_holes(&self, graded: &GradedGrid) -> Vec<ModelWarning> {
+    fn judge_holes(&self, lattice: &Lattice, graded: &GradedGrid) -> Vec<ModelWarning> {
         let grid = &graded.grid;
-        let idle = match (&grid.shape, &self.model.body.rectangular) {
+        let idle = match (&grid.shape, &lattice.rectangular) {
             (Shape::Box { origin, size }, Some(spacing)) => {
                 idle_holes(*origin, size, spacing, &grid.holes)
             }
@@ -119,20 +122,22 @@ impl Assembler<'_> {
 
     fn grid_points(
         &self,
+        solid: &Solid,
+        lattice: &Lattice,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<GradedCloud, BuildError> {
         let graded = GradedGrid {
-            grid: self.model.body.grid.clone(),
-            finer: self.model.body.finer.clone(),
+            grid: lattice.grid.clone(),
+            finer: lattice.finer.clone(),
         };
-        let gauss = self.model.body.quadrature == Quadrature::Gauss;
-        self.check_grid(&graded, if gauss { 2.0 } else { 1.0 }, resources)?;
-        warnings.extend(self.judge_holes(&graded));
+        let gauss = lattice.quadrature == Quadrature::Gauss;
+        self.check_grid(solid, &graded, if gauss { 2.0 } else { 1.0 }, resources)?;
+        warnings.extend(self.judge_holes(lattice, &graded));
         let grid = &graded.grid;
-        let points = match (&grid.shape, self.model.body.quadrature) {
-            (Shape::Box { origin, size }, _) if self.model.body.rectangular.is_some() => {
-                let spacing = self.model.body.rectangular.as_deref().unwrap_or_default();
+        let points = match (&grid.shape, lattice.quadrature) {
+            (Shape::Box { origin, size }, _) if lattice.rectangular.is_some() => {
+                let spacing = lattice.rectangular.as_deref().unwrap_or_default();
                 rectangular_cells(*origin, size, spacing, grid.section, &grid.holes)
                     .map(GradedCloud::of_one_grid)
             }
@@ -140,7 +145,7 @@ impl Assembler<'_> {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)
                     .map(GradedCloud::of_one_grid)
             }
-            _ if self.model.body.periodic => grid
+            _ if lattice.periodic => grid
                 .points()
                 .and_then(PointCloud::with_periodic_faces)
                 .map(GradedCloud::of_one_grid),
@@ -149,9 +154,9 @@ impl Assembler<'_> {
         };
         points.map_err(|error| {
             let place: Keys = match &error {
-                PericlesError::NotWholeCells { length, .. } => self.side(*length),
+                PericlesError::NotWholeCells { length, .. } => self.side(lattice, *length),
                 PericlesError::TooManyPoints { .. } => "body.spacing".into(),
-                PericlesError::Unresolved { .. } => self.corner().into(),
+                PericlesError::Unresolved { .. } => self.corner(lattice).into(),
                 PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
                     KeyPath::from("body.refine").index(*part).into()
                 }
@@ -163,8 +168,8 @@ impl Assembler<'_> {
     }
 
     /// The entry that says where the body is.
-    fn corner(&self) -> &'static str {
-        match self.model.body.grid.shape {
+    fn corner(&self, lattice: &Lattice) -> &'static str {
+        match lattice.grid.shape {
             Shape::Box { .. } => "body.origin",
             Shape::Disc { .. } | Shape::Ball { .. } => "body.centre",
             Shape::Cylinder { .. } => "body.base",
@@ -172,9 +177,9 @@ impl Assembler<'_> {
     }
 
     /// The entries that may give a side of this length.
-    fn side(&self, length: f64) -> Keys {
+    fn side(&self, lattice: &Lattice, length: f64) -> Keys {
         let size = KeyPath::from("body.size");
-        match &self.model.body.grid.shape {
+        match &lattice.grid.shape {
             Shape::Box { size: sides, .. } => match sides.iter().position(|side| *side == length) {
                 Some(0) if sides.len() == 1 => ["body.length".into(), size.index(0)].into(),
                 Some(axis) => size.index(axis).into(),

@@ -7,28 +7,35 @@ use pericles::family::{BondList, Crack};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::BondConstants;
 use pericles::space::{Point, PointCloud};
-use pericles_deck::{Caution, KeyPath, LoadAmplitude, ModelWarning, Remark, Scheme};
+use pericles_deck::{Caution, KeyPath, LoadAmplitude, ModelWarning, Remark, Scheme, Solid};
 
 impl Assembler<'_> {
     /// Warns of loads on points that cannot follow them, and of static pieces that nothing holds.
     pub(super) fn judge_conditions(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
         self.judge_held_loads(system, warnings);
-        if self.model.surface.is_some() || !self.model.body.finer.is_empty() {
+        let Some(solid) = self.model.body.solid() else {
+            return;
+        };
+        if solid.shape.is_refined() {
             return;
         }
         if matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
-            self.judge_support(system, warnings);
+            self.judge_support(solid, system, warnings);
         } else {
-            self.judge_pieces(system, warnings);
+            self.judge_pieces(solid, system, warnings);
         }
     }
 
     /// Warns of waves faster than any solid carries them.
-    pub(super) fn judge_speed(&self, constants: &BondConstants) -> Option<ModelWarning> {
+    pub(super) fn judge_speed(
+        &self,
+        solid: &Solid,
+        constants: &BondConstants,
+    ) -> Option<ModelWarning> {
         /// m/s. Diamond has 18 000.
         const FASTEST: f64 = 3e4;
-        let modulus = self.model.body.state.longitudinal_modulus(constants.young);
-        let density = self.model.material.bonds.density;
+        let modulus = solid.state.longitudinal_modulus(constants.young);
+        let density = solid.material.bonds.density;
         let speed = (modulus / density).sqrt();
         let caution = Caution::FastWaves { speed };
         (speed > FASTEST).then(|| Remark::new("material.density", caution))
@@ -38,6 +45,7 @@ impl Assembler<'_> {
     /// compare with.
     pub(super) fn judge_stiffness(
         &self,
+        solid: &Solid,
         constants: &BondConstants,
         path: &KeyPath,
         warnings: &mut Vec<ModelWarning>,
@@ -46,7 +54,7 @@ impl Assembler<'_> {
         const BULK: f64 = 0.1;
         /// A horizon of two spacings lacks a third of the shear stiffness.
         const SHEAR: f64 = 0.5;
-        if self.model.body.listed.is_some() {
+        if solid.shape.is_listed() {
             return;
         }
         let error = constants.stiffness_error;
@@ -63,11 +71,14 @@ impl Assembler<'_> {
     }
 
     /// Warns of classes of bonds that carry nothing where bonds can break: they count as damage without ever having resisted.
-    pub(super) fn judge_classes(&self, constants: &BondConstants) -> Option<ModelWarning> {
+    pub(super) fn judge_classes(
+        &self,
+        solid: &Solid,
+        constants: &BondConstants,
+    ) -> Option<ModelWarning> {
         /// Of the largest coefficient; the bound of tuned coefficients is met to round-off.
         const NOTHING: f64 = 1e-9;
-        let InfluenceFunction::Classes(table) = &self.model.material.bonds.influence.function
-        else {
+        let InfluenceFunction::Classes(table) = &solid.material.bonds.influence.function else {
             return None;
         };
         let values = table.entries().iter().map(|(_, value)| value.abs());
@@ -129,9 +140,9 @@ impl Assembler<'_> {
         }
     }
 
-    fn judge_support(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
+    fn judge_support(&self, solid: &Solid, system: &System, warnings: &mut Vec<ModelWarning>) {
         let cloud = system.cloud();
-        let Some(piece) = self.pieces(cloud) else {
+        let Some(piece) = self.pieces(solid, cloud) else {
             return;
         };
         let mut supported = vec![false; cloud.len()];
@@ -152,17 +163,16 @@ impl Assembler<'_> {
     }
 
     /// Warns of bodies that are in pieces before they break. Only what was cut, has holes or is listed can be, and larger bodies are not looked at.
-    fn judge_pieces(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
+    fn judge_pieces(&self, solid: &Solid, system: &System, warnings: &mut Vec<ModelWarning>) {
         /// Finding bonds takes as long as some steps of the run.
         const MOST: usize = 50_000;
         let cloud = system.cloud();
-        let holes = &self.model.body.grid.holes;
-        let whole =
-            self.model.cracks.is_empty() && holes.is_empty() && self.model.body.listed.is_none();
+        let holes = &solid.shape.holes();
+        let whole = self.model.cracks.is_empty() && holes.is_empty() && !solid.shape.is_listed();
         if whole || cloud.len() > MOST || cloud.is_periodic() {
             return;
         }
-        let Some(piece) = self.pieces(cloud) else {
+        let Some(piece) = self.pieces(solid, cloud) else {
             return;
         };
         let mut sizes = vec![0usize; cloud.len()];
@@ -182,8 +192,8 @@ impl Assembler<'_> {
     }
 
     /// The piece of each point, named by its first point: what bonds join at the start.
-    fn pieces(&self, cloud: &PointCloud) -> Option<Vec<usize>> {
-        let material = &self.model.material.bonds;
+    fn pieces(&self, solid: &Solid, cloud: &PointCloud) -> Option<Vec<usize>> {
+        let material = &solid.material.bonds;
         // What is wrong with families and cracks has been refused when the operator was made.
         let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).ok()?;
         for crack in &self.model.cracks {

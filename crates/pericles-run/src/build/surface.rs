@@ -12,15 +12,15 @@ use pericles::cache::Cache;
 use pericles::operator::ForceOperator;
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Fault, KeyPath, LoadAmplitude, SurfaceDeck, SurfaceShape, VertexAreas,
+    BuildError, Fault, KeyPath, LoadAmplitude, SurfaceBody, SurfaceShape, VertexAreas,
 };
-use pericles_manifold::force::SurfaceBody;
+use pericles_manifold::force;
 use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceError};
 
 impl Assembler<'_> {
     pub(super) fn surface_points(
         &self,
-        deck: &SurfaceDeck,
+        deck: &SurfaceBody,
         resources: &Resources<'_>,
     ) -> Result<(Surface, PointCloud), BuildError> {
         let surface = match &deck.shape {
@@ -66,7 +66,7 @@ impl Assembler<'_> {
 
     pub(super) fn surface_operator(
         &self,
-        deck: &SurfaceDeck,
+        deck: &SurfaceBody,
         surface: &Surface,
         cloud: &Arc<PointCloud>,
         sets: &Sets,
@@ -84,7 +84,7 @@ impl Assembler<'_> {
             })?;
         let no_fail = self.union_of(sets, &deck.no_fail)?;
         let stiffness = self.stiffness_of(&deck.inclusions, cloud, sets)?;
-        SurfaceBody {
+        force::SurfaceBody {
             surface,
             cloud,
             pairs: &pairs,

@@ -1,6 +1,7 @@
 //! Constants of materials in decks: what goes together, and what is warned of.
 
 use super::common::{Build, Built};
+use super::decks::solid;
 use pericles::material::{Calibration, Fracture, FractureCalibration};
 use pericles_deck::Deck;
 
@@ -47,7 +48,7 @@ fn warnings(body: &str, material: &str) -> Vec<String> {
 
 #[test]
 fn coefficients_per_class_take_the_lattice_s_modulus() {
-    let calibration = |deck: Deck| deck.model.material.bonds.modulus.calibration;
+    let calibration = |deck: Deck| solid(&deck).material.bonds.modulus.calibration;
     assert_eq!(calibration(deck(BAR, CLASSES)), Calibration::Lattice);
     let given = format!("modulus = \"lattice\"\n{CLASSES}");
     assert_eq!(calibration(deck(BAR, &given)), Calibration::Lattice);
@@ -95,12 +96,12 @@ fn integrals_have_no_lattice() {
     );
     // They have the modulus of the integral, whatever sums over a lattice would be.
     for (body, material) in [(&ring, spectral), (&gauss, linear)] {
-        assert_eq!(model(body, material).constants.stiffness_error, 0.0);
+        assert_eq!(model(body, material).constants().stiffness_error, 0.0);
     }
     let conical =
         format!("modulus = \"unmodified\"\ninfluence = {{ function = \"conical\" }}\n{spectral}");
     // ∫(1 − r/δ) r dr is a third of ∫ r dr.
-    let error = model(&ring, &conical).constants.stiffness_error;
+    let error = model(&ring, &conical).constants().stiffness_error;
     assert!((error + 2.0 / 3.0).abs() < 1e-12, "{error}");
 }
 
@@ -137,7 +138,7 @@ fn a_pair_of_materials_is_given_once() {
 
 #[test]
 fn listed_points_have_the_continuum_s_critical_stretch() {
-    let energy = |deck: Deck| match deck.model.material.bonds.fracture {
+    let energy = |deck: Deck| match solid(&deck).material.bonds.fracture {
         Fracture::Energy { calibration, .. } => calibration,
         other => panic!("{other:?}"),
     };
@@ -172,7 +173,7 @@ fn wrong_stiffnesses_are_warned_of() {
                     influence = { function = \"constant\", acts_on = \"displacement\" }";
     let bar = model(BAR, constant);
     let exact = 3.0 * 72e9 / 3e-3f64.powi(3);
-    assert!((bar.constants.micromodulus / exact - 1.0).abs() < 1e-12);
+    assert!((bar.constants().micromodulus / exact - 1.0).abs() < 1e-12);
     assert!(bar.warnings.is_empty());
     // Usual bodies are not warned of.
     for material in ["horizon_ratio = 3", "horizon_ratio = 2", conical] {

@@ -111,7 +111,7 @@ fn forms_of_linear_bodies() {
     assert_eq!((gauss.form.name(), gauss.cloud.len()), ("convolution", 400));
     assert_eq!(gauss.integrator.name(), "trigonometric");
     // Seven lengths.
-    assert_eq!(parse(&ring()).model.material.bonds.horizon, 7.0);
+    assert_eq!(parse(&ring()).model.body.horizon(), 7.0);
 }
 
 #[test]
@@ -221,7 +221,7 @@ end = "1 us"
     );
     // The dispersion tool sees the same bonds.
     let deck = parse(text);
-    let spacing = model.bond_lattice(&deck.model).unwrap().spacing();
+    let spacing = model.interior(&deck.model).unwrap().lattice.spacing();
     assert_eq!(spacing, [1e-3, 0.75e-3, 0.0]);
     let classes = text.replace(
         "horizon_ratio = 3",

@@ -1,6 +1,7 @@
 //! Influence functions made against dispersion, from decks.
 
 use super::common::Build;
+use super::decks::solid;
 use pericles::kernel::InfluenceFunction;
 use pericles_deck::Deck;
 
@@ -26,7 +27,7 @@ fn deck(lines: &str) -> Result<Deck, String> {
 }
 
 fn values(deck: &Deck) -> Vec<f64> {
-    match &deck.model.material.bonds.influence.function {
+    match &solid(&deck).material.bonds.influence.function {
         InfluenceFunction::Classes(table) => table.entries().iter().map(|entry| entry.1).collect(),
         other => panic!("{other:?}"),
     }
@@ -114,7 +115,7 @@ fn kernels_that_would_be_unstable_are_bounded() {
     };
     let deck = tuned(r#"influence = { function = "tuned" }"#).unwrap();
     assert!(values(&deck).iter().all(|value| *value >= 0.0));
-    let table = deck.model.material.tuned.as_ref().unwrap();
+    let table = solid(&deck).material.tuned.as_ref().unwrap();
     assert_eq!(table.tuning.lower_bound, Some(0.0));
     assert!(table.assessment.stability.is_stable());
     let model = deck.build().unwrap();
@@ -127,7 +128,16 @@ fn kernels_that_would_be_unstable_are_bounded() {
     assert!(message.contains("unstable"), "{message}");
     // On a plate no bound is needed.
     let plate = self::deck(r#"influence = { function = "tuned" }"#).unwrap();
-    assert_eq!(plate.model.material.tuned.unwrap().tuning.lower_bound, None);
+    assert_eq!(
+        solid(&plate)
+            .material
+            .tuned
+            .as_ref()
+            .unwrap()
+            .tuning
+            .lower_bound,
+        None
+    );
 }
 
 #[test]
@@ -183,7 +193,7 @@ fn tuned_for_the_deck_s_own_grid() {
         );
     }
     let model = signed.build().unwrap();
-    assert!(model.constants.stiffness_error.abs() < 1e-12);
+    assert!(model.constants().stiffness_error.abs() < 1e-12);
     let absolute = deck(
         r#"influence = { function = "tuned", method = "galerkin", combination = "absolute", decay = "none" }"#,
     );
@@ -201,7 +211,7 @@ fn tuned_for_the_deck_s_own_grid() {
     let model = positive.build().unwrap();
     // 5πG₀/(12Eδ) times m₃(1) m₂/(m₂(1) m₃) of the polygon: for δ = 0.75 mm it is 0.002025.
     let expected = 0.002025 * (0.25f64).sqrt();
-    assert!((model.constants.critical_stretch - expected).abs() < 6e-7);
+    assert!((model.constants().critical_stretch - expected).abs() < 6e-7);
 }
 
 #[test]
@@ -209,7 +219,7 @@ fn values_by_class() {
     let table = "influence = { function = \"classes\", table = [[[1, 0], 3.76360], [[1, 1], 2.98631], [[2, 0], 0.5], [[2, 1], 0.5], [[2, 2], 0.5], [[3, 0], 0.5]] }";
     let given = deck(table).unwrap();
     assert_eq!(values(&given)[..3], [3.76360, 2.98631, 0.5]);
-    assert!(given.build().unwrap().constants.stiffness_error.abs() < 1e-12);
+    assert!(given.build().unwrap().constants().stiffness_error.abs() < 1e-12);
     // Half a spacing more reach needs two classes more.
     let text = PLATE
         .replace("INFLUENCE", table)
@@ -227,7 +237,11 @@ fn values_by_class() {
 fn cosines_as_printed() {
     let lines = r#"influence = { function = "cosines", wavenumber = 1.1, coefficients = [2.3, 2.0, -0.39, -0.48, 0.28, 0.14, -0.15, -0.02, 0.05] }
         modulus = "unmodified""#;
-    let influence = deck(lines).unwrap().model.material.bonds.influence;
+    let influence = solid(&deck(lines).unwrap())
+        .material
+        .bonds
+        .influence
+        .clone();
     assert!((influence.alpha(1e-3, 3e-3) - 3.738).abs() < 6e-4);
     assert!((influence.alpha(3e-3, 3e-3) - 0.445).abs() < 6e-4);
 }

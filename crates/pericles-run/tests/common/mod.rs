@@ -4,6 +4,7 @@
 use std::ops::Deref;
 
 use pericles::Simulation;
+use pericles::material::BondConstants;
 use pericles_deck::{Deck, DeckError, Warning};
 use pericles_run::{Assembly, Resources, build};
 
@@ -22,6 +23,11 @@ impl Deref for Built {
 }
 
 impl Built {
+    /// The constants of the bonds.
+    pub fn constants(&self) -> &BondConstants {
+        self.assembly.constants.as_ref().unwrap()
+    }
+
     /// The run; observers are still to be added.
     pub fn simulation(self) -> Simulation {
         self.assembly.simulation()

@@ -47,7 +47,7 @@ struct Places {
 
 impl Places {
     fn of(assembly: &Assembly, deck: &Deck) -> Self {
-        let (cloud, horizon) = (&assembly.cloud, deck.model.material.bonds.horizon);
+        let (cloud, horizon) = (&assembly.cloud, deck.model.body.horizon());
         let [low, high] = cloud.bounds();
         // The part with smaller cells is a box in the middle: its border is found from the cells themselves.
         let small = |i: usize| cloud.cell_size(i) < 0.9 * cloud.spacing();
@@ -97,7 +97,8 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
         .operator()
         .add_force(0.0, &strained, On::All, &mut force);
     // The force density over E e/δ, what a free surface would be pulled with.
-    let scale = assembly.constants.young * STRAIN / deck.model.material.bonds.horizon;
+    let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young);
+    let scale = young * STRAIN / deck.model.body.horizon();
     let largest = |of: &dyn Fn(usize) -> bool| {
         (0..n)
             .filter(|&i| of(i))
