@@ -10,7 +10,8 @@ use super::assembly::Assembly;
 use super::body::BodyParts;
 use super::boundary::exterior_frequency;
 use super::damping::strongest;
-use super::discretise::{Discretisation, discretise};
+use super::discretisation::Discretisation;
+use super::discretise::discretise;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 

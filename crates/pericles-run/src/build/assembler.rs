@@ -1,6 +1,6 @@
 //! What assembles a model.
 
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::at_path;
 use pericles::space::PointSet;
 use pericles_deck::{BuildError, Fault, Keys, Model};

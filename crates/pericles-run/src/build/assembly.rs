@@ -12,7 +12,7 @@ use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
 use pericles_waves::absorbing::{EndReport, Side};
 
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
 use super::step::damped_step;

@@ -1,7 +1,7 @@
 //! Force and material of a body.
 
 use super::assembler::Assembler;
-use super::discretise::{Discretisation, Grids, Sets};
+use super::discretisation::{Discretisation, Grids, Sets};
 use super::parts::Composition;
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;

@@ -1,7 +1,7 @@
 //! Absorbing ends of a model.
 
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::step::Steps;

@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::at_path;
 use super::resources::Resources;
 use pericles::System;

@@ -1,7 +1,7 @@
 //! Bonds of a body with cells of several sizes.
 
 use super::assembler::Assembler;
-use super::discretise::Grids;
+use super::discretisation::Grids;
 use super::refusal::{at, at_material};
 use pericles::PericlesError;
 use pericles::material::PairLaw;

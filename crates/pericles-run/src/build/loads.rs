@@ -2,7 +2,7 @@
 
 use super::area;
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::at_path;
 use super::step::Steps;
 use pericles::System;

@@ -1,7 +1,7 @@
 //! Several materials: the classes of bonds, and the density of every point.
 
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::{at, at_path};
 use pericles::PointScalar;
 use pericles::material::{BondConstants, BondMaterial, Calibration, Fracture, PairClasses};

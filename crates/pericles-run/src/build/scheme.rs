@@ -1,7 +1,7 @@
 //! The integrator of a model.
 
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::{at, at_path};
 use super::step::Steps;
 use pericles::time::{

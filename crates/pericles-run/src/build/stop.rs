@@ -3,7 +3,7 @@
 use pericles::{StopCondition, StopWhen, System};
 
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::at_path;
 use pericles_deck::{BuildError, Fault, KeyPath, StopCondition as StopRule};
 

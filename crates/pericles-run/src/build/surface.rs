@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::assembler::Assembler;
-use super::discretise::Sets;
+use super::discretisation::Sets;
 use super::refusal::{at, at_path};
 use super::resources::{FileError, Resources};
 use pericles::PericlesError;
