@@ -5,12 +5,70 @@ use std::sync::{Arc, LazyLock};
 
 use gauss_quad::GaussLegendre;
 use pericles::boundary::{TimeCourse, TimeFunction, TimeTable};
+use serde::{Deserialize, Serialize};
 
 use crate::component;
 use crate::expression::{Expression, Rates};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
+
+/// A function of time g(t), by which loads and motions are multiplied.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum TimeHistory {
+    /// g = 1.
+    #[default]
+    Constant,
+    /// From 0 to 1, linear.
+    Ramp {
+        /// s
+        start: f64,
+        /// s
+        duration: f64,
+    },
+    /// sin² from 0 to 1 and back.
+    Pulse {
+        /// s
+        start: f64,
+        /// s
+        duration: f64,
+    },
+    /// Linear between rows (time in s, value).
+    Table(Vec<(f64, f64)>),
+    /// An expression of t.
+    Expression(Expression),
+}
+
+impl TimeHistory {
+    /// The function that the engine evaluates.
+    ///
+    /// # Errors
+    /// A table without rows, or with times that do not rise.
+    pub fn function(&self) -> Result<TimeFunction, Fault> {
+        Ok(match self {
+            Self::Constant => TimeFunction::Constant,
+            &Self::Ramp { start, duration } => TimeFunction::Ramp { start, duration },
+            &Self::Pulse { start, duration } => TimeFunction::Pulse { start, duration },
+            Self::Table(rows) => TimeFunction::Table(Arc::new(TimeTable::new(rows.clone())?)),
+            Self::Expression(text) => TimeFunction::Course(Arc::new(Course::new(text.clone()))),
+        })
+    }
+
+    /// The same for a prescribed motion, whose acceleration is its derivative.
+    ///
+    /// # Errors
+    /// As [`TimeHistory::function`]; an expression with jumps or kinks.
+    pub fn smooth_function(&self) -> Result<TimeFunction, Fault> {
+        if let Self::Expression(expression) = self {
+            let course = Course::new(expression.clone());
+            if !course.has_rates() {
+                return Err(course.rough());
+            }
+        }
+        self.function()
+    }
+}
 
 #[derive(Clone, Copy)]
 enum Kind {
@@ -22,16 +80,16 @@ enum Kind {
 }
 
 /// Of a load.
-pub(crate) fn function(table: &Table<'_>) -> Option<TimeFunction> {
+pub(crate) fn function(table: &Table<'_>) -> Option<TimeHistory> {
     read(table, false)
 }
 
 /// Of a prescribed motion, whose acceleration is its derivative.
-pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeFunction> {
+pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeHistory> {
     read(table, true)
 }
 
-fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
+fn read(table: &Table<'_>, smooth: bool) -> Option<TimeHistory> {
     const KINDS: [(&str, Kind); 5] = [
         ("constant", Kind::Constant),
         ("ramp", Kind::Ramp),
@@ -43,7 +101,7 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
     table.define("function");
     let kind = table.choice_or_first("kind", "function of time", &KINDS)?;
     let function = match kind {
-        Kind::Constant => Some(TimeFunction::Constant),
+        Kind::Constant => Some(TimeHistory::Constant),
         Kind::Ramp | Kind::Pulse => {
             let start = table.or("start", 0.0, |item| item.quantity(Quantity::Time));
             let duration = table
@@ -51,19 +109,21 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
                 .and_then(|item| item.positive(Quantity::Time));
             let (start, duration) = (start?, duration?);
             Some(match kind {
-                Kind::Ramp => TimeFunction::Ramp { start, duration },
-                _ => TimeFunction::Pulse { start, duration },
+                Kind::Ramp => TimeHistory::Ramp { start, duration },
+                _ => TimeHistory::Pulse { start, duration },
             })
         }
         Kind::Table => table.required("rows").and_then(|item| rows(&item)),
         Kind::Expression => table.required("expression").and_then(|item| {
             let expression = component::expression(&item, &["t"])?;
-            let course = Course::new(expression);
-            if smooth && !course.has_rates() {
-                item.report(course.rough());
-                return None;
+            if smooth {
+                let course = Course::new(expression.clone());
+                if !course.has_rates() {
+                    item.report(course.rough());
+                    return None;
+                }
             }
-            Some(TimeFunction::Course(Arc::new(course)))
+            Some(TimeHistory::Expression(expression))
         }),
     };
     table.finish();
@@ -71,7 +131,7 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
 }
 
 /// `[[time, value], …]`
-fn rows(item: &Item<'_>) -> Option<TimeFunction> {
+fn rows(item: &Item<'_>) -> Option<TimeHistory> {
     let mut rows = Some(Vec::new());
     for row in item.list("a list of rows, each [time, value]")? {
         let read = row.exactly(2, "a row [time, value]").and_then(|pair| {
@@ -84,8 +144,9 @@ fn rows(item: &Item<'_>) -> Option<TimeFunction> {
             _ => rows = None,
         }
     }
-    let table = item.accept(TimeTable::new(rows?))?;
-    Some(TimeFunction::Table(Arc::new(table)))
+    let rows = rows?;
+    item.accept(TimeTable::new(rows.clone()))?;
+    Some(TimeHistory::Table(rows))
 }
 
 /// A function of time given as an expression.

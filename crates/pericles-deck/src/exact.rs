@@ -1,6 +1,7 @@
 //! `[exact]`: a known solution, from which the distance is written.
 
 use pericles::kernel::{ActsOn, InfluenceFunction};
+use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 use crate::material::Material;
@@ -8,18 +9,22 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 
 /// A solution to compare with.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Exact {
     /// Which.
     pub solution: KnownSolution,
     /// Points that count: those within this distance of the pulse's middle or of the origin, m; all if none.
+    #[serde(default)]
     pub window: Option<f64>,
     /// Whether the body starts as the solution does.
+    #[serde(default)]
     pub start: bool,
 }
 
 /// Solutions of bars and lines; modulus, density and micromodulus are those of the material.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum KnownSolution {
     /// A Gaussian start on the line with a Gaussian micromodulus of this length.
     NonlocalPulse {
@@ -47,7 +52,8 @@ pub enum KnownSolution {
 }
 
 /// u = amplitude · exp(−((x − centre)/width)²), at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Pulse {
     /// m
     pub width: f64,

@@ -6,6 +6,7 @@ use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Tre
 use pericles::operator::DamageMeasure;
 use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
+use serde::{Deserialize, Serialize};
 
 use crate::body::BodyRead;
 use crate::constants::{
@@ -19,28 +20,57 @@ use crate::set::SetNames;
 use crate::vocabulary::HORIZONS;
 
 /// The material with what goes with it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Material {
     /// A name for people.
+    #[serde(default)]
     pub name: Option<String>,
     /// Law, constants, horizon and breaking.
+    #[serde(with = "crate::form")]
     pub bonds: BondMaterial,
     /// How the coefficients of the influence function were found, if it is tuned against dispersion.
+    #[serde(default, with = "crate::form")]
     pub tuned: Option<TunedTable>,
     /// Sets whose bonds never break.
+    #[serde(default)]
     pub no_fail: Vec<String>,
     /// Parts that are stiffer or softer, later ones before earlier ones.
+    #[serde(default, rename = "inclusion")]
     pub inclusions: Vec<Inclusion>,
     /// Other materials, later ones before earlier ones.
+    #[serde(default, rename = "part")]
     pub parts: Vec<Part>,
     /// Bonds between materials.
+    #[serde(default)]
     pub interface: MaterialInterface,
     /// What is done about the bonds that points near surfaces lack.
+    #[serde(default, with = "crate::form")]
     pub surface_correction: SurfaceCorrection,
     /// How damage is measured, if it is given.
+    #[serde(default, with = "crate::form")]
     pub damage: Option<DamageMeasure>,
     /// How bonds are kept: a matter of speed only.
+    #[serde(default, with = "crate::form")]
     pub form: ForceForm,
+}
+
+impl From<BondMaterial> for Material {
+    /// One material for the whole body, whose bonds are kept as is fastest.
+    fn from(bonds: BondMaterial) -> Self {
+        Self {
+            name: None,
+            bonds,
+            tuned: None,
+            no_fail: Vec::new(),
+            inclusions: Vec::new(),
+            parts: Vec::new(),
+            interface: MaterialInterface::default(),
+            surface_correction: SurfaceCorrection::default(),
+            damage: None,
+            form: ForceForm::default(),
+        }
+    }
 }
 
 impl Material {
@@ -56,7 +86,8 @@ impl Material {
 }
 
 /// A part of other stiffness.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Inclusion {
     /// The set.
     pub set: String,

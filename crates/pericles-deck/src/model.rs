@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use pericles::material::StressState;
+use serde::{Deserialize, Serialize};
 
 use crate::body::{SolidShape, SurfaceShape};
 use crate::boundary::BoundaryCondition;
@@ -16,38 +17,109 @@ use crate::surface::SurfaceBody;
 use crate::time::Time;
 
 /// What is simulated and what is written, as plain data in SI units: what a [`Deck`](crate::Deck) says, without its text.
-#[derive(Debug, Clone)]
+///
+/// A program can write a model itself, and serialise it, for example as JSON; keys and words are those of decks where decks have them.
+/// Numbers are checked less strictly than in decks: what is wrong is refused, with the key that it concerns, when the model is discretised
+/// and assembled.
+///
+/// ```
+/// use pericles::family::VolumeCorrection;
+/// use pericles::kernel::Influence;
+/// use pericles::material::{
+///     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
+/// };
+/// use pericles::space::{Face, Grid, Region, Shape};
+/// use pericles_deck::{Body, Initial, Members, Model, NamedSet, Solid, SolidShape, Time};
+///
+/// // A steel bar of 1 m whose left end is pushed.
+/// let grid = Grid {
+///     shape: Shape::Box { origin: [0.0; 3], size: vec![1.0] },
+///     spacing: 0.01,
+///     section: 4e-4,
+///     holes: vec![],
+/// };
+/// let steel = BondMaterial {
+///     law: PairLaw::Linear,
+///     density: 7850.0,
+///     modulus: Modulus {
+///         value: ElasticModulus::Young(210e9),
+///         calibration: Calibration::Continuum,
+///     },
+///     horizon: 0.03,
+///     influence: Influence::default(),
+///     volume_correction: VolumeCorrection::default(),
+///     fracture: Fracture::Unbreakable,
+/// };
+/// let bar = Solid {
+///     shape: SolidShape::Lattice(grid.into()),
+///     state: StressState::Uniaxial,
+///     material: steel.into(),
+/// };
+/// let mut model = Model::new(Body::Solid(bar), Time::to(1e-3));
+/// let face = Face { axis: 0, upper: false };
+/// model.sets.push(NamedSet {
+///     name: "left".into(),
+///     members: Members::Region(Region::Layer { face, depth: 0.01 }),
+/// });
+/// model.initial.push(Initial {
+///     set: "left".into(),
+///     displacement: None,
+///     velocity: Some([1.0.into(), 0.0.into(), 0.0.into()]),
+///     file: None,
+///     random_velocity: None,
+/// });
+///
+/// let json = serde_json::to_string_pretty(&model)?;
+/// assert!(json.contains("\"youngs_modulus\": 210000000000.0"));
+/// let again: Model = serde_json::from_str(&json)?;
+/// assert_eq!(again, model);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Model {
     /// A title for people.
+    #[serde(default)]
     pub title: Option<String>,
     /// `[body]` and `[material]`, of a surface `[geodesics]` as well.
     pub body: Body,
     /// `[sets]`, without the set "all" of all points.
+    #[serde(default)]
     pub sets: Vec<NamedSet>,
     /// `[[crack]]`
+    #[serde(default, rename = "crack")]
     pub cracks: Vec<PreCrack>,
     /// `[[initial]]`
+    #[serde(default)]
     pub initial: Vec<Initial>,
     /// `[[prescribe]]`
+    #[serde(default)]
     pub prescribe: Vec<Prescribe>,
     /// `[[load]]`
+    #[serde(default, rename = "load")]
     pub loads: Vec<Load>,
     /// `[[boundary]]`
+    #[serde(default, rename = "boundary")]
     pub boundaries: Vec<BoundaryCondition>,
     /// `[[probe]]`
+    #[serde(default, rename = "probe")]
     pub probes: Vec<Probe>,
     /// `[exact]`
+    #[serde(default)]
     pub exact: Option<Exact>,
     /// `[time]`
     pub time: Time,
     /// `[output]`
+    #[serde(default)]
     pub output: Output,
     /// `[checkpoint]`
+    #[serde(default)]
     pub checkpoint: Checkpoint,
 }
 
 /// The body, with what it is made of.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Body {
     /// Points with volumes and bonds along straight lines.
     Solid(Solid),
@@ -56,11 +128,13 @@ pub enum Body {
 }
 
 /// A body of points with volumes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Solid {
     /// Where its points are.
     pub shape: SolidShape,
     /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
+    #[serde(with = "crate::form")]
     pub state: StressState,
     /// `[material]`
     pub material: Material,
@@ -124,6 +198,25 @@ impl Body {
 }
 
 impl Model {
+    /// A body at rest, over time, without conditions, and with the output of a deck that leaves it out.
+    pub fn new(body: Body, time: Time) -> Self {
+        Self {
+            title: None,
+            body,
+            sets: Vec::new(),
+            cracks: Vec::new(),
+            initial: Vec::new(),
+            prescribe: Vec::new(),
+            loads: Vec::new(),
+            boundaries: Vec::new(),
+            probes: Vec::new(),
+            exact: None,
+            time,
+            output: Output::default(),
+            checkpoint: Checkpoint::default(),
+        }
+    }
+
     /// The files that the model names. A relative path starts at the folder of the deck.
     pub fn files(&self) -> Vec<&Path> {
         let initial = self.initial.iter();

@@ -4,6 +4,7 @@ use pericles::time::{
     Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor, RelaxationOptions,
 };
 use pericles_waves::{FunctionMethod, LoadRule, TrigonometricOptions};
+use serde::{Deserialize, Serialize};
 
 use crate::newmark;
 use crate::quantity::Quantity;
@@ -13,9 +14,11 @@ use crate::set::SetNames;
 use crate::vocabulary::FINE_REGIONS;
 
 /// Schemes of time integration.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Scheme {
     /// Velocity Verlet.
+    #[default]
     VelocityVerlet,
     /// Runge–Kutta of order three with the parameter α.
     RungeKutta3 {
@@ -48,21 +51,23 @@ pub enum Scheme {
     /// The implicit midpoint or the trapezoidal rule.
     Implicit {
         /// Which.
+        #[serde(with = "crate::form")]
         rule: ImplicitRule,
         /// Of the steps of linear bodies.
+        #[serde(default, with = "crate::form")]
         solver: LinearSolver,
     },
     /// The exact flow of the linear part.
-    Trigonometric(TrigonometricOptions),
+    Trigonometric(#[serde(with = "crate::form")] TrigonometricOptions),
     /// Newmark's method.
-    Newmark(NewmarkOptions),
+    Newmark(#[serde(with = "crate::form")] NewmarkOptions),
     /// Discrete gradients, which conserve energy.
     DiscreteGradient {
         /// Relative error of the energy in a step.
         tolerance: f64,
     },
     /// Static states by dynamic relaxation.
-    Relaxation(RelaxationOptions),
+    Relaxation(#[serde(with = "crate::form")] RelaxationOptions),
     /// r-RESPA.
     Respa {
         /// Where and how fine.
@@ -89,7 +94,8 @@ impl Scheme {
 }
 
 /// The smaller of two time steps.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FineStep {
     /// Fine steps in a coarse one.
     pub ratio: u32,
@@ -98,20 +104,24 @@ pub struct FineStep {
 }
 
 /// The points with the smaller step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FineRegion {
     /// Those of these sets.
     Sets(Vec<String>),
     /// Those near to where bonds break or are about to.
-    Adaptive(Follow),
+    Adaptive(#[serde(with = "crate::form")] Follow),
 }
 
 /// What coarse and fine points know of each other between their steps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Interface {
     /// Of fine points at coarse stages.
+    #[serde(default, with = "crate::form")]
     pub predictor: Predictor,
     /// Of coarse points at fine stages.
+    #[serde(default, with = "crate::form")]
     pub interpolant: Interpolant,
 }
 

@@ -2,6 +2,7 @@
 
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
+use serde::{Deserialize, Serialize};
 
 use crate::body::{SurfaceShape, VertexAreas};
 use crate::material::{self, Inclusion};
@@ -10,21 +11,27 @@ use crate::reader::Table;
 use crate::set::SetNames;
 
 /// A surface with its material.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SurfaceBody {
     /// The surface.
     pub shape: SurfaceShape,
     /// The areas of its vertices.
     pub areas: VertexAreas,
     /// Its material.
+    #[serde(with = "crate::form")]
     pub material: PowerMaterial,
     /// Sets whose bonds never break.
+    #[serde(default)]
     pub no_fail: Vec<String>,
     /// Parts that are stiffer or softer, later ones before earlier ones.
+    #[serde(default, rename = "inclusion")]
     pub inclusions: Vec<Inclusion>,
     /// How distances along the surface are found.
+    #[serde(default, with = "crate::form")]
     pub method: GeodesicMethod,
     /// Which vertices are bonded.
+    #[serde(default, with = "crate::form")]
     pub ball: Ball,
 }
 

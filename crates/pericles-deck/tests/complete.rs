@@ -1,6 +1,6 @@
 //! A deck with everything, and what it must become.
 
-use pericles::boundary::{ALWAYS, MotionKind, TimeFunction};
+use pericles::boundary::MotionKind;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
@@ -155,14 +155,14 @@ fn conditions_time_and_output_arrive() {
                 set: "left edge".into(),
                 kind: MotionKind::Velocity,
                 amplitude: [Some(0.0.into()), None, None],
-                function: TimeFunction::Constant,
+                function: TimeHistory::Constant,
                 until: None,
             },
             Prescribe {
                 set: "bottom".into(),
                 kind: MotionKind::Displacement,
                 amplitude: [None, Some((-1e-4).into()), None],
-                function: TimeFunction::Pulse {
+                function: TimeHistory::Pulse {
                     start: 1e-6,
                     duration: 2e-6,
                 },
@@ -176,11 +176,12 @@ fn conditions_time_and_output_arrive() {
             Load {
                 set: "top".into(),
                 amplitude: LoadAmplitude::BodyForce([0.0, 48e9, 0.0].map(Into::into)),
-                function: TimeFunction::Ramp {
+                function: TimeHistory::Ramp {
                     start: 0.0,
                     duration: 1e-6,
                 },
-                window: ALWAYS,
+                from: None,
+                until: None,
             },
             Load {
                 set: "bottom".into(),
@@ -188,8 +189,9 @@ fn conditions_time_and_output_arrive() {
                     traction: [0.0, -12e6, 0.0].map(Into::into),
                     area: Some(1e-4),
                 },
-                function: TimeFunction::Constant,
-                window: ALWAYS,
+                function: TimeHistory::Constant,
+                from: None,
+                until: None,
             }
         ]
     );
@@ -447,7 +449,7 @@ fn overrides_change_what_is_read() {
     assert_eq!(*traction, [0.0, -24e6, 0.0].map(Into::into));
     assert_eq!(
         deck.model.prescribe[1].function,
-        TimeFunction::Pulse {
+        TimeHistory::Pulse {
             start: 2e-6,
             duration: 2e-6
         }

@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
+use serde::{Deserialize, Serialize};
 
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::region::Frame;
 
 /// Where the points of a body are.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SolidShape {
     /// In the cells of a grid.
     Lattice(Lattice),
@@ -18,17 +20,23 @@ pub enum SolidShape {
 }
 
 /// A body on a grid.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Lattice {
     /// Shape, spacing, section and holes.
+    #[serde(with = "crate::form")]
     pub grid: Grid,
     /// Parts with smaller cells and horizon, later ones before earlier ones.
+    #[serde(default, rename = "refine", with = "crate::form")]
     pub finer: Vec<Finer>,
     /// Whether opposite faces are one.
+    #[serde(default)]
     pub periodic: bool,
     /// Where the points of a cell are.
+    #[serde(default)]
     pub quadrature: Quadrature,
     /// Spacing along each axis, m, of a box whose cells are no squares or cubes; the grid's is then the largest.
+    #[serde(default)]
     pub rectangular: Option<Vec<f64>>,
 }
 
@@ -113,7 +121,8 @@ impl SolidShape {
 }
 
 /// Where the points of a cell are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Quadrature {
     /// One in its middle.
     #[default]
@@ -138,9 +147,11 @@ pub(crate) struct SurfaceRead {
 }
 
 /// The file that lists a body's points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PointsFile {
     /// The file; a relative path starts at the folder of the deck.
+    #[serde(rename = "file")]
     pub path: PathBuf,
     /// Dimension of the body.
     pub dimension: usize,

@@ -125,6 +125,8 @@ impl Assembler<'_> {
             names.push(name.clone());
             let path = KeyPath::from("prescribe").index(k);
             let points = self.members(sets, &motion.set, &path)?.clone();
+            let function = motion.function.smooth_function();
+            let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             self.refuse_second_motion(k, &points, sets)?;
             let along = self.axis_motions(&path, motion, system.cloud(), &points)?;
             let mut prescribed = PrescribedMotion::along(
@@ -132,7 +134,7 @@ impl Assembler<'_> {
                 points,
                 motion.kind,
                 along,
-                motion.function.clone(),
+                function,
                 &state.u,
                 system.points(),
             );

@@ -3,12 +3,12 @@
 use super::assembler::Assembler;
 use super::assembly::Assembly;
 use super::refusal::{HORIZON, at};
-use pericles::boundary::{MotionKind, TimeFunction};
+use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles_deck::{
     BuildError, Caution, Component, KeyPath, LoadAmplitude, Model, ModelWarning, Remark, Scheme,
-    Solid,
+    Solid, TimeHistory,
 };
 use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
@@ -201,10 +201,12 @@ impl<'a> Assembler<'a> {
             | LoadAmplitude::Traction {
                 traction: field, ..
             }) = &load.amplitude;
-            let [from, until] = load.window;
+            let ([from, until], Ok(function)) = (load.window(), load.function.function()) else {
+                continue;
+            };
             let g = |t: f64| {
                 let acts = (from..=until).contains(&t);
-                f64::from(u8::from(acts)) * load.function.value(t) * course(field, t)
+                f64::from(u8::from(acts)) * function.value(t) * course(field, t)
             };
             judge(&KeyPath::from("load").index(k), "load", in_time(&g, from));
         }
@@ -221,10 +223,13 @@ impl<'a> Assembler<'a> {
             }
             let mut amplitudes = motion.amplitude.iter().flatten();
             let varies = amplitudes.any(Component::depends_on_time);
-            let constant = motion.function == TimeFunction::Constant && !varies;
+            let constant = motion.function == TimeHistory::Constant && !varies;
             if constant && motion.kind == MotionKind::Displacement {
                 continue;
             }
+            let Ok(function) = motion.function.function() else {
+                continue;
+            };
             let field = motion
                 .amplitude
                 .each_ref()
@@ -232,8 +237,8 @@ impl<'a> Assembler<'a> {
             let displacement = motion.kind == MotionKind::Displacement;
             let step = end * 1e-6;
             let g = |t: f64| match (displacement, varies) {
-                (true, false) => motion.function.derivative(t),
-                (false, false) => motion.function.value(t),
+                (true, false) => function.derivative(t),
+                (false, false) => function.value(t),
                 (true, true) => {
                     (course(&field, t + step) - course(&field, t - step)) / (2.0 * step)
                 }

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use super::assembler::Assembler;
 use super::refusal::at_path;
-use pericles::boundary::{
-    AxisMotion, FieldFunction, LoadDensity, MotionKind, TimeFunction, Trajectory,
-};
+use pericles::boundary::{AxisMotion, FieldFunction, LoadDensity, MotionKind, Trajectory};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Component, Course, Expression, Fault, KeyPath, Prescribe, VectorField,
+    BuildError, Component, Course, Expression, Fault, KeyPath, Prescribe, TimeHistory, VectorField,
 };
 
 /// A vector of the deck as a field of the library.
@@ -84,7 +82,7 @@ impl Assembler<'_> {
                 None => None,
                 Some(Component::Number(amplitude)) => Some(AxisMotion::Uniform(*amplitude)),
                 Some(Component::Expression(expression)) if expression.depends_on_time() => {
-                    if motion.function != TimeFunction::Constant {
+                    if motion.function != TimeHistory::Constant {
                         let fault = Fault::TwoCourses {
                             text: expression.text().into(),
                         };

@@ -40,6 +40,8 @@ impl Assembler<'_> {
         for (k, load) in self.model.loads.iter().enumerate() {
             let path = KeyPath::from("load").index(k);
             let points = self.members(sets, &load.set, &path)?.clone();
+            let function = load.function.function();
+            let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             let volume: f64 = points.iter().map(|&i| cloud.volumes()[i as usize]).sum();
             let (field, factor, area) = match &load.amplitude {
                 LoadAmplitude::BodyForce(density) => (density, 1.0, None),
@@ -63,8 +65,8 @@ impl Assembler<'_> {
             system.add_load(BodyLoad {
                 points,
                 density,
-                function: load.function.clone(),
-                window: load.window,
+                function,
+                window: load.window(),
             });
         }
         Ok(areas)

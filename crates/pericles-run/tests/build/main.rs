@@ -12,6 +12,7 @@ mod extremes;
 mod initial;
 mod material;
 mod memory;
+mod model;
 mod plate;
 mod plausible;
 mod points;
