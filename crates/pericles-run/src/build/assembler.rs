@@ -1,9 +1,10 @@
 //! What assembles a model.
 
-use super::discretisation::Sets;
-use super::refusal::at_path;
 use pericles::space::PointSet;
 use pericles_deck::{BuildError, Fault, Keys, Model};
+
+use super::discretisation::Sets;
+use super::refusal::at_path;
 
 /// Makes the parts of an assembly; each module of this folder adds the methods of its subject.
 #[derive(Clone, Copy)]

@@ -1,10 +1,5 @@
 //! Force and material of a body.
 
-use super::assembler::Assembler;
-use super::discretisation::{Discretisation, Grids, Sets};
-use super::parts::Composition;
-use super::refusal::{at_material, at_path};
-use super::resources::Resources;
 use pericles::material::BondConstants;
 use pericles::observe::TrackedCrack;
 use pericles::operator::{BondBody, CompositeBody};
@@ -15,6 +10,12 @@ use pericles_deck::{
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
+
+use super::assembler::Assembler;
+use super::discretisation::{Discretisation, Grids, Sets};
+use super::parts::Composition;
+use super::refusal::{at_material, at_path};
+use super::resources::Resources;
 
 /// Force and material of a body.
 pub(super) struct BodyParts {

@@ -1,10 +1,5 @@
 //! Absorbing ends of a model.
 
-use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::refusal::{at, at_path};
-use super::resources::Resources;
-use super::step::Steps;
 use pericles::StepKind;
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
@@ -17,6 +12,12 @@ use pericles_waves::absorbing::{
     AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
     LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
 };
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+use super::step::Steps;
 
 /// An end to be made once the step is known.
 pub(super) struct End {

@@ -1,12 +1,13 @@
 //! Speeds with which bonds break in masses rather than along cracks.
 
-use super::assembler::Assembler;
-use super::step::Steps;
 use pericles::System;
 use pericles::material::{BondConstants, ElasticWaves};
 use pericles::operator::On;
 use pericles::time::State;
 use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Scheme};
+
+use super::assembler::Assembler;
+use super::step::Steps;
 
 /// Times at which prescribed speeds are looked at.
 const SAMPLES: usize = 200;

@@ -2,10 +2,6 @@
 
 use std::path::Path as FilePath;
 
-use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::refusal::at_path;
-use super::resources::Resources;
 use pericles::System;
 use pericles::boundary::PrescribedMotion;
 use pericles::noise::uniform_in_ball;
@@ -15,6 +11,11 @@ use pericles::time::State;
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, ModelWarning, ProbePlace, RandomVelocity, Remark,
 };
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::at_path;
+use super::resources::Resources;
 
 impl Assembler<'_> {
     /// Entries for the same point replace each other in the order of the deck.

@@ -1,8 +1,5 @@
 //! Plane waves in a deck's body: what the kernel and the grid do to them, and which loads, motions and initial values send out waves that the grid distorts.
 
-use super::assembler::Assembler;
-use super::assembly::Assembly;
-use super::refusal::{HORIZON, at};
 use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
@@ -14,6 +11,10 @@ use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
     BondLattice, KernelWaves, PhaseErrors, Resolved, space_content, stability, time_content,
 };
+
+use super::assembler::Assembler;
+use super::assembly::Assembly;
+use super::refusal::{HORIZON, at};
 
 /// Deviation of the phase speed from which waves count as distorted.
 const TOLERANCE: f64 = 0.05;

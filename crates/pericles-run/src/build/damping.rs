@@ -1,13 +1,14 @@
 //! Damping layers of a model, and the steps that are stable with them.
 
-use super::assembler::Assembler;
-use super::refusal::at_path;
-use super::step::Steps;
 use pericles::boundary::{DampingLayer, DampingProfile};
 use pericles::material::BondConstants;
 use pericles::space::{Face, PointCloud};
 use pericles::{PericlesError, System};
 use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
+
+use super::assembler::Assembler;
+use super::refusal::at_path;
+use super::step::Steps;
 
 impl Assembler<'_> {
     /// The damping layers with their numbers in the deck.

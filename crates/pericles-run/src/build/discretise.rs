@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use super::assembler::Assembler;
-use super::discretisation::{Discretisation, Grids, Sets};
-use super::refusal::at_path;
-use super::resources::Resources;
 use pericles::material::{Fracture, PairLaw, SurfaceCorrection};
 use pericles::space::{GradedCloud, PointCloud};
 use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Model, Remark, Solid};
 use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
+
+use super::assembler::Assembler;
+use super::discretisation::{Discretisation, Grids, Sets};
+use super::refusal::at_path;
+use super::resources::Resources;
 
 /// Makes the points of a model and selects its sets.
 ///

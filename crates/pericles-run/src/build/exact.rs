@@ -1,13 +1,14 @@
 //! The exact solution of a model and the points it is compared at.
 
-use super::assembler::Assembler;
-use super::refusal::at_path;
 use pericles::material::BondConstants;
 use pericles::space::{PointCloud, PointSet};
 use pericles_deck::{
     BuildError, Caution, Fault, KnownSolution, ModelWarning, Pulse, Remark, Solid,
 };
 use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
+
+use super::assembler::Assembler;
+use super::refusal::at_path;
 
 /// What a run is compared with.
 pub struct ExactReference {

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use super::assembler::Assembler;
-use super::refusal::at_path;
 use pericles::boundary::{AxisMotion, FieldFunction, LoadDensity, MotionKind, Trajectory};
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Component, Course, Expression, Fault, KeyPath, Prescribe, TimeHistory, VectorField,
 };
+
+use super::assembler::Assembler;
+use super::refusal::at_path;
 
 /// A vector of the deck as a field of the library.
 #[derive(Debug)]

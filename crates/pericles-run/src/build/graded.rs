@@ -1,14 +1,15 @@
 //! Bonds of a body with cells of several sizes.
 
-use super::assembler::Assembler;
-use super::discretisation::Grids;
-use super::refusal::{at, at_material};
 use pericles::PericlesError;
 use pericles::material::PairLaw;
 use pericles::operator::{CompositeBody, GradedBody};
 use pericles_deck::{BuildError, Solid};
 use pericles_waves::AssembledForce;
 use pericles_waves::ForceForm;
+
+use super::assembler::Assembler;
+use super::discretisation::Grids;
+use super::refusal::{at, at_material};
 
 impl Assembler<'_> {
     pub(super) fn graded_bonds(

@@ -1,16 +1,17 @@
 //! Loads of a model, and what they come to.
 
-use super::area;
-use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::refusal::at_path;
-use super::step::Steps;
 use pericles::System;
 use pericles::boundary::Load as BodyLoad;
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, Load, LoadAmplitude, ModelWarning, Remark, VectorField,
 };
+
+use super::area;
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::at_path;
+use super::step::Steps;
 
 /// What a load comes to.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,13 +13,14 @@
 //!
 //! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
 
+use pericles::space::{GradedGrid, PointCloud, Shape};
+use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, Scheme, Solid};
+use pericles_waves::ForceForm;
+
 use super::assembler::Assembler;
 use super::assembly::Assembly;
 use super::refusal::{HORIZON, at_path};
 use super::resources::Resources;
-use pericles::space::{GradedGrid, PointCloud, Shape};
-use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, Scheme, Solid};
-use pericles_waves::ForceForm;
 
 const NUMBER: f64 = 8.0;
 const POINT: f64 = 120.0;

@@ -1,13 +1,14 @@
 //! Several materials: the classes of bonds, and the density of every point.
 
-use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::refusal::{at, at_path};
 use pericles::PointScalar;
 use pericles::material::{BondConstants, BondMaterial, Calibration, Fracture, PairClasses};
 use pericles::space::PointCloud;
 use pericles_deck::{BuildError, Caution, Fault, KeyPath, ModelWarning, PartPlace, Remark, Solid};
 use pericles_waves::ForceForm;
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
 
 /// What a body is made of.
 pub(super) struct Composition {

@@ -1,12 +1,13 @@
 //! Whether the values of a deck are physically plausible and have an effect.
 
-use super::assembler::Assembler;
 use pericles::System;
 use pericles::boundary::MotionKind;
 use pericles::material::BondConstants;
 use pericles::observe::Schedule;
 use pericles::time::State;
 use pericles_deck::{Caution, LoadAmplitude, Model, ModelWarning, Remark, Solid};
+
+use super::assembler::Assembler;
 
 impl Assembler<'_> {
     /// Warns of densities and moduli that no solid has. Decks in units of their own (ρ = 1, E = 1) are left alone.

@@ -1,8 +1,5 @@
 //! The points of a body: those of its grid, or those listed in a file.
 
-use super::assembler::Assembler;
-use super::refusal::{at, at_path};
-use super::resources::Resources;
 use pericles::PericlesError;
 use pericles::family::pairs_within;
 use pericles::space::{
@@ -13,6 +10,10 @@ use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Quadrature,
     Remark, Solid, SolidShape,
 };
+
+use super::assembler::Assembler;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
 
 impl Assembler<'_> {
     pub(super) fn points(

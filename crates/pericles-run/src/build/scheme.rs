@@ -1,9 +1,5 @@
 //! The integrator of a model.
 
-use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::refusal::{at, at_path};
-use super::step::Steps;
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
     MultiTimeStepOptions, Newmark, Predictor, Relaxation, Respa, RungeKutta, Tableau,
@@ -15,6 +11,11 @@ use pericles_deck::{
     Scheme,
 };
 use pericles_waves::Trigonometric;
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+use super::step::Steps;
 
 impl Assembler<'_> {
     pub(super) fn integrator(

@@ -1,13 +1,14 @@
 //! Whether a model makes physical sense: what is odd about its cracks and conditions.
 
-use super::assembler::Assembler;
-use super::refusal::HORIZON;
 use pericles::System;
 use pericles::family::{BondList, Crack};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::BondConstants;
 use pericles::space::{Point, PointCloud};
 use pericles_deck::{Caution, KeyPath, LoadAmplitude, ModelWarning, Remark, Scheme, Solid};
+
+use super::assembler::Assembler;
+use super::refusal::HORIZON;
 
 impl Assembler<'_> {
     /// Warns of loads on points that cannot follow them, and of static pieces that nothing holds.

@@ -1,12 +1,13 @@
 //! The time step of a run.
 
-use super::assembler::Assembler;
-use super::refusal::{at, at_path};
 use pericles::PericlesError;
 use pericles::System;
 use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
 use pericles::units::quantity;
 use pericles_deck::{BuildError, Caution, Fault, ModelWarning, Remark, Scheme, TimeStep};
+
+use super::assembler::Assembler;
+use super::refusal::{at, at_path};
 
 /// A number of steps that differs from a whole one by so small a part is that number.
 const WHOLE: f64 = 1e-9;

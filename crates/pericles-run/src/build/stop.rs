@@ -1,11 +1,11 @@
 //! The stop conditions of a model.
 
 use pericles::{StopCondition, StopWhen, System};
+use pericles_deck::{BuildError, Fault, KeyPath, StopCondition as StopRule};
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
 use super::refusal::at_path;
-use pericles_deck::{BuildError, Fault, KeyPath, StopCondition as StopRule};
 
 impl Assembler<'_> {
     /// The stop conditions; those that can never be met are refused.

@@ -3,10 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::refusal::{at, at_path};
-use super::resources::{FileError, Resources};
 use pericles::PericlesError;
 use pericles::cache::Cache;
 use pericles::operator::ForceOperator;
@@ -16,6 +12,11 @@ use pericles_deck::{
 };
 use pericles_manifold::force;
 use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceError};
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+use super::resources::{FileError, Resources};
 
 impl Assembler<'_> {
     pub(super) fn surface_points(
