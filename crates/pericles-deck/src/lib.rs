@@ -76,6 +76,7 @@
 mod body;
 mod boundary;
 mod caution;
+mod check;
 mod component;
 mod conditions;
 mod constants;

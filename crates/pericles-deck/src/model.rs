@@ -19,8 +19,7 @@ use crate::time::Time;
 /// What is simulated and what is written, as plain data in SI units: what a [`Deck`](crate::Deck) says, without its text.
 ///
 /// A program can write a model itself, and serialise it, for example as JSON; keys and words are those of decks where decks have them.
-/// Numbers are checked less strictly than in decks: what is wrong is refused, with the key that it concerns, when the model is discretised
-/// and assembled.
+/// What is wrong with it is refused, with the key that it concerns, when it is discretised and assembled ([`Model::check`]).
 ///
 /// ```
 /// use pericles::family::VolumeCorrection;
@@ -162,6 +161,17 @@ impl Body {
         match self {
             Self::Solid(_) => None,
             Self::Surface(surface) => Some(surface),
+        }
+    }
+
+    /// Dimension of the space that the body is in.
+    pub fn dimension(&self) -> usize {
+        match self {
+            Self::Solid(solid) => match &solid.shape {
+                SolidShape::Lattice(lattice) => lattice.grid.dimension(),
+                SolidShape::Points(file) => file.dimension,
+            },
+            Self::Surface(_) => 3,
         }
     }
 

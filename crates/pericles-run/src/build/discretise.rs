@@ -16,8 +16,9 @@ use super::resources::Resources;
 /// Makes the points of a model and selects its sets.
 ///
 /// # Errors
-/// Points that the engine refuses or that do not fit into the memory, files that cannot be read, sets without points.
+/// Numbers out of their ranges, points that the engine refuses or that do not fit into the memory, files that cannot be read, sets without points.
 pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisation, BuildError> {
+    model.check()?;
     let assembler = Assembler { model };
     let mut warnings = Vec::new();
     let (points, surface) = match &model.body {
@@ -50,6 +51,7 @@ pub fn body_points(
     model: &Model,
     resources: &Resources<'_>,
 ) -> Result<(PointCloud, Option<Surface>), BuildError> {
+    model.check()?;
     let assembler = Assembler { model };
     match &model.body {
         Body::Surface(body) => {

@@ -4,7 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pericles::space::ListedPoints;
+use pericles::material::StressState;
+use pericles::observe::Schedule;
+use pericles::space::{ListedPoints, Region};
 use pericles::{Control, Simulation};
 use pericles_deck::{Deck, Model, specimens};
 use pericles_run::{Grids, Resources, assemble, discretise};
@@ -223,4 +225,37 @@ fn a_model_without_a_deck_names_keys() {
         .to_string();
     let keys = "material.horizon or material.horizon_ratio: ";
     assert!(message.starts_with(keys), "{message}");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_all_at_once() {
+    let resources = Resources::default();
+    let mut model = parse(PLATE).model;
+    model.time.end = f64::NAN;
+    model.output.history = Schedule::Every(0);
+    let solid = model.body.solid_mut().unwrap();
+    solid.material.bonds.density = -1.0;
+    solid.state = StressState::Spatial;
+    let hole = Region::Cylinder {
+        centre: [0.0; 3],
+        axis: 3,
+        radius: 1.0,
+    };
+    let grid = &mut solid.shape.lattice_mut().unwrap().grid;
+    grid.holes.push(hole);
+    let message = discretise(&model, &resources).err().unwrap().to_string();
+    let keys: Vec<&str> = message
+        .lines()
+        .map(|line| line.split(':').next().unwrap())
+        .collect();
+    assert_eq!(
+        keys,
+        [
+            "body.hole.0.axis",
+            "body.plane",
+            "material.density",
+            "time.end",
+            "output.history.every"
+        ]
+    );
 }
