@@ -6,7 +6,8 @@ use std::sync::{Mutex, OnceLock};
 
 use pericles::Archive;
 use pericles::cache::{Cache, Key};
-use pericles_deck::{Deck, Resources};
+use pericles_deck::Deck;
+use pericles_run::{Resources, build};
 use pericles_fuzz::{Choices, decks};
 
 /// Keeps what it is given, and gives it back spoilt.
@@ -49,5 +50,5 @@ pericles_fuzz::target!(|content: &[u8]| {
     let deck = &decks[usize::from(*first) % decks.len()];
     let cache = Spoiling { kept, input };
     let resources = Resources { cache: &cache, ..Resources::default() };
-    let _ = deck.build_with(resources);
+    let _ = build(deck, &resources);
 });

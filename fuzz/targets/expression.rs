@@ -2,6 +2,7 @@
 //! Expressions and conditions, read, evaluated and differentiated: the first byte says where one stands, as a set, as an initial field or as a support that moves.
 
 use pericles_deck::Deck;
+use pericles_run::{Resources, build};
 
 pericles_fuzz::target!(|content: &[u8]| {
     let Some((first, text)) = content.split_first() else {
@@ -21,6 +22,6 @@ time = {{ end = 1, dt = 0.1 }}
 "#
     );
     if let Ok(deck) = Deck::parse(&deck, "a.toml", &[]) {
-        let _ = deck.build();
+        let _ = build(&deck, &Resources::default());
     }
 });

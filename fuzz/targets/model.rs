@@ -3,7 +3,8 @@
 
 use std::sync::LazyLock;
 
-use pericles_deck::{Deck, Resources};
+use pericles_deck::Deck;
+use pericles_run::{Resources, build};
 use pericles_fuzz::{Memory, advance};
 
 /// Bytes that a body may take: some hundred points, so that most inputs take less than a millisecond.
@@ -38,7 +39,7 @@ pericles_fuzz::target!(|content: &str| {
         read_points: &read_points,
         ..Resources::default()
     };
-    if let Ok(model) = deck.build_with(resources) {
+    if let Ok(model) = build(&deck, &resources) {
         advance(&mut model.simulation(), STEPS);
     }
 });

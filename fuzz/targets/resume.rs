@@ -6,6 +6,7 @@ use std::cell::RefCell;
 
 use pericles::{Archive, Saved, Simulation};
 use pericles_deck::Deck;
+use pericles_run::{Resources, build};
 use pericles_fuzz::{Choices, advance, decks};
 
 /// Steps before the state is stored, and after it is taken back.
@@ -24,7 +25,7 @@ thread_local! {
 
 fn begun(text: &str) -> Run {
     let deck = Deck::parse(text, "a.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
-    let model = deck.build().unwrap_or_else(|error| panic!("{error}"));
+    let model = build(&deck, &Resources::default()).unwrap_or_else(|error| panic!("{error}"));
     let mut simulation = model.simulation();
     advance(&mut simulation, BEFORE);
     let stored = state(&simulation);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use pericles_deck::Deck;
+use pericles_run::{Resources, build};
 
 use crate::args::{Cli, Command};
 
@@ -120,7 +121,7 @@ fn decks_of_the_book_are_built() {
             let (place, text) = (&block.place, deck(block));
             let deck = Deck::parse(&text, place, &[]);
             let deck = deck.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
-            let built = deck.build();
+            let built = build(&deck, &Resources::default());
             built.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
             count += 1;
         }

@@ -127,7 +127,9 @@ pub(crate) fn exit_of(error: &RunError) -> Exit {
         RunError::Deck(error) if error.is_too_large() => Exit::Memory,
         RunError::Io(IoError::TooLarge { .. })
         | RunError::Mesh(MeshError::Io(IoError::TooLarge { .. })) => Exit::Memory,
+        RunError::Model(error) if error.is_too_large() => Exit::Memory,
         RunError::Deck(_)
+        | RunError::Model(_)
         | RunError::Checkpoint { .. }
         | RunError::InputChanged { .. }
         | RunError::NoRun { .. }

@@ -2,7 +2,7 @@
 
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
-use pericles_run::{Deadline, DeckText, Modelled, Run};
+use pericles_run::{Assembled, Deadline, DeckText, Run};
 
 use crate::args::{ResumeArgs, RunArgs};
 use crate::charts;
@@ -36,9 +36,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     // The folder is made once nothing in the deck can be wrong any more.
     let mut screen = Screen::new(quiet);
     let means = args.options.means();
-    let modelled = Modelled::of(&deck, &means, &mut |event| screen.show(event))?;
+    let assembled = Assembled::of(&deck, &means, &mut |event| screen.show(event))?;
     let folder = output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")?;
-    let run = Run::begin(&deck, text, modelled, folder)?;
+    let run = Run::begin(&deck, text, assembled, folder)?;
     drive(run, deadline, quiet, args.chart)
 }
 

@@ -3,26 +3,31 @@
 use pericles::space::Face;
 use pericles_waves::absorbing::history::HistoryForm;
 use pericles_waves::absorbing::{EndPlan, KernelMethod, Side};
+use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
 /// A boundary with memory.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum BoundaryCondition {
     /// An exact absorbing end of a bar.
     Absorbing {
         /// The end.
+        #[serde(with = "crate::form")]
         side: Side,
         /// Its kernels, and how its history is kept.
+        #[serde(with = "crate::form")]
         plan: EndPlan,
         /// How far the initial fields go on beyond the end, m; none where nothing moves there.
+        #[serde(default)]
         exterior_data: Option<f64>,
     },
     /// A layer in which motion dies away, of any body.
     DampingLayer {
         /// The side.
+        #[serde(rename = "side", with = "crate::form")]
         face: Face,
         /// Its depth, m.
         thickness: f64,

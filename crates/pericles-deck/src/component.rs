@@ -1,5 +1,6 @@
 //! Vectors whose entries are numbers or expressions.
 
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use crate::expression::{Expression, VARIABLES};
@@ -8,12 +9,39 @@ use crate::quantity::Quantity;
 use crate::reader::Item;
 
 /// An entry of a vector, in SI units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "ComponentForm", into = "ComponentForm")]
 pub enum Component {
     /// The same everywhere and always.
     Number(f64),
     /// A function of place, and of time where that makes sense.
     Expression(Expression),
+}
+
+/// As in decks: a number, or `{ expression = "…" }`.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum ComponentForm {
+    Number(f64),
+    Expression { expression: Expression },
+}
+
+impl From<ComponentForm> for Component {
+    fn from(form: ComponentForm) -> Self {
+        match form {
+            ComponentForm::Number(number) => Self::Number(number),
+            ComponentForm::Expression { expression } => Self::Expression(expression),
+        }
+    }
+}
+
+impl From<Component> for ComponentForm {
+    fn from(component: Component) -> Self {
+        match component {
+            Component::Number(number) => Self::Number(number),
+            Component::Expression(expression) => Self::Expression { expression },
+        }
+    }
 }
 
 impl From<f64> for Component {

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use pericles::boundary::{MotionKind, TimeFunction};
+use pericles::boundary::MotionKind;
 use pericles::space::Point;
+use serde::{Deserialize, Serialize};
 
 use crate::component::{Component, Variables, VectorField, component, vector_field};
-use crate::course::{function, smooth_function};
+use crate::course::{TimeHistory, function, smooth_function};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -14,22 +15,28 @@ use crate::set::{self, SetNames};
 use crate::vocabulary::LOADS;
 
 /// An initial displacement or velocity, or both.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Initial {
     /// The set.
     pub set: String,
     /// Displacement, m.
+    #[serde(default)]
     pub displacement: Option<VectorField>,
     /// Velocity, m/s.
+    #[serde(default)]
     pub velocity: Option<VectorField>,
     /// A file with displacement and velocity of all points, in place of both; a relative path starts at the folder of the deck.
+    #[serde(default)]
     pub file: Option<PathBuf>,
     /// Random velocities, added to that.
+    #[serde(default)]
     pub random_velocity: Option<RandomVelocity>,
 }
 
 /// Velocities uniform in a ball, one after the other in the user's order of points, by the generator SplitMix64.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RandomVelocity {
     /// Radius of the ball, m/s.
     pub radius: f64,
@@ -38,17 +45,21 @@ pub struct RandomVelocity {
 }
 
 /// A prescribed motion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Prescribe {
     /// The set.
     pub set: String,
     /// Displacement or velocity.
+    #[serde(with = "crate::form")]
     pub kind: MotionKind,
     /// Amplitude along each axis, m or m/s; none where the motion is free.
     pub amplitude: [Option<Component>; 3],
     /// The course over time.
-    pub function: TimeFunction,
+    #[serde(default)]
+    pub function: TimeHistory,
     /// The last time at which the points are held, s; none if they are held for good.
+    #[serde(default)]
     pub until: Option<f64>,
 }
 
@@ -61,20 +72,37 @@ impl Prescribe {
 }
 
 /// A load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Load {
     /// The set.
     pub set: String,
     /// Its amplitude.
     pub amplitude: LoadAmplitude,
     /// The course over time.
-    pub function: TimeFunction,
+    #[serde(default)]
+    pub function: TimeHistory,
+    /// From when it acts, s; none if it acts from the start.
+    #[serde(default)]
+    pub from: Option<f64>,
+    /// Until when it acts, s; none if it acts to the end.
+    #[serde(default)]
+    pub until: Option<f64>,
+}
+
+impl Load {
     /// From when to when it acts, s.
-    pub window: [f64; 2],
+    pub fn window(&self) -> [f64; 2] {
+        [
+            self.from.unwrap_or(f64::NEG_INFINITY),
+            self.until.unwrap_or(f64::INFINITY),
+        ]
+    }
 }
 
 /// How a load is given.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum LoadAmplitude {
     /// Force per volume, N/m³.
     BodyForce(VectorField),
@@ -83,12 +111,14 @@ pub enum LoadAmplitude {
         /// The traction.
         traction: VectorField,
         /// The area it acts on, m²; if none, that of the face of the set's bounding box normal to the load.
+        #[serde(default)]
         area: Option<f64>,
     },
 }
 
 /// A place whose motion is written to the history.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Probe {
     /// Its name in the table.
     pub name: String,
@@ -97,7 +127,8 @@ pub struct Probe {
 }
 
 /// What a probe follows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ProbePlace {
     /// The point nearest to a place, m.
     At(Point),
@@ -248,16 +279,18 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
         },
         (_, density) => LoadAmplitude::BodyForce(density),
     };
+    let [from, until] = window?;
     Some(Load {
         set: set?,
         amplitude,
         function: function?,
-        window: window?,
+        from,
+        until,
     })
 }
 
 /// From when to when something acts.
-fn window(table: &Table<'_>) -> Option<[f64; 2]> {
+fn window(table: &Table<'_>) -> Option<[Option<f64>; 2]> {
     let from = table.maybe("from", |item| item.quantity(Quantity::Time));
     let until = table.maybe("until", |item| {
         let time = item.quantity(Quantity::Time)?;
@@ -269,10 +302,7 @@ fn window(table: &Table<'_>) -> Option<[f64; 2]> {
             _ => Some(time),
         }
     });
-    Some([
-        from?.unwrap_or(f64::NEG_INFINITY),
-        until?.unwrap_or(f64::INFINITY),
-    ])
+    Some([from?, until?])
 }
 
 /// All probes; their names must differ.

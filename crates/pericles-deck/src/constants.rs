@@ -6,7 +6,7 @@ use pericles::material::{
 };
 use pericles_waves::ForceForm;
 
-use crate::body::{BodyRead, Quadrature};
+use crate::body::{BodyRead, SolidShape};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::{MODULI, STRENGTHS};
@@ -94,11 +94,11 @@ impl Sums {
         form: Option<ForceForm>,
         body: &BodyRead,
     ) -> Self {
-        let quadrature = body.body.as_ref().map(|body| body.quadrature);
+        let gauss = body.shape.as_ref().is_some_and(SolidShape::has_gauss_nodes);
         match influence.map(|influence| &influence.function) {
             Some(InfluenceFunction::Classes(_)) => Self::Lattice,
             _ if form == Some(ForceForm::Spectral) => Self::Spectral,
-            _ if quadrature == Some(Quadrature::Gauss) => Self::Gauss,
+            _ if gauss => Self::Gauss,
             _ => Self::Any,
         }
     }
@@ -138,8 +138,7 @@ pub(crate) fn fracture_calibration(
     table: &Table<'_>,
     body: &BodyRead,
 ) -> Option<FractureCalibration> {
-    let body = body.body.as_ref();
-    let listed = body.is_some_and(|body| body.listed.is_some());
+    let listed = body.shape.as_ref().is_some_and(SolidShape::is_listed);
     let breaks = STRENGTHS.iter().any(|key| table.has(key)) || table.has("part");
     if !breaks {
         table.forbid(

@@ -5,12 +5,70 @@ use std::sync::{Arc, LazyLock};
 
 use gauss_quad::GaussLegendre;
 use pericles::boundary::{TimeCourse, TimeFunction, TimeTable};
+use serde::{Deserialize, Serialize};
 
 use crate::component;
 use crate::expression::{Expression, Rates};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
+
+/// A function of time g(t), by which loads and motions are multiplied.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum TimeHistory {
+    /// g = 1.
+    #[default]
+    Constant,
+    /// From 0 to 1, linear.
+    Ramp {
+        /// s
+        start: f64,
+        /// s
+        duration: f64,
+    },
+    /// sin² from 0 to 1 and back.
+    Pulse {
+        /// s
+        start: f64,
+        /// s
+        duration: f64,
+    },
+    /// Linear between rows (time in s, value).
+    Table(Vec<(f64, f64)>),
+    /// An expression of t.
+    Expression(Expression),
+}
+
+impl TimeHistory {
+    /// The function that the engine evaluates.
+    ///
+    /// # Errors
+    /// A table without rows, or with times that do not rise.
+    pub fn function(&self) -> Result<TimeFunction, Fault> {
+        Ok(match self {
+            Self::Constant => TimeFunction::Constant,
+            &Self::Ramp { start, duration } => TimeFunction::Ramp { start, duration },
+            &Self::Pulse { start, duration } => TimeFunction::Pulse { start, duration },
+            Self::Table(rows) => TimeFunction::Table(Arc::new(TimeTable::new(rows.clone())?)),
+            Self::Expression(text) => TimeFunction::Course(Arc::new(Course::new(text.clone()))),
+        })
+    }
+
+    /// The same for a prescribed motion, whose acceleration is its derivative.
+    ///
+    /// # Errors
+    /// As [`TimeHistory::function`]; an expression with jumps or kinks.
+    pub fn smooth_function(&self) -> Result<TimeFunction, Fault> {
+        if let Self::Expression(expression) = self {
+            let course = Course::new(expression.clone());
+            if !course.has_rates() {
+                return Err(course.rough());
+            }
+        }
+        self.function()
+    }
+}
 
 #[derive(Clone, Copy)]
 enum Kind {
@@ -22,16 +80,16 @@ enum Kind {
 }
 
 /// Of a load.
-pub(crate) fn function(table: &Table<'_>) -> Option<TimeFunction> {
+pub(crate) fn function(table: &Table<'_>) -> Option<TimeHistory> {
     read(table, false)
 }
 
 /// Of a prescribed motion, whose acceleration is its derivative.
-pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeFunction> {
+pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeHistory> {
     read(table, true)
 }
 
-fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
+fn read(table: &Table<'_>, smooth: bool) -> Option<TimeHistory> {
     const KINDS: [(&str, Kind); 5] = [
         ("constant", Kind::Constant),
         ("ramp", Kind::Ramp),
@@ -43,7 +101,7 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
     table.define("function");
     let kind = table.choice_or_first("kind", "function of time", &KINDS)?;
     let function = match kind {
-        Kind::Constant => Some(TimeFunction::Constant),
+        Kind::Constant => Some(TimeHistory::Constant),
         Kind::Ramp | Kind::Pulse => {
             let start = table.or("start", 0.0, |item| item.quantity(Quantity::Time));
             let duration = table
@@ -51,19 +109,21 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
                 .and_then(|item| item.positive(Quantity::Time));
             let (start, duration) = (start?, duration?);
             Some(match kind {
-                Kind::Ramp => TimeFunction::Ramp { start, duration },
-                _ => TimeFunction::Pulse { start, duration },
+                Kind::Ramp => TimeHistory::Ramp { start, duration },
+                _ => TimeHistory::Pulse { start, duration },
             })
         }
         Kind::Table => table.required("rows").and_then(|item| rows(&item)),
         Kind::Expression => table.required("expression").and_then(|item| {
             let expression = component::expression(&item, &["t"])?;
-            let course = Course::new(expression);
-            if smooth && !course.has_rates() {
-                item.report(course.rough());
-                return None;
+            if smooth {
+                let course = Course::new(expression.clone());
+                if !course.has_rates() {
+                    item.report(course.rough());
+                    return None;
+                }
             }
-            Some(TimeFunction::Course(Arc::new(course)))
+            Some(TimeHistory::Expression(expression))
         }),
     };
     table.finish();
@@ -71,7 +131,7 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeFunction> {
 }
 
 /// `[[time, value], …]`
-fn rows(item: &Item<'_>) -> Option<TimeFunction> {
+fn rows(item: &Item<'_>) -> Option<TimeHistory> {
     let mut rows = Some(Vec::new());
     for row in item.list("a list of rows, each [time, value]")? {
         let read = row.exactly(2, "a row [time, value]").and_then(|pair| {
@@ -84,26 +144,28 @@ fn rows(item: &Item<'_>) -> Option<TimeFunction> {
             _ => rows = None,
         }
     }
-    let table = item.accept(TimeTable::new(rows?))?;
-    Some(TimeFunction::Table(Arc::new(table)))
+    let rows = rows?;
+    item.accept(TimeTable::new(rows.clone()))?;
+    Some(TimeHistory::Table(rows))
 }
 
 /// A function of time given as an expression.
 #[derive(Debug)]
-pub(crate) struct Course {
+pub struct Course {
     value: Expression,
     /// As far as there are any.
     rates: Option<Rates>,
 }
 
 impl Course {
-    pub(crate) fn new(value: Expression) -> Self {
+    /// The function of an expression of t, or of place and t.
+    pub fn new(value: Expression) -> Self {
         let rates = value.rates();
         Self { value, rates }
     }
 
     /// The function (order 0), its integral from t = 0 (−1) or one of its first two derivatives (1, 2) at a place. NaN for a derivative that does not exist.
-    pub(crate) fn at(&self, order: i32, place: [f64; 3], t: f64) -> f64 {
+    pub fn at(&self, order: i32, place: [f64; 3], t: f64) -> f64 {
         match order {
             -1 => integral(|t| self.value.value(place, t), t),
             0 => self.value.value(place, t),
@@ -115,7 +177,7 @@ impl Course {
     }
 
     /// The fault of a prescribed motion that has jumps or kinks.
-    pub(crate) fn rough(&self) -> Fault {
+    pub fn rough(&self) -> Fault {
         Fault::BadExpression {
             text: self.value.text().into(),
             reason: "it has no derivative in time where abs, ceil, floor, round, sign or step of t has a jump or kink, and a prescribed motion needs one; allowed: a smooth expression, or \
@@ -125,7 +187,7 @@ impl Course {
     }
 
     /// Whether it has derivatives.
-    pub(crate) fn has_rates(&self) -> bool {
+    pub fn has_rates(&self) -> bool {
         self.rates.is_some()
     }
 }

@@ -1,17 +1,21 @@
 //! `[[crack]]`: surfaces that cut bonds before the run.
 
 use pericles::family::{Crack, EndRule};
+use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
 
 /// A pre-crack with the rule at its border.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PreCrack {
     /// The surface.
+    #[serde(with = "crate::form")]
     pub surface: Crack,
     /// What happens to bonds through its border.
+    #[serde(default, with = "crate::form")]
     pub ends: EndRule,
 }
 

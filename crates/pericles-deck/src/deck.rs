@@ -4,57 +4,34 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
-use crate::body::{self, Body, SurfaceRead, SurfaceShape};
-use crate::boundary::{self, BoundaryCondition};
-use crate::conditions::{self, Initial, Load, Prescribe, Probe};
-use crate::crack::{self, PreCrack};
+use crate::body::{self, BodyRead, SurfaceRead};
+use crate::boundary;
+use crate::conditions::{self, Prescribe};
+use crate::crack;
 use crate::document::{self, Node};
 use crate::error::DeckError;
-use crate::exact::{self, Exact};
+use crate::exact;
+use crate::fault::Fault;
+use crate::finding::Finding;
 use crate::material::{self, Material};
-use crate::output::{self, Checkpoint, Output};
+use crate::model::{Body, Model, Solid};
+use crate::output;
 use crate::overrides;
 use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
-use crate::set::{self, NamedSet, SetNames};
+use crate::remark::{BuildError, Remark};
+use crate::set::{self, SetNames};
 use crate::source::Sources;
-use crate::surface::{self, SurfaceDeck};
-use crate::time::{self, Time};
+use crate::subject::Subject;
+use crate::surface::{self, SurfaceBody};
+use crate::time;
 
-/// Everything a deck says, in SI units.
+/// A deck: the model it describes, and where in the text each value stands.
 #[derive(Debug, Clone)]
 pub struct Deck {
-    /// A title for people.
-    pub title: Option<String>,
-    /// `[body]`
-    pub body: Body,
-    /// `[material]`
-    pub material: Material,
-    /// A surface with its material, if the body is one; `body` and `material` are then those of a unit cube that is not used.
-    pub surface: Option<SurfaceDeck>,
-    /// `[sets]`, without the set "all" of all points.
-    pub sets: Vec<NamedSet>,
-    /// `[[crack]]`
-    pub cracks: Vec<PreCrack>,
-    /// `[[initial]]`
-    pub initial: Vec<Initial>,
-    /// `[[prescribe]]`
-    pub prescribe: Vec<Prescribe>,
-    /// `[[load]]`
-    pub loads: Vec<Load>,
-    /// `[[boundary]]`
-    pub boundaries: Vec<BoundaryCondition>,
-    /// `[[probe]]`
-    pub probes: Vec<Probe>,
-    /// `[exact]`
-    pub exact: Option<Exact>,
-    /// `[time]`
-    pub time: Time,
-    /// `[output]`
-    pub output: Output,
-    /// `[checkpoint]`
-    pub checkpoint: Checkpoint,
-    pub(crate) record: Record,
+    /// What the deck says, as plain data.
+    pub model: Model,
+    record: Record,
 }
 
 impl Deck {
@@ -71,12 +48,12 @@ impl Deck {
 
     /// Reads all tables of a document.
     pub(crate) fn read_with(ledger: Ledger, root: &Node) -> Result<(Self, Survey), DeckError> {
-        let deck = ledger.root(root).and_then(Self::from_tables);
+        let model = ledger.root(root).and_then(model);
         let closed = ledger.close();
-        match deck {
-            Some(deck) if closed.problems.is_empty() => {
+        match model {
+            Some(model) if closed.problems.is_empty() => {
                 let record = closed.record;
-                Ok((Self { record, ..deck }, closed.survey))
+                Ok((Self { model, record }, closed.survey))
             }
             _ => Err(DeckError::refused(closed.problems)),
         }
@@ -97,103 +74,115 @@ impl Deck {
         self.record.sources.text(0)
     }
 
-    /// The files that the deck names, as it names them.
-    pub fn files(&self) -> Vec<&FilePath> {
-        let listed = self.body.listed.iter().map(|listed| &listed.path);
-        let surface = self
-            .surface
-            .iter()
-            .filter_map(|surface| match &surface.shape {
-                SurfaceShape::File { path, .. } => Some(path),
-                _ => None,
-            });
-        let initial = self
-            .initial
-            .iter()
-            .filter_map(|initial| initial.file.as_ref());
-        let all = listed.chain(surface).chain(initial);
-        all.map(PathBuf::as_path).collect()
+    /// The folder of the deck, where relative paths of the model start; empty for the present folder.
+    pub fn folder(&self) -> &FilePath {
+        let folder = FilePath::new(self.record.sources.name()).parent();
+        folder.unwrap_or(FilePath::new(""))
     }
 
     /// Where a file is that the deck names: a relative path starts at the deck's folder.
     pub fn beside(&self, path: &FilePath) -> PathBuf {
-        let folder = FilePath::new(self.record.sources.name()).parent();
-        folder.unwrap_or(FilePath::new("")).join(path)
+        self.folder().join(path)
     }
 
     /// The overrides that were applied.
     pub fn overrides(&self) -> impl Iterator<Item = &str> {
         (1..self.record.sources.count()).map(|k| self.record.sources.text(k))
     }
+
+    /// What was found in the model, with the place in the text that it concerns.
+    pub fn located<S: Subject>(&self, remark: Remark<S>) -> Finding<S> {
+        let (keys, subject) = remark.into_parts();
+        let place = self.record.place_of_any(&keys);
+        Finding::new(subject, self.record.sources.locate(place))
+    }
+
+    /// The refusal of the model, with the places in the text that it concerns.
+    pub fn refusal(&self, error: BuildError) -> DeckError {
+        let problems = error.into_problems().into_iter();
+        DeckError::refused(problems.map(|problem| self.located(problem)).collect())
+    }
+
+    /// Refuses tuned coefficients with which waves grow, unless `time.allow_unstable` accepts them.
+    pub(crate) fn refuse_unstable_table(&self) -> Result<(), DeckError> {
+        let solid = self.model.body.solid();
+        match solid.and_then(|solid| solid.material.tuned.as_ref()) {
+            Some(table)
+                if !table.assessment.stability.is_stable() && !self.model.time.allow_unstable =>
+            {
+                let smallest = table.assessment.stability.smallest;
+                let fault = Fault::UnstableTable { smallest };
+                let problem = Remark::new("material.influence", fault);
+                Err(self.refusal(problem.into()))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
-impl Deck {
-    /// Reads all tables before it gives up, so that all problems are found.
-    fn from_tables(root: Table<'_>) -> Option<Self> {
-        let title = root.maybe("title", |item| item.text());
-        let body = body::read(root.required("body").and_then(|item| item.table()));
-        let frame = body.frame;
-        let (sets, names) = set::read(root.table_or_empty("sets"), frame);
-        let material = root.required("material").and_then(|item| item.table());
-        let (material, surface) = match &body.surface {
-            Some(read) => (
-                Some(surface::no_bonds()),
-                surface_of(&root, read, material, frame, &names).map(Some),
-            ),
-            None => {
-                root.forbid(
-                    "geodesics",
-                    "only surfaces (shape = \"icosphere\", \"torus\" …) have distances along them",
-                );
-                let read = material.and_then(|table| material::read(table, &body, &names));
-                (read, Some(None))
-            }
-        };
-        let cracks = each(&root, "crack", |table| crack::read(table, frame));
-        let initial = each(&root, "initial", |table| {
-            conditions::initial(table, frame.dimension, &names)
-        });
-        let prescribe = each(&root, "prescribe", |table| {
-            conditions::prescribe(table, frame.dimension, &names)
-        });
-        let loads = each(&root, "load", |table| {
-            conditions::load(table, frame.dimension, &names)
-        });
-        let boundaries = each(&root, "boundary", boundary::read);
-        let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
-        let exact = root.maybe("exact", |item| {
-            exact::read(item.table()?, frame.dimension, material.as_ref())
-        });
-        let time = root
-            .required("time")
-            .and_then(|item| time::read(item.table()?, &names));
-        let output = root.table_or_empty("output").and_then(|table| {
-            let driven = prescribe.iter().flatten().any(Prescribe::moves);
-            output::read(table, frame.dimension, driven, body.surface.is_some())
-        });
-        let checkpoint = root
-            .table_or_empty("checkpoint")
-            .and_then(output::checkpoint);
-        root.finish();
-        Some(Self {
-            title: title?,
-            body: body.body?,
-            material: material?,
-            surface: surface?,
-            sets: sets?,
-            cracks: cracks?,
-            initial: initial?,
-            prescribe: prescribe?,
-            loads: loads?,
-            boundaries: boundaries?,
-            probes: probes?,
-            exact: exact?,
-            time: time?,
-            output: output?,
-            checkpoint: checkpoint?,
-            record: Record::default(),
-        })
-    }
+/// The model of a document. All tables are read before it gives up, so that all problems are found.
+fn model(root: Table<'_>) -> Option<Model> {
+    let title = root.maybe("title", |item| item.text());
+    let body = body::read(root.required("body").and_then(|item| item.table()));
+    let frame = body.frame;
+    let (sets, names) = set::read(root.table_or_empty("sets"), frame);
+    let material = root.required("material").and_then(|item| item.table());
+    let (made, gaussian) = match &body.surface {
+        Some(read) => {
+            let surface = surface_of(&root, read, material, frame, &names);
+            (surface.map(Body::Surface), Some(None))
+        }
+        None => {
+            root.forbid(
+                "geodesics",
+                "only surfaces (shape = \"icosphere\", \"torus\" …) have distances along them",
+            );
+            let material = material.and_then(|table| material::read(table, &body, &names));
+            let gaussian = material.as_ref().map(exact::gaussian_length);
+            (solid_of(&body, material).map(Body::Solid), gaussian)
+        }
+    };
+    let cracks = each(&root, "crack", |table| crack::read(table, frame));
+    let initial = each(&root, "initial", |table| {
+        conditions::initial(table, frame.dimension, &names)
+    });
+    let prescribe = each(&root, "prescribe", |table| {
+        conditions::prescribe(table, frame.dimension, &names)
+    });
+    let loads = each(&root, "load", |table| {
+        conditions::load(table, frame.dimension, &names)
+    });
+    let boundaries = each(&root, "boundary", boundary::read);
+    let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
+    let exact = root.maybe("exact", |item| {
+        exact::read(item.table()?, frame.dimension, gaussian)
+    });
+    let time = root
+        .required("time")
+        .and_then(|item| time::read(item.table()?, &names));
+    let output = root.table_or_empty("output").and_then(|table| {
+        let driven = prescribe.iter().flatten().any(Prescribe::moves);
+        output::read(table, frame.dimension, driven, body.surface.is_some())
+    });
+    let checkpoint = root
+        .table_or_empty("checkpoint")
+        .and_then(output::checkpoint);
+    root.finish();
+    Some(Model {
+        title: title?,
+        body: made?,
+        sets: sets?,
+        cracks: cracks?,
+        initial: initial?,
+        prescribe: prescribe?,
+        loads: loads?,
+        boundaries: boundaries?,
+        probes: probes?,
+        exact: exact?,
+        time: time?,
+        output: output?,
+        checkpoint: checkpoint?,
+    })
 }
 
 /// The document of a deck with its overrides.
@@ -210,6 +199,15 @@ pub(crate) fn document(
     Ok((root, sources))
 }
 
+/// A body of points with volumes, as far as it and its material could be read.
+fn solid_of(body: &BodyRead, material: Option<Material>) -> Option<Solid> {
+    Some(Solid {
+        shape: body.shape.clone()?,
+        state: body.state?,
+        material: material?,
+    })
+}
+
 /// What is said of a surface outside `[body]`.
 fn surface_of(
     root: &Table<'_>,
@@ -217,14 +215,14 @@ fn surface_of(
     material: Option<Table<'_>>,
     frame: Frame,
     names: &SetNames,
-) -> Option<SurfaceDeck> {
+) -> Option<SurfaceBody> {
     root.forbid("crack", "surfaces have no pre-cracks");
     let geodesics = root
         .table_or_empty("geodesics")
         .and_then(surface::geodesics);
     let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
     let (method, ball) = geodesics?;
-    Some(SurfaceDeck {
+    Some(SurfaceBody {
         shape: read.shape.clone()?,
         areas: read.areas?,
         material,

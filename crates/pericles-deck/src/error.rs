@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
 
-use crate::fault::Fault;
 use crate::finding::Problem;
 
 /// Why a deck cannot be used.
@@ -50,13 +49,8 @@ impl DeckError {
 
     /// Whether nothing is wrong with the deck but that it needs more memory than it may have.
     pub fn is_too_large(&self) -> bool {
-        let too_large = |problem: &Problem| {
-            matches!(
-                problem.subject(),
-                Fault::TooLarge { .. } | Fault::LongHistory { .. } | Fault::LargeFile { .. }
-            )
-        };
-        !self.problems().is_empty() && self.problems().iter().all(too_large)
+        let mut problems = self.problems().iter();
+        !self.problems().is_empty() && problems.all(|problem| problem.subject().is_too_large())
     }
 }
 

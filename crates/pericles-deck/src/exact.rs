@@ -1,6 +1,7 @@
 //! `[exact]`: a known solution, from which the distance is written.
 
 use pericles::kernel::{ActsOn, InfluenceFunction};
+use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 use crate::material::Material;
@@ -8,19 +9,22 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 
 /// A solution to compare with.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Exact {
     /// Which.
     pub solution: KnownSolution,
     /// Points that count: those within this distance of the pulse's middle or of the origin, m; all if none.
+    #[serde(default)]
     pub window: Option<f64>,
     /// Whether the body starts as the solution does.
+    #[serde(default)]
     pub start: bool,
 }
 
 /// Solutions of bars and lines; modulus, density and micromodulus are those of the material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum KnownSolution {
     /// A Gaussian start on the line with a Gaussian micromodulus of this length.
     NonlocalPulse {
@@ -48,7 +52,8 @@ pub enum KnownSolution {
 }
 
 /// u = amplitude · exp(−((x − centre)/width)²), at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Pulse {
     /// m
     pub width: f64,
@@ -66,10 +71,11 @@ enum Kind {
     BarMode,
 }
 
+/// `[exact]`; `gaussian` is the length of the Gaussian micromodulus, none of a body that has another one, and unknown if the material could not be read.
 pub(crate) fn read(
     table: Table<'_>,
     dimension: Option<usize>,
-    material: Option<&Material>,
+    gaussian: Option<Option<f64>>,
 ) -> Option<Exact> {
     const KINDS: [(&str, Kind); 4] = [
         ("nonlocal-pulse", Kind::NonlocalPulse),
@@ -109,8 +115,7 @@ pub(crate) fn read(
     let solution = match kind {
         Kind::NonlocalPulse => {
             let pulse = pulse();
-            let length = material.and_then(|material| {
-                let length = gaussian_length(material);
+            let length = gaussian.and_then(|length| {
                 if length.is_none() {
                     item.report(Fault::NoExactSolution {
                         reason: "it belongs to model = \"linear\" with influence = { function = \"gaussian\", acts_on = \"displacement\" } and horizon = \"infinite\"",
@@ -147,7 +152,7 @@ pub(crate) fn read(
 }
 
 /// The length of a Gaussian micromodulus that is nowhere cut.
-fn gaussian_length(material: &Material) -> Option<f64> {
+pub(crate) fn gaussian_length(material: &Material) -> Option<f64> {
     /// Lengths beyond which the Gaussian is below 1e-16 of its height.
     const ALL: f64 = 6.1;
     let bonds = &material.bonds;

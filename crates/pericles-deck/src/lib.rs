@@ -1,9 +1,9 @@
 //! Pericles decks: TOML in, a checked model out.
 //!
-//! A deck is one TOML file. [`Deck::read`] turns it into plain data in SI units, [`Deck::build`] turns that into points, bonds, an operator, loads and a
-//! time step, and [`Model::simulation`] into a run. Reading is strict: unknown keys, wrong units, vectors of the wrong
-//! length or names of sets that do not exist are errors which point at the file, line and column and say what is allowed; one reading finds all of
-//! them. What the library refuses while the model is built points into the deck as well.
+//! A deck is one TOML file. [`Deck::read`] turns it into a [`Model`]: plain data in SI units, which `pericles-run` discretises, assembles
+//! and runs. Reading is strict: unknown keys, wrong units, vectors of the wrong length or names of sets that do not exist are errors which
+//! point at the file, line and column and say what is allowed; one reading finds all of them. What is refused later, while the model is
+//! discretised and assembled, is a [`BuildError`] that names keys; [`Deck::refusal`] points into the text for it as well.
 //!
 //! ```
 //! use pericles_deck::Deck;
@@ -22,11 +22,9 @@
 //!     end = "1 ms"
 //! "#;
 //! let deck = Deck::parse(text, "bar.toml", &[]).unwrap();
-//! assert_eq!(deck.body.grid.section, 4e-4);
-//! let model = deck.build().unwrap();
-//! assert_eq!(model.cloud.len(), 100);
+//! assert_eq!(deck.model.body.solid().unwrap().shape.section(), 4e-4);
 //!
-//! // The same deck with another horizon and a slip of the pen.
+//! // The same deck with another horizon and a typo.
 //! let changes = ["material.m=4".to_owned(), "time.ende=1".to_owned()];
 //! let error = Deck::parse(text, "bar.toml", &changes).unwrap_err();
 //! let message = error.to_string();
@@ -77,8 +75,8 @@
 
 mod body;
 mod boundary;
-mod build;
 mod caution;
+mod check;
 mod component;
 mod conditions;
 mod constants;
@@ -91,8 +89,11 @@ mod exact;
 mod expression;
 mod fault;
 mod finding;
+mod form;
 mod influence;
+mod key_path;
 mod material;
+mod model;
 mod nearest;
 mod newmark;
 mod output;
@@ -103,6 +104,7 @@ mod quantity;
 mod reader;
 mod region;
 mod relaxation;
+mod remark;
 mod schema;
 mod scheme;
 mod set;
@@ -115,15 +117,14 @@ mod units;
 mod vocabulary;
 mod wording;
 
-pub use body::{Body, PointsFile, Quadrature, SurfaceFormula, SurfaceShape, VertexAreas};
-pub use boundary::BoundaryCondition;
-pub use build::{
-    ExactReference, FileError, KernelQuality, LoadReport, Model, PlaneWaves, PointsReader,
-    Resources, Sets, SurfaceReader, TableReader,
+pub use body::{
+    Lattice, PointsFile, Quadrature, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas,
 };
+pub use boundary::BoundaryCondition;
 pub use caution::{AreaDoubt, Caution};
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
+pub use course::{Course, TimeHistory};
 pub use crack::PreCrack;
 pub use deck::Deck;
 pub use error::DeckError;
@@ -131,15 +132,18 @@ pub use exact::{Exact, KnownSolution, Pulse};
 pub use expression::{Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
+pub use key_path::KeyPath;
 pub use material::{Inclusion, Material};
+pub use model::{Body, Model, Solid};
 pub use output::{Checkpoint, CrackOutput, FragmentOutput, Output, Picture, Precision};
 pub use part::{MaterialInterface, Part, PartPlace};
 pub use quantity::{metres, seconds};
-pub use schema::{json_schema, reference};
+pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
+pub use schema::{json_schema, reference, specimens};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Members, NamedSet};
 pub use source::Location;
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
-pub use surface::SurfaceDeck;
+pub use surface::SurfaceBody;
 pub use time::{Time, TimeStep};

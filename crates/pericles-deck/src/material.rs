@@ -6,6 +6,7 @@ use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Tre
 use pericles::operator::DamageMeasure;
 use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
+use serde::{Deserialize, Serialize};
 
 use crate::body::BodyRead;
 use crate::constants::{
@@ -19,32 +20,74 @@ use crate::set::SetNames;
 use crate::vocabulary::HORIZONS;
 
 /// The material with what goes with it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Material {
     /// A name for people.
+    #[serde(default)]
     pub name: Option<String>,
     /// Law, constants, horizon and breaking.
+    #[serde(with = "crate::form")]
     pub bonds: BondMaterial,
     /// How the coefficients of the influence function were found, if it is tuned against dispersion.
+    #[serde(default, with = "crate::form")]
     pub tuned: Option<TunedTable>,
     /// Sets whose bonds never break.
+    #[serde(default)]
     pub no_fail: Vec<String>,
     /// Parts that are stiffer or softer, later ones before earlier ones.
+    #[serde(default, rename = "inclusion")]
     pub inclusions: Vec<Inclusion>,
     /// Other materials, later ones before earlier ones.
+    #[serde(default, rename = "part")]
     pub parts: Vec<Part>,
     /// Bonds between materials.
+    #[serde(default)]
     pub interface: MaterialInterface,
     /// What is done about the bonds that points near surfaces lack.
+    #[serde(default, with = "crate::form")]
     pub surface_correction: SurfaceCorrection,
-    /// How damage is measured.
-    pub damage: DamageMeasure,
+    /// How damage is measured, if it is given.
+    #[serde(default, with = "crate::form")]
+    pub damage: Option<DamageMeasure>,
     /// How bonds are kept: a matter of speed only.
+    #[serde(default, with = "crate::form")]
     pub form: ForceForm,
 }
 
+impl From<BondMaterial> for Material {
+    /// One material for the whole body, whose bonds are kept as is fastest.
+    fn from(bonds: BondMaterial) -> Self {
+        Self {
+            name: None,
+            bonds,
+            tuned: None,
+            no_fail: Vec::new(),
+            inclusions: Vec::new(),
+            parts: Vec::new(),
+            interface: MaterialInterface::default(),
+            surface_correction: SurfaceCorrection::default(),
+            damage: None,
+            form: ForceForm::default(),
+        }
+    }
+}
+
+impl Material {
+    /// The word of `material.model` for its law, whatever its treatment.
+    pub fn model_name(&self) -> &'static str {
+        match self.bonds.law {
+            PairLaw::BondStretch => "bond-stretch",
+            PairLaw::Linear => "linear",
+            PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
+            PairLaw::Literal57 | PairLaw::Treated(CubicLaw::Literal57, _) => "literal57",
+        }
+    }
+}
+
 /// A part of other stiffness.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Inclusion {
     /// The set.
     pub set: String,
@@ -315,7 +358,8 @@ fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
     length.map(Extent::Finite)
 }
 
-fn damage(table: &Table<'_>) -> Option<DamageMeasure> {
+fn damage(table: &Table<'_>) -> Option<Option<DamageMeasure>> {
+    let given = table.has("damage");
     let table = table.table_or_empty("damage")?;
     let count = table.choice_or_first(
         "measure",
@@ -324,8 +368,9 @@ fn damage(table: &Table<'_>) -> Option<DamageMeasure> {
     );
     let count_precut = table.or("count_precut", false, |item| item.boolean());
     table.finish();
-    Some(DamageMeasure {
+    let measure = DamageMeasure {
         count: count?,
         count_precut: count_precut?,
-    })
+    };
+    Some(given.then_some(measure))
 }

@@ -2,54 +2,93 @@
 
 use pericles::observe::{Field, Schedule};
 use pericles::space::Point;
+use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
 
 /// What a run writes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Output {
     /// When field files are written.
+    #[serde(with = "crate::form")]
     pub fields: Schedule,
     /// Which fields.
+    #[serde(with = "crate::form")]
     pub names: Vec<Field>,
     /// When a row is added to the tables of energies, probes and reactions.
+    #[serde(with = "crate::form")]
     pub history: Schedule,
     /// Fields, or components of them, whose least and greatest value are columns of the history.
+    #[serde(default, with = "crate::form")]
     pub extremes: Vec<(Field, Option<usize>)>,
-    /// The table of crack tips.
-    pub cracks: CrackOutput,
+    /// The table of crack tips, if it is given; see [`Output::cracks`].
+    #[serde(default)]
+    pub cracks: Option<CrackOutput>,
     /// The table of fragments.
     pub fragments: FragmentOutput,
     /// Precision of numbers in field files.
     pub precision: Precision,
     /// Rate ν of the bound of the energy in the history, 1/s; none if it is not wanted.
+    #[serde(default)]
     pub energy_bound: Option<f64>,
     /// Pictures.
+    #[serde(default, rename = "picture")]
     pub pictures: Vec<Picture>,
 }
 
+impl Default for Output {
+    /// What a deck without `[output]` writes.
+    fn default() -> Self {
+        Self {
+            fields: Schedule::Count(20),
+            names: Field::USUAL.to_vec(),
+            history: Schedule::Count(200),
+            extremes: Vec::new(),
+            cracks: None,
+            fragments: FragmentOutput::NONE,
+            precision: Precision::Double,
+            energy_bound: None,
+            pictures: Vec::new(),
+        }
+    }
+}
+
 /// The table of crack tips.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct CrackOutput {
     /// When a row is added.
+    #[serde(with = "crate::form")]
     pub schedule: Schedule,
     /// The damage beyond which a point counts as cracked.
     pub threshold: f64,
 }
 
 /// The table of fragments.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FragmentOutput {
     /// When a row is added.
+    #[serde(with = "crate::form")]
     pub schedule: Schedule,
     /// The share of the body's mass from which on a piece counts as a fragment.
     pub smallest: f64,
 }
 
+impl FragmentOutput {
+    /// No table.
+    pub const NONE: Self = Self {
+        schedule: Schedule::Never,
+        smallest: 1e-3,
+    };
+}
+
 /// Precision of numbers in field files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Precision {
     /// 32 bits.
     Single,
@@ -58,26 +97,33 @@ pub enum Precision {
 }
 
 /// A picture of a field on the points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Picture {
     /// The field.
+    #[serde(with = "crate::form")]
     pub field: Field,
     /// Which component of a vector; its magnitude if none.
+    #[serde(default)]
     pub component: Option<usize>,
     /// Factor of the displacement of the points.
     pub scale: f64,
     /// Values at the ends of the colour bar; those of the field if none.
+    #[serde(default)]
     pub range: Option<[f64; 2]>,
     /// The direction from which a body in space is seen; if none, from the front right and above.
+    #[serde(default)]
     pub view: Option<Point>,
     /// Whether all of them are put into an animation at the end.
     pub animation: bool,
     /// When it is drawn.
+    #[serde(with = "crate::form")]
     pub schedule: Schedule,
 }
 
 /// When a checkpoint is written.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Checkpoint {
     /// Every so much time on the clock, s.
     Wall(f64),
@@ -261,16 +307,21 @@ fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
     }
 }
 
-/// By default as often as the history.
-fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<CrackOutput> {
+impl CrackOutput {
     /// Damage of a point on a straight crack is close to a half; this finds cracks without their surroundings.
     const THRESHOLD: f64 = 0.35;
+}
+
+/// By default as often as the history.
+fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
+    const THRESHOLD: f64 = CrackOutput::THRESHOLD;
     if is_never(table, "cracks") {
-        return Some(CrackOutput {
+        return Some(Some(CrackOutput {
             schedule: Schedule::Never,
             threshold: THRESHOLD,
-        });
+        }));
     }
+    let given = table.has("cracks");
     let table = table.table_or_empty("cracks")?;
     let schedule = schedule(&table, history.unwrap_or(Schedule::Count(200)));
     let threshold = table.or("threshold", THRESHOLD, |item| {
@@ -281,21 +332,19 @@ fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<CrackOutput> {
         )
     });
     table.finish();
-    Some(CrackOutput {
+    let cracks = CrackOutput {
         schedule: schedule?,
         threshold: threshold?,
-    })
+    };
+    Some(given.then_some(cracks))
 }
 
 /// Only where asked for: they take a pass over all bonds.
 fn fragments(table: &Table<'_>) -> Option<FragmentOutput> {
-    const SMALLEST: f64 = 1e-3;
+    const SMALLEST: f64 = FragmentOutput::NONE.smallest;
     let wanted = table.optional("fragments").is_some();
     if !wanted || is_never(table, "fragments") {
-        return Some(FragmentOutput {
-            schedule: Schedule::Never,
-            smallest: SMALLEST,
-        });
+        return Some(FragmentOutput::NONE);
     }
     let table = table.table_or_empty("fragments")?;
     let schedule = schedule(&table, Schedule::Count(50));
@@ -370,8 +419,16 @@ fn quantity(field: Field) -> Quantity {
 }
 
 impl Output {
+    /// The table of crack tips: as it is given, else as often as the history.
+    pub fn cracks(&self) -> CrackOutput {
+        self.cracks.unwrap_or(CrackOutput {
+            schedule: self.history,
+            threshold: CrackOutput::THRESHOLD,
+        })
+    }
+
     /// Whether stress or strain is wanted, which only listed bonds give.
-    pub(crate) fn wants_tensors(&self) -> bool {
+    pub fn wants_tensors(&self) -> bool {
         let drawn = self.pictures.iter().map(|picture| picture.field);
         let extremes = self.extremes.iter().map(|(field, _)| *field);
         self.names

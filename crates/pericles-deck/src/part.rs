@@ -1,6 +1,7 @@
 //! `[[material.part]]` and `[material.interface]`: several materials in one body.
 
 use pericles::material::{Fracture, InterfaceRule, Modulus};
+use serde::{Deserialize, Serialize};
 
 use crate::constants::{self, ConstantRules};
 use crate::fault::Fault;
@@ -10,7 +11,8 @@ use crate::set::{self, SetNames};
 use crate::vocabulary::PLACES;
 
 /// A material that some points have in place of the body's.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Part {
     /// Its name.
     pub name: String,
@@ -19,13 +21,16 @@ pub struct Part {
     /// Mass density ρ, kg/m³.
     pub density: f64,
     /// Elastic modulus.
+    #[serde(with = "crate::form")]
     pub modulus: Modulus,
     /// Breaking.
+    #[serde(with = "crate::form")]
     pub fracture: Fracture,
 }
 
 /// The points of a part.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PartPlace {
     /// Those of a set.
     Set(String),
@@ -34,11 +39,14 @@ pub enum PartPlace {
 }
 
 /// Bonds between two materials.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MaterialInterface {
     /// How their constant follows from both materials'.
+    #[serde(default, with = "crate::form")]
     pub rule: InterfaceRule,
     /// Critical stretches of bonds between two materials, by their numbers: 0 is the body's, then the parts'.
+    #[serde(default)]
     pub critical_stretches: Vec<([u8; 2], f64)>,
 }
 

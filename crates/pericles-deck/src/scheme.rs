@@ -4,6 +4,7 @@ use pericles::time::{
     Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor, RelaxationOptions,
 };
 use pericles_waves::{FunctionMethod, LoadRule, TrigonometricOptions};
+use serde::{Deserialize, Serialize};
 
 use crate::newmark;
 use crate::quantity::Quantity;
@@ -13,10 +14,11 @@ use crate::set::SetNames;
 use crate::vocabulary::FINE_REGIONS;
 
 /// Schemes of time integration.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Scheme {
     /// Velocity Verlet.
+    #[default]
     VelocityVerlet,
     /// Runge–Kutta of order three with the parameter α.
     RungeKutta3 {
@@ -49,21 +51,23 @@ pub enum Scheme {
     /// The implicit midpoint or the trapezoidal rule.
     Implicit {
         /// Which.
+        #[serde(with = "crate::form")]
         rule: ImplicitRule,
         /// Of the steps of linear bodies.
+        #[serde(default, with = "crate::form")]
         solver: LinearSolver,
     },
     /// The exact flow of the linear part.
-    Trigonometric(TrigonometricOptions),
+    Trigonometric(#[serde(with = "crate::form")] TrigonometricOptions),
     /// Newmark's method.
-    Newmark(NewmarkOptions),
+    Newmark(#[serde(with = "crate::form")] NewmarkOptions),
     /// Discrete gradients, which conserve energy.
     DiscreteGradient {
         /// Relative error of the energy in a step.
         tolerance: f64,
     },
     /// Static states by dynamic relaxation.
-    Relaxation(RelaxationOptions),
+    Relaxation(#[serde(with = "crate::form")] RelaxationOptions),
     /// r-RESPA.
     Respa {
         /// Where and how fine.
@@ -90,7 +94,8 @@ impl Scheme {
 }
 
 /// The smaller of two time steps.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FineStep {
     /// Fine steps in a coarse one.
     pub ratio: u32,
@@ -99,20 +104,24 @@ pub struct FineStep {
 }
 
 /// The points with the smaller step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FineRegion {
     /// Those of these sets.
     Sets(Vec<String>),
     /// Those near to where bonds break or are about to.
-    Adaptive(Follow),
+    Adaptive(#[serde(with = "crate::form")] Follow),
 }
 
 /// What coarse and fine points know of each other between their steps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Interface {
     /// Of fine points at coarse stages.
+    #[serde(default, with = "crate::form")]
     pub predictor: Predictor,
     /// Of coarse points at fine stages.
+    #[serde(default, with = "crate::form")]
     pub interpolant: Interpolant,
 }
 
@@ -132,7 +141,8 @@ enum Kind {
     Relaxation,
 }
 
-pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
+/// The scheme by its name.
+fn kind(table: &Table<'_>) -> Option<Kind> {
     let kind = table.choice_or_first(
         "scheme",
         "scheme",
@@ -158,7 +168,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             ("relaxation", Kind::Relaxation),
         ],
     );
-    let Some(kind) = kind else {
+    if kind.is_none() {
         // Which of these belong to the scheme is not known: none of them is an error of its own.
         for key in [
             "alpha",
@@ -179,115 +189,133 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         {
             table.optional(key);
         }
-        return None;
-    };
-    let alpha = match kind {
-        Kind::Rk3 | Kind::Rk3Mts => alpha(table),
-        _ => {
-            table.forbid("alpha", "α is the parameter of rk3 and rk3-mts");
-            Some(f64::NAN)
-        }
-    };
-    let newmark = if kind == Kind::Newmark {
-        newmark::read(table).map(Some)
-    } else {
-        for key in newmark::KEYS {
-            if !(kind == Kind::Relaxation && key == "iterations") {
-                table.forbid(key, "it belongs to scheme = \"newmark\"");
-            }
-        }
-        Some(None)
-    };
-    let relaxation = if kind == Kind::Relaxation {
-        relaxation::read(table).map(Some)
-    } else {
-        for key in relaxation::KEYS {
-            table.forbid(key, "it belongs to scheme = \"relaxation\"");
-        }
-        Some(None)
-    };
+    }
+    kind
+}
+
+pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
+    let kind = kind(table)?;
+    let alpha = only(
+        matches!(kind, Kind::Rk3 | Kind::Rk3Mts),
+        table,
+        &["alpha"],
+        "α is the parameter of rk3 and rk3-mts",
+        alpha,
+    );
+    let newmark_keys: Vec<&'static str> = newmark::KEYS
+        .into_iter()
+        .filter(|key| !(kind == Kind::Relaxation && *key == "iterations"))
+        .collect();
+    let newmark = only(
+        kind == Kind::Newmark,
+        table,
+        &newmark_keys,
+        "it belongs to scheme = \"newmark\"",
+        newmark::read,
+    );
+    let relaxation = only(
+        kind == Kind::Relaxation,
+        table,
+        &relaxation::KEYS,
+        "it belongs to scheme = \"relaxation\"",
+        relaxation::read,
+    );
     let tolerance = match kind {
-        Kind::DormandPrince => tolerance(table),
-        Kind::DiscreteGradient => energy_tolerance(table),
-        // Its own, a velocity.
-        Kind::Newmark | Kind::Relaxation => Some(f64::NAN),
+        Kind::DormandPrince => tolerance(table).map(Some),
+        Kind::DiscreteGradient => energy_tolerance(table).map(Some),
+        // Their own, of other quantities.
+        Kind::Newmark | Kind::Relaxation => Some(None),
         _ => {
             table.forbid(
                 "tolerance",
                 "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\" or \"relaxation\"",
             );
-            Some(f64::NAN)
+            Some(None)
         }
     };
-    let two = matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts | Kind::Respa);
-    let fine = if two {
-        fine_step(table, names).map(Some)
-    } else {
-        for key in ["ratio", "fine", "adaptive"] {
-            table.forbid(
-                key,
-                "two time steps need scheme = \"rk3-mts\", \"rk4-mts\" or \"respa\"",
-            );
-        }
-        Some(None)
-    };
-    let interface = if matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts) {
-        interface(table).map(Some)
-    } else {
-        for key in ["predictor", "interpolant"] {
-            table.forbid(key, "it belongs to scheme = \"rk3-mts\" or \"rk4-mts\"");
-        }
-        Some(None)
-    };
-    let exact = if kind == Kind::Trigonometric {
-        trigonometric(table).map(Some)
-    } else {
-        for key in ["functions", "loads", "regularisation"] {
-            table.forbid(key, "it belongs to scheme = \"trigonometric\"");
-        }
-        Some(None)
-    };
-    let solver = if matches!(kind, Kind::Implicit(_)) {
-        table.choice_or_first(
-            "linear_solver",
-            "linear solver",
-            &LinearSolver::ALL.map(|solver| (solver.name(), solver)),
-        )
-    } else {
-        table.forbid(
-            "linear_solver",
-            "it belongs to scheme = \"implicit-midpoint\" or \"trapezoidal\"",
-        );
-        Some(LinearSolver::default())
-    };
+    let fine = only(
+        matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts | Kind::Respa),
+        table,
+        &["ratio", "fine", "adaptive"],
+        "two time steps need scheme = \"rk3-mts\", \"rk4-mts\" or \"respa\"",
+        |table| fine_step(table, names),
+    );
+    let interface = only(
+        matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts),
+        table,
+        &["predictor", "interpolant"],
+        "it belongs to scheme = \"rk3-mts\" or \"rk4-mts\"",
+        interface,
+    );
+    let exact = only(
+        kind == Kind::Trigonometric,
+        table,
+        &["functions", "loads", "regularisation"],
+        "it belongs to scheme = \"trigonometric\"",
+        trigonometric,
+    );
+    let solver = only(
+        matches!(kind, Kind::Implicit(_)),
+        table,
+        &["linear_solver"],
+        "it belongs to scheme = \"implicit-midpoint\" or \"trapezoidal\"",
+        linear_solver,
+    );
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
-    if let Some(options) = exact? {
-        return Some(Scheme::Trigonometric(options));
-    }
-    if let Some(options) = newmark? {
-        return Some(Scheme::Newmark(options));
-    }
-    if let Some(options) = relaxation? {
-        return Some(Scheme::Relaxation(options));
-    }
-    Some(match (kind, fine, interface) {
-        (Kind::Implicit(rule), ..) => Scheme::Implicit {
+    let (newmark, relaxation, exact, solver) = (newmark?, relaxation?, exact?, solver?);
+    Some(match kind {
+        Kind::Verlet => Scheme::VelocityVerlet,
+        Kind::Rk3 => Scheme::RungeKutta3 { alpha: alpha? },
+        Kind::Rk4 => Scheme::RungeKutta4,
+        Kind::DormandPrince => Scheme::DormandPrince {
+            tolerance: tolerance?,
+        },
+        Kind::Rk3Mts => Scheme::MultiTimeStep3 {
+            alpha: alpha?,
+            fine: fine?,
+            interface: interface?,
+        },
+        Kind::Rk4Mts => Scheme::MultiTimeStep4 {
+            fine: fine?,
+            interface: interface?,
+        },
+        Kind::Respa => Scheme::Respa { fine: fine? },
+        Kind::Implicit(rule) => Scheme::Implicit {
             rule,
             solver: solver?,
         },
-        (Kind::Rk3Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep3 {
-            alpha,
-            fine,
-            interface,
+        Kind::Trigonometric => Scheme::Trigonometric(exact?),
+        Kind::Newmark => Scheme::Newmark(newmark?),
+        Kind::DiscreteGradient => Scheme::DiscreteGradient {
+            tolerance: tolerance?,
         },
-        (Kind::Rk4Mts, Some(fine), Some(interface)) => Scheme::MultiTimeStep4 { fine, interface },
-        (Kind::Respa, Some(fine), _) => Scheme::Respa { fine },
-        (Kind::Rk3, ..) => Scheme::RungeKutta3 { alpha },
-        (Kind::Rk4, ..) => Scheme::RungeKutta4,
-        (Kind::DormandPrince, ..) => Scheme::DormandPrince { tolerance },
-        (Kind::DiscreteGradient, ..) => Scheme::DiscreteGradient { tolerance },
-        _ => Scheme::VelocityVerlet,
+        Kind::Relaxation => Scheme::Relaxation(relaxation?),
     })
+}
+
+/// Reads what belongs to some schemes only, and forbids its keys to the others. The outer option is none if something is wrong.
+fn only<T>(
+    belongs: bool,
+    table: &Table<'_>,
+    keys: &[&'static str],
+    why: &'static str,
+    read: impl FnOnce(&Table<'_>) -> Option<T>,
+) -> Option<Option<T>> {
+    if belongs {
+        return read(table).map(Some);
+    }
+    for key in keys {
+        table.forbid(key, why);
+    }
+    Some(None)
+}
+
+fn linear_solver(table: &Table<'_>) -> Option<LinearSolver> {
+    table.choice_or_first(
+        "linear_solver",
+        "linear solver",
+        &LinearSolver::ALL.map(|solver| (solver.name(), solver)),
+    )
 }
 
 fn alpha(table: &Table<'_>) -> Option<f64> {

@@ -1,6 +1,7 @@
 //! `[sets.NAME]`: named sets of points, and the use of their names.
 
 use pericles::space::{PointCloud, PointSet, Region};
+use serde::{Deserialize, Serialize};
 
 use crate::expression::{Condition, VARIABLES};
 use crate::fault::Fault;
@@ -13,7 +14,8 @@ use crate::vocabulary::SELECTIONS;
 pub const ALL: &str = "all";
 
 /// A named set of points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct NamedSet {
     /// Its name.
     pub name: String,
@@ -22,10 +24,11 @@ pub struct NamedSet {
 }
 
 /// Which points a set has.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Members {
     /// Those in a region.
-    Region(Region),
+    Region(#[serde(with = "crate::form")] Region),
     /// Those for which a condition on x, y, z and block holds.
     Where(Condition),
     /// Those of some blocks.

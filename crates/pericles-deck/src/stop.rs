@@ -1,11 +1,14 @@
 //! `[[time.stop_when]]`: conditions that end a run before its last step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
 
 /// A condition on a set of points; the run ends after the first step that meets one of them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct StopWhen {
     /// The set.
     pub set: String,
@@ -14,7 +17,8 @@ pub struct StopWhen {
 }
 
 /// What a set must have come to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum StopCondition {
     /// The reaction is below this share of its peak.
     ReactionBelow(f64),

@@ -1,33 +1,37 @@
 //! Material and distances of bodies that are surfaces.
 
-use pericles::material::{BondMaterial, Calibration, ElasticModulus, Fracture, Modulus};
-use pericles::operator::DamageMeasure;
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
-use pericles_waves::ForceForm;
+use serde::{Deserialize, Serialize};
 
 use crate::body::{SurfaceShape, VertexAreas};
-use crate::material::{self, Inclusion, Material};
+use crate::material::{self, Inclusion};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
 
-/// A surface with its material, in place of a body on a grid.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SurfaceDeck {
+/// A surface with its material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceBody {
     /// The surface.
     pub shape: SurfaceShape,
     /// The areas of its vertices.
     pub areas: VertexAreas,
     /// Its material.
+    #[serde(with = "crate::form")]
     pub material: PowerMaterial,
     /// Sets whose bonds never break.
+    #[serde(default)]
     pub no_fail: Vec<String>,
     /// Parts that are stiffer or softer, later ones before earlier ones.
+    #[serde(default, rename = "inclusion")]
     pub inclusions: Vec<Inclusion>,
     /// How distances along the surface are found.
+    #[serde(default, with = "crate::form")]
     pub method: GeodesicMethod,
     /// Which vertices are bonded.
+    #[serde(default, with = "crate::form")]
     pub ball: Ball,
 }
 
@@ -132,31 +136,4 @@ pub(crate) fn material(
         no_fail?,
         inclusions.into_iter().collect::<Option<_>>()?,
     ))
-}
-
-/// What stands in the place of a material on a grid in the deck of a surface.
-pub(crate) fn no_bonds() -> Material {
-    Material {
-        name: None,
-        bonds: BondMaterial {
-            law: pericles::material::PairLaw::Linear,
-            density: 1.0,
-            modulus: Modulus {
-                value: ElasticModulus::Young(1.0),
-                calibration: Calibration::Continuum,
-            },
-            horizon: 1.0,
-            influence: Default::default(),
-            volume_correction: pericles::family::VolumeCorrection::None,
-            fracture: Fracture::Unbreakable,
-        },
-        tuned: None,
-        no_fail: Vec::new(),
-        inclusions: Vec::new(),
-        parts: Vec::new(),
-        interface: Default::default(),
-        surface_correction: Default::default(),
-        damage: DamageMeasure::default(),
-        form: ForceForm::List,
-    }
 }

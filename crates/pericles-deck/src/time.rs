@@ -1,5 +1,7 @@
 //! `[time]`: how far, how fine and by which scheme.
 
+use serde::{Deserialize, Serialize};
+
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::relaxation;
@@ -8,22 +10,41 @@ use crate::set::SetNames;
 use crate::stop::{StopWhen, stop_when};
 
 /// The course of the run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Time {
     /// End, s.
     pub end: f64,
     /// The step.
+    #[serde(default)]
     pub step: TimeStep,
     /// The scheme.
+    #[serde(default)]
     pub scheme: Scheme,
     /// Whether a step beyond the stable limit is accepted.
+    #[serde(default)]
     pub allow_unstable: bool,
     /// Conditions that end the run before its end.
+    #[serde(default)]
     pub stop_when: Vec<StopWhen>,
 }
 
+impl Time {
+    /// A run to `end` (s) by velocity Verlet with the largest stable step.
+    pub fn to(end: f64) -> Self {
+        Self {
+            end,
+            step: TimeStep::default(),
+            scheme: Scheme::default(),
+            allow_unstable: false,
+            stop_when: Vec::new(),
+        }
+    }
+}
+
 /// The time step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum TimeStep {
     /// The largest stable step times this factor.
     Auto {
@@ -34,6 +55,16 @@ pub enum TimeStep {
     Fixed(f64),
     /// So many to the end.
     Equal(u64),
+}
+
+/// Margin for stiffening under load, which the frequency of the reference state does not see.
+const SAFETY: f64 = 0.95;
+
+impl Default for TimeStep {
+    /// The largest stable step with a margin.
+    fn default() -> Self {
+        Self::Auto { safety: SAFETY }
+    }
 }
 
 pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
@@ -67,8 +98,6 @@ pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
 }
 
 fn step(table: &Table<'_>) -> Option<TimeStep> {
-    /// Margin for stiffening under load, which the frequency of the reference state does not see.
-    const SAFETY: f64 = 0.95;
     const AUTO: &str = "auto";
     let fixed = match table.optional("dt") {
         None => {

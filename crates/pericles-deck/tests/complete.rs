@@ -1,6 +1,6 @@
 //! A deck with everything, and what it must become.
 
-use pericles::boundary::{ALWAYS, MotionKind, TimeFunction};
+use pericles::boundary::MotionKind;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
@@ -12,6 +12,10 @@ use pericles::space::{Face, Grid, Region, Shape};
 use pericles_deck::*;
 use serde_json::json;
 
+mod common;
+
+use common::{grid, solid};
+
 const COMPLETE: &str = include_str!("complete.toml");
 const OPEN: f64 = f64::INFINITY;
 
@@ -22,7 +26,10 @@ fn parse(text: &str) -> Deck {
 #[test]
 fn every_entry_arrives() {
     let deck = parse(COMPLETE);
-    assert_eq!(deck.title.as_deref(), Some("Everything a plate can have"));
+    assert_eq!(
+        deck.model.title.as_deref(),
+        Some("Everything a plate can have")
+    );
     let triangle = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let corner = Region::Intersection(vec![
         Region::Box {
@@ -48,17 +55,16 @@ fn every_entry_arrives() {
         section: 1e-3,
         holes: vec![ball, corner],
     };
-    let state = StressState::PlaneStrain;
-    let body = Body {
+    let lattice = Lattice {
         grid,
-        listed: None,
         finer: vec![],
-        state,
         periodic: false,
         quadrature: Quadrature::Midpoint,
         rectangular: None,
     };
-    assert_eq!(deck.body, body);
+    let solid = solid(&deck);
+    assert_eq!(solid.shape, SolidShape::Lattice(lattice));
+    assert_eq!(solid.state, StressState::PlaneStrain);
 
     let dx = 0.25e-3;
     let bonds = BondMaterial {
@@ -81,10 +87,11 @@ fn every_entry_arrives() {
             calibration: FractureCalibration::Lattice,
         },
     };
-    assert_eq!(deck.material.name.as_deref(), Some("soda-lime glass"));
-    assert_eq!(deck.material.bonds, bonds);
-    assert_eq!(deck.material.no_fail, ["top", "bottom"]);
-    assert!(deck.material.damage.count && deck.material.damage.count_precut);
+    assert_eq!(solid.material.name.as_deref(), Some("soda-lime glass"));
+    assert_eq!(solid.material.bonds, bonds);
+    assert_eq!(solid.material.no_fail, ["top", "bottom"]);
+    let damage = solid.material.damage.unwrap();
+    assert!(damage.count && damage.count_precut);
 
     let layer = |upper| Region::Layer {
         face: Face { axis: 1, upper },
@@ -95,6 +102,7 @@ fn every_entry_arrives() {
         max: [-0.049, OPEN, OPEN],
     };
     let sets: Vec<(&str, &Region)> = deck
+        .model
         .sets
         .iter()
         .map(|set| (set.name.as_str(), set.members.region().unwrap()))
@@ -109,17 +117,20 @@ fn every_entry_arrives() {
     );
 
     let segment = |from, to| Crack::Segment { from, to };
-    assert_eq!(deck.cracks[0].surface, segment([-0.05, 0.02], [0.0, 0.02]));
-    assert_eq!(deck.cracks[0].ends, EndRule::Closed);
-    assert_eq!(deck.cracks[1].surface, segment([0.01; 2], [0.02; 2]));
-    assert_eq!(deck.cracks[1].ends, EndRule::Open);
+    assert_eq!(
+        deck.model.cracks[0].surface,
+        segment([-0.05, 0.02], [0.0, 0.02])
+    );
+    assert_eq!(deck.model.cracks[0].ends, EndRule::Closed);
+    assert_eq!(deck.model.cracks[1].surface, segment([0.01; 2], [0.02; 2]));
+    assert_eq!(deck.model.cracks[1].ends, EndRule::Open);
 }
 
 #[test]
 fn conditions_time_and_output_arrive() {
     let deck = parse(COMPLETE);
     assert_eq!(
-        deck.initial,
+        deck.model.initial,
         [
             Initial {
                 set: "all".into(),
@@ -138,20 +149,20 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.prescribe,
+        deck.model.prescribe,
         [
             Prescribe {
                 set: "left edge".into(),
                 kind: MotionKind::Velocity,
                 amplitude: [Some(0.0.into()), None, None],
-                function: TimeFunction::Constant,
+                function: TimeHistory::Constant,
                 until: None,
             },
             Prescribe {
                 set: "bottom".into(),
                 kind: MotionKind::Displacement,
                 amplitude: [None, Some((-1e-4).into()), None],
-                function: TimeFunction::Pulse {
+                function: TimeHistory::Pulse {
                     start: 1e-6,
                     duration: 2e-6,
                 },
@@ -160,16 +171,17 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.loads,
+        deck.model.loads,
         [
             Load {
                 set: "top".into(),
                 amplitude: LoadAmplitude::BodyForce([0.0, 48e9, 0.0].map(Into::into)),
-                function: TimeFunction::Ramp {
+                function: TimeHistory::Ramp {
                     start: 0.0,
                     duration: 1e-6,
                 },
-                window: ALWAYS,
+                from: None,
+                until: None,
             },
             Load {
                 set: "bottom".into(),
@@ -177,13 +189,14 @@ fn conditions_time_and_output_arrive() {
                     traction: [0.0, -12e6, 0.0].map(Into::into),
                     area: Some(1e-4),
                 },
-                function: TimeFunction::Constant,
-                window: ALWAYS,
+                function: TimeHistory::Constant,
+                from: None,
+                until: None,
             }
         ]
     );
     assert_eq!(
-        deck.probes,
+        deck.model.probes,
         [
             Probe {
                 name: "middle".into(),
@@ -196,7 +209,7 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.time,
+        deck.model.time,
         Time {
             end: 46e-6,
             step: TimeStep::Fixed(25e-9),
@@ -224,17 +237,17 @@ fn conditions_time_and_output_arrive() {
         schedule: Schedule::Interval(1e-6),
     };
     assert_eq!(
-        deck.output,
+        deck.model.output,
         Output {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
             history: Schedule::Every(20),
             extremes: Vec::new(),
             energy_bound: None,
-            cracks: CrackOutput {
+            cracks: Some(CrackOutput {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,
-            },
+            }),
             fragments: FragmentOutput {
                 schedule: Schedule::Every(40),
                 smallest: 0.01,
@@ -243,7 +256,7 @@ fn conditions_time_and_output_arrive() {
             pictures: vec![damage, uplift],
         }
     );
-    assert_eq!(deck.checkpoint, Checkpoint::Every(500));
+    assert_eq!(deck.model.checkpoint, Checkpoint::Every(500));
 }
 
 /// The least a deck must say.
@@ -263,17 +276,20 @@ end = "1 ms"
 #[test]
 fn defaults_are_filled_in_and_recorded() {
     let deck = parse(LEAST);
-    assert_eq!(deck.body.state, StressState::Uniaxial);
-    assert_eq!(deck.body.grid.section, 1.0);
-    assert_eq!(deck.material.bonds.fracture, Fracture::Unbreakable);
+    assert_eq!(solid(&deck).state, StressState::Uniaxial);
+    assert_eq!(grid(&deck).section, 1.0);
+    assert_eq!(solid(&deck).material.bonds.fracture, Fracture::Unbreakable);
     assert_eq!(
-        deck.material.bonds.volume_correction,
+        solid(&deck).material.bonds.volume_correction,
         VolumeCorrection::Extended
     );
-    assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
-    assert_eq!(deck.output.fields, Schedule::Count(20));
-    assert_eq!(deck.output.cracks.schedule, deck.output.history);
-    assert_eq!(deck.checkpoint, Checkpoint::Wall(600.0));
+    assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
+    assert_eq!(deck.model.output.fields, Schedule::Count(20));
+    assert_eq!(
+        deck.model.output.cracks().schedule,
+        deck.model.output.history
+    );
+    assert_eq!(deck.model.checkpoint, Checkpoint::Wall(600.0));
     assert_eq!(deck.source(), LEAST);
     let expected = json!({
         "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "periodic": false, "quadrature": "midpoint" },
@@ -296,13 +312,17 @@ fn defaults_are_filled_in_and_recorded() {
 #[test]
 fn the_record_is_a_deck_that_says_the_same() {
     for text in [COMPLETE, LEAST] {
-        let first = parse(text);
+        let mut first = parse(text);
         let again = parse(&toml::to_string(first.to_json()).unwrap());
+        // The record holds defaults too.
+        let output = &mut first.model.output;
+        output.cracks = Some(output.cracks());
+        let material = &mut first.model.body.solid_mut().unwrap().material;
+        material.damage = Some(material.damage.unwrap_or_default());
         assert_eq!(again.to_json(), first.to_json());
-        assert_eq!(again.body, first.body);
-        assert_eq!(again.material, first.material);
-        assert_eq!(again.prescribe, first.prescribe);
-        assert_eq!(again.output, first.output);
+        assert_eq!(again.model.body, first.model.body);
+        assert_eq!(again.model.prescribe, first.model.prescribe);
+        assert_eq!(again.model.output, first.model.output);
     }
 }
 
@@ -310,39 +330,40 @@ fn the_record_is_a_deck_that_says_the_same() {
 fn shapes() {
     let body = |text: &str| {
         let rest = "\n[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n";
-        parse(&format!("[body]\nspacing = 0.1\n{text}{rest}")).body
+        let deck = parse(&format!("[body]\nspacing = 0.1\n{text}{rest}"));
+        (grid(&deck).clone(), solid(&deck).state)
     };
     let bar = body("shape='bar'\nsize=[2]\narea='1 cm2'\norigin=3");
-    assert_eq!(bar.grid.section, 1e-4);
+    assert_eq!(bar.0.section, 1e-4);
     assert_eq!(
-        bar.grid.shape,
+        bar.0.shape,
         Shape::Box {
             origin: [3.0, 0.0, 0.0],
             size: vec![2.0]
         }
     );
     let ring = body("shape='disc'\ncenter=[1,2]\nradius=3\ninner_radius=2\nplane='stress'");
-    assert_eq!(ring.state, StressState::PlaneStress);
+    assert_eq!(ring.1, StressState::PlaneStress);
     let centre = [1.0, 2.0, 0.0];
     assert_eq!(
-        ring.grid.shape,
+        ring.0.shape,
         Shape::Disc {
             centre,
             radius: 3.0
         }
     );
     assert_eq!(
-        ring.grid.holes,
+        ring.0.holes,
         [Region::Ball {
             centre,
             radius: 2.0
         }]
     );
     let tube = body("shape='cylinder'\naxis='x'\nradius=3\ninner_radius=2\nheight=5");
-    assert_eq!(tube.state, StressState::Spatial);
+    assert_eq!(tube.1, StressState::Spatial);
     let base = [0.0; 3];
     assert_eq!(
-        tube.grid.shape,
+        tube.0.shape,
         Shape::Cylinder {
             base,
             axis: 0,
@@ -351,7 +372,7 @@ fn shapes() {
         }
     );
     assert_eq!(
-        tube.grid.holes,
+        tube.0.holes,
         [Region::Cylinder {
             centre: base,
             axis: 0,
@@ -360,13 +381,13 @@ fn shapes() {
     );
     let ball = body("shape='ball'\nradius=3");
     assert_eq!(
-        ball.grid.shape,
+        ball.0.shape,
         Shape::Ball {
             centre: base,
             radius: 3.0
         }
     );
-    assert_eq!(body("shape='block'\nsize=[1,2,3]").grid.dimension(), 3);
+    assert_eq!(body("shape='block'\nsize=[1,2,3]").0.dimension(), 3);
 }
 
 #[test]
@@ -374,7 +395,7 @@ fn cracks_of_each_dimension() {
     let cracks = |body: &str, crack: &str| {
         let rest = "[material]\ndensity=1\nE=1\nm=3\n[time]\nend=1\n[[crack]]\n";
         let deck = parse(&format!("[body]\nspacing=0.1\n{body}\n{rest}{crack}"));
-        deck.cracks[0].surface.clone()
+        deck.model.cracks[0].surface.clone()
     };
     assert_eq!(
         cracks("shape='bar'\nlength=1", "section='50 cm'"),
@@ -419,28 +440,28 @@ fn overrides_change_what_is_read() {
         "checkpoint={ wall = '1 min' }",
     ])
     .unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(deck.time.step, TimeStep::Auto { safety: 0.95 });
-    assert_eq!(deck.body.grid.spacing, 0.5e-3);
-    assert_eq!(deck.cracks[1].ends, EndRule::Closed);
-    let LoadAmplitude::Traction { traction, .. } = &deck.loads[1].amplitude else {
+    assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
+    assert_eq!(grid(&deck).spacing, 0.5e-3);
+    assert_eq!(deck.model.cracks[1].ends, EndRule::Closed);
+    let LoadAmplitude::Traction { traction, .. } = &deck.model.loads[1].amplitude else {
         panic!("a traction is overridden by a traction")
     };
     assert_eq!(*traction, [0.0, -24e6, 0.0].map(Into::into));
     assert_eq!(
-        deck.prescribe[1].function,
-        TimeFunction::Pulse {
+        deck.model.prescribe[1].function,
+        TimeHistory::Pulse {
             start: 2e-6,
             duration: 2e-6
         }
     );
     assert_eq!(
-        deck.material.bonds.modulus.value,
+        solid(&deck).material.bonds.modulus.value,
         ElasticModulus::Bulk(48e9)
     );
-    assert_eq!(deck.material.bonds.horizon, 2e-3);
-    assert_eq!(deck.output.history, Schedule::Interval(1e-6));
-    assert_eq!(deck.title.as_deref(), Some("Another one"));
-    assert_eq!(deck.checkpoint, Checkpoint::Wall(60.0));
+    assert_eq!(solid(&deck).material.bonds.horizon, 2e-3);
+    assert_eq!(deck.model.output.history, Schedule::Interval(1e-6));
+    assert_eq!(deck.model.title.as_deref(), Some("Another one"));
+    assert_eq!(deck.model.checkpoint, Checkpoint::Wall(60.0));
     assert_eq!(deck.source(), COMPLETE);
     assert_eq!(deck.overrides().count(), 10);
     assert_eq!(deck.overrides().next(), Some("time.dt = auto"));
@@ -450,7 +471,7 @@ fn overrides_change_what_is_read() {
 fn overrides_make_tables_and_point_at_themselves() {
     let deck = with(&["sets.right.layer.side=+x", "sets.right.layer.cells=2"]).unwrap();
     assert_eq!(
-        deck.sets[3].members.region(),
+        deck.model.sets[3].members.region(),
         Some(&Region::Layer {
             face: Face::named("+x").unwrap(),
             depth: 0.5e-3
@@ -480,7 +501,7 @@ fn overrides_make_tables_and_point_at_themselves() {
 #[test]
 fn files_are_read_and_missing_ones_named() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/complete.toml");
-    assert_eq!(Deck::read(path, &[]).unwrap().loads.len(), 2);
+    assert_eq!(Deck::read(path, &[]).unwrap().model.loads.len(), 2);
     let error = Deck::read("no/such/deck.toml", &[]).unwrap_err();
     assert!(matches!(error, DeckError::Unreadable { .. }));
     assert!(error.to_string().contains("no/such/deck.toml"));
@@ -501,6 +522,6 @@ fn documented() -> String {
 #[test]
 fn the_documented_deck_is_right() {
     let deck = parse(&documented());
-    assert_eq!(deck.cracks.len(), 1);
-    assert_eq!(deck.loads.len(), 2);
+    assert_eq!(deck.model.cracks.len(), 1);
+    assert_eq!(deck.model.loads.len(), 2);
 }

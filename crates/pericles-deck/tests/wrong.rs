@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::WAVE;
+use common::{SURFACE, Wrong, explained, wrong};
 use miette::Diagnostic;
 use pericles_deck::{Deck, DeckError, Fault};
 use proptest::prelude::*;
@@ -49,33 +49,6 @@ dt = "auto"
 [output]
 fields = { interval = "0.5 us" }
 "#;
-
-struct Wrong {
-    replace: &'static str,
-    by: &'static str,
-    /// Line and column of the problem.
-    at: (usize, usize),
-    /// What the marked text begins with.
-    marked: &'static str,
-    /// What the message must hold.
-    says: &'static [&'static str],
-}
-
-const fn wrong(
-    replace: &'static str,
-    by: &'static str,
-    at: (usize, usize),
-    marked: &'static str,
-    says: &'static [&'static str],
-) -> Wrong {
-    Wrong {
-        replace,
-        by,
-        at,
-        marked,
-        says,
-    }
-}
 
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
@@ -233,70 +206,6 @@ const WRONG: &[Wrong] = &[
 ];
 
 #[rustfmt::skip]
-const WRONG_WAVES: &[Wrong] = &[
-    wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" does not fit this body", "body.periodic = true"]),
-    wrong("bonds = \"spectral\"", "bonds = \"list\"", (6, 12), "true", &["a periodic body cannot have bonds = \"list\"", "\"convolution\" or \"spectral\""]),
-    wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["belongs to model = \"linear\""]),
-    wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (6, 12), "true", &["a periodic body cannot have bonds that break", "model = \"linear\""]),
-    wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` has no place in [body]", "with two ends"]),
-    wrong("shape = \"bar\"\nlength = 20\norigin = -10", "shape = \"plate\"\nsize = [20, 20]\nplane = \"strain\"\nquadrature = \"gauss\"", (5, 1), "quadrature", &["only the cells of a bar"]),
-    wrong("periodic = true", "periodic = true\nhole = [{ box = { max = 0 } }]", (6, 1), "periodic", &["`periodic` has no place in [body]", "without holes"]),
-    wrong("influence = { function = \"gaussian\", length = 1, acts_on = \"displacement\" }", "influence = { function = \"conical\", acts_on = \"displacement\" }", (12, 11), "\"infinite\"", &["a function that decays"]),
-    wrong("length = 1, acts_on", "length = 1, cutoff = 2, acts_on", (12, 11), "\"infinite\"", &["without a cutoff"]),
-    wrong("horizon = \"infinite\"", "horizon = 3", (17, 12), "\"nonlocal-pulse\"", &["does not belong to this deck", "horizon = \"infinite\""]),
-    wrong("dt = 0.5\n", "dt = \"auto\"\n", (24, 6), "\"auto\"", &["no stable step of its own", "give dt"]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nregularisation = -1", (26, 18), "-1", &["zero (the default"]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"implicit-midpoint\"\nfunctions = \"chebyshev\"", (26, 1), "functions", &["belongs to scheme = \"trigonometric\""]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nfunctions = \"fast\"", (26, 13), "\"fast\"", &["did you mean `fastest`?"]),
-    wrong("dt = 0.5\nscheme = \"trigonometric\"", "dt = 1.5\nscheme = \"velocity-verlet\"", (24, 6), "1.5", &["the time step 1.5e0 s is unstable", "allow_unstable"]),
-    wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (6, 12), "true", &["a periodic body cannot have pre-cracks ([[crack]])"]),
-    wrong("bonds = \"spectral\"\n", "[[material.inclusion]]\nset = \"all\"\nstiffness = 2\n", (6, 12), "true", &["a periodic body cannot have [[material.inclusion]]", "without pre-cracks, inclusions"]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"trapezoidal\"\nlinear_solver = \"lu\"", (26, 17), "\"lu\"", &["unknown linear solver `lu`", "\"direct\"", "\"conjugate-gradients\""]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nlinear_solver = \"direct\"", (26, 1), "linear_solver", &["belongs to scheme = \"implicit-midpoint\""]),
-    wrong("model = \"linear\"", "model = \"linear\"\ntreatment = \"taylor-2\"", (10, 1), "treatment", &["belongs to model = \"green-strain\""]),
-    wrong("model = \"linear\"", "model = \"green-strain\"\ntreatment = \"taylor\"", (10, 13), "\"taylor\"", &["unknown treatment `taylor`", "did you mean `taylor-1`?"]),
-    wrong("[time]", "[output]\nenergy_bound = 0\n[time]", (23, 16), "0", &["a positive number"]),
-    wrong("[time]", "[output]\nenergy_bound = 3\n[[prescribe]]\nset = \"all\"\nvelocity = 1\n[time]", (23, 1), "energy_bound", &["supports that move"]),
-    wrong("periodic = true", "quadrature = \"gauss\"\nrefine = [{ all = true, ratio = 2 }]", (6, 1), "quadrature", &["`quadrature` has no place in [body]"]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nstop_when = [{ set = \"all\", reaction_below = 0.1 }]", (26, 14), "{ set", &["the stop condition on `all` can never be met", "no [[prescribe]] names this set"]),
-    wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nstop_when = [{ set = \"all\", damage_above = 0.1 }]", (26, 14), "{ set", &["the bonds of this body never break", "a material that can break"]),
-    wrong("window = 3", "window = 0", (20, 10), "0", &["a positive number"]),
-    wrong("window = 3", "window = 0.01", (20, 10), "0.01", &["contains no point: the nearest one is 5.0000e-2 m away"]),
-    wrong("window = 3", "window = 3\ncentre = 1e18", (17, 12), "\"nonlocal-pulse\"", &["a sum of 2.0e18 terms", "at most 1e5"]),
-    wrong("width = 1", "width = 1e-9", (17, 12), "\"nonlocal-pulse\"", &["move exact.centre into the body"]),
-    wrong("solution = \"nonlocal-pulse\"", "solution = \"pulse\"", (17, 12), "\"pulse\"", &["unknown exact solution `pulse`", "\"local-pulse\""]),
-];
-
-/// A right deck of a surface.
-const SURFACE: &str = r#"[body]
-shape = "icosphere"
-level = 2
-radius = 1
-
-[geodesics]
-method = "edge"
-
-[material]
-model = "power"
-density = "1 kg/m2"
-alpha = 0.5
-p = 3
-horizon = 0.8
-
-[[initial]]
-random_velocity = { radius = 0.1, seed = 3 }
-
-[[load]]
-set = "all"
-traction = [0, 0, 1]
-
-[time]
-end = 1
-dt = 0.1
-scheme = "newmark"
-"#;
-
-#[rustfmt::skip]
 const WRONG_SURFACES: &[Wrong] = &[
     wrong("\"icosphere\"", "\"icosfere\"", (2, 9), "\"icosfere\"", &["unknown shape", "did you mean `icosphere`?", "torus"]),
     wrong("radius = 1\n", "radius = 0\n", (4, 10), "0", &["a positive number"]),
@@ -352,94 +261,10 @@ fn every_wrong_deck_is_explained() {
 }
 
 #[test]
-fn every_wrong_wave_is_explained() {
-    let build = |text: &str| Deck::parse(text, "plate.toml", &[])?.build().map(|_| ());
-    build(WAVE).unwrap_or_else(|error| panic!("{error}"));
-    explained(WAVE, WRONG_WAVES, &build);
-}
-
-#[test]
 fn every_wrong_deck_of_a_surface_is_explained() {
     let read = |text: &str| Deck::parse(text, "plate.toml", &[]).map(|_| ());
     read(SURFACE).unwrap_or_else(|error| panic!("{error}"));
     explained(SURFACE, WRONG_SURFACES, &read);
-}
-
-#[test]
-fn what_surfaces_do_not_have_is_refused_when_they_are_built() {
-    for (replace, by, at, says) in [
-        ("traction", "body_force", "plate.toml:21:", "`traction`"),
-        ("dt = 0.1\n", "", "plate.toml:23:", "give dt"),
-        (
-            "\"icosphere\"\nlevel = 2\nradius = 1\n\n[geodesics]",
-            "\"ellipsoid\"\nlevel = 2\nhalf_axes = [1, 1, 0.1]\n\n[geodesics]\nball = \"euclid\"",
-            "plate.toml:7:8",
-            "joins opposite walls",
-        ),
-    ] {
-        let deck = Deck::parse(&SURFACE.replace(replace, by), "plate.toml", &[]).unwrap();
-        let message = deck.build().map(|_| ()).unwrap_err().to_string();
-        assert!(message.contains(at) && message.contains(says), "{message}");
-    }
-}
-
-/// Wants every wrong deck to be refused where and as its case says.
-fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(), DeckError>) {
-    for case in wrong {
-        assert_eq!(
-            right.matches(case.replace).count(),
-            1,
-            "`{}` must be unique",
-            case.replace
-        );
-        let Err(error) = read(&right.replace(case.replace, case.by)) else {
-            panic!("`{}` is wrong", case.by)
-        };
-        let message = error.to_string();
-        let found = error.problems().iter().any(|problem| {
-            let at = problem.location();
-            (at.line(), at.column()) == case.at && at.excerpt().starts_with(case.marked)
-        });
-        assert!(found, "`{}`: {message}", case.by);
-        let place = format!("plate.toml:{}:{}:", case.at.0, case.at.1);
-        assert!(message.contains(&place), "{place} {message}");
-        for words in case.says {
-            assert!(
-                message.contains(words),
-                "`{}`: `{words}` is not in: {message}",
-                case.by
-            );
-        }
-    }
-}
-
-#[test]
-fn a_periodic_body_of_the_default_model_is_told_all_keys_that_work() {
-    let deck = r#"
-[body]
-shape = "bar"
-length = 10
-spacing = 1
-periodic = true
-[material]
-density = 1
-youngs_modulus = 1
-fracture_energy = 1
-surface_correction = "volume"
-horizon = 3
-[[crack]]
-section = 5
-[time]
-end = 1
-"#;
-    let deck = Deck::parse(deck, "ring.toml", &[]).unwrap();
-    let message = deck.build().map(|_| ()).unwrap_err().to_string();
-    assert_eq!(
-        message,
-        "ring.toml:6:12: a periodic body cannot have model = \"bond-stretch\", bonds that break (`fracture_energy`, `critical_stretch`), pre-cracks ([[crack]]), a surface \
-         correction; a periodic body needs model = \"linear\" and bonds that never break, without pre-cracks, inclusions, parts and surface correction; `bonds` is then left \
-         out, \"fastest\", \"convolution\" or \"spectral\""
-    );
 }
 
 #[test]

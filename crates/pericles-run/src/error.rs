@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use pericles::{PericlesError, SimulationError};
-use pericles_deck::DeckError;
+use pericles_deck::{BuildError, DeckError};
 use pericles_io::{IoError, MeshError};
 
 /// Everything that ends a run early, or keeps its results from being read.
@@ -13,6 +13,9 @@ pub enum RunError {
     /// The deck is refused.
     #[error(transparent)]
     Deck(#[from] DeckError),
+    /// A model without a deck is refused.
+    #[error(transparent)]
+    Model(#[from] BuildError),
     /// A file is to blame.
     #[error(transparent)]
     Io(#[from] IoError),

@@ -1,10 +1,13 @@
 //! What is known of a run before its first step: what reports, `check` and `run.json` say of a model.
 
-use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
-use pericles_deck::{Deck, LoadReport, Model};
+use pericles::material::{
+    BondConstants, BondMaterial, Fracture, FractureCalibration, SurfaceCorrection,
+};
+use pericles_deck::{Body, Deck, Model, ModelWarning};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
+use crate::build::{Assembly, LoadReport};
 use crate::refinement::RefinementFacts;
 use crate::units::{bytes, count, quantity, significant};
 
@@ -27,10 +30,10 @@ pub struct Facts {
     pub precut_bonds: u64,
     /// How the bonds are kept: grid or list.
     pub operator: &'static str,
-    /// Young's modulus, Pa.
-    pub youngs_modulus: f64,
-    /// The bond constant c.
-    pub micromodulus: f64,
+    /// Young's modulus, Pa; none for a surface.
+    pub youngs_modulus: Option<f64>,
+    /// The bond constant c; none for a surface.
+    pub micromodulus: Option<f64>,
     /// None if bonds never break.
     pub critical_stretch: Option<f64>,
     /// Fracture energy, J/m²; none if bonds never break.
@@ -41,10 +44,10 @@ pub struct Facts {
     /// Cracks along the planes of the lattice, if bonds break and there is a lattice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub crack_planes: Vec<PlaneFacts>,
-    /// Bulk stiffness of the grid's interior over the continuum's, less one.
-    pub stiffness_error: f64,
-    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one.
-    pub shear_error: f64,
+    /// Bulk stiffness of the grid's interior over the continuum's, less one; none for a surface.
+    pub stiffness_error: Option<f64>,
+    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one; none for a surface.
+    pub shear_error: Option<f64>,
     /// Time step, s.
     pub dt: f64,
     /// Steps of the whole run.
@@ -184,78 +187,98 @@ impl EndFacts {
 }
 
 impl Facts {
-    /// The facts about a model of a deck.
-    pub fn of(deck: &Deck, model: &Model) -> Self {
-        let operator = model.system.operator();
-        let (points, dimension) = (model.cloud.len(), model.cloud.dimension());
+    /// The facts about an assembled model. Warnings name the keys they concern.
+    pub fn of(model: &Model, assembly: &Assembly) -> Self {
+        let waves = assembly.judge_waves(model);
+        let warnings = assembly.warnings.iter().chain(&waves);
+        Self::with(model, assembly, warnings.map(ModelWarning::line).collect())
+    }
+
+    fn with(model: &Model, assembly: &Assembly, warnings: Vec<String>) -> Self {
+        let operator = assembly.system.operator();
+        let (points, dimension) = (assembly.cloud.len(), assembly.cloud.dimension());
         let directed_bonds = operator.directed_bonds();
-        let constants = &model.constants;
+        let constants = assembly.constants.as_ref();
         let finite = |x: f64| x.is_finite().then_some(x);
         Self {
             dimension,
             points,
-            spacing: model.cloud.spacing(),
-            horizon: deck
-                .surface
-                .as_ref()
-                .map_or(deck.material.bonds.horizon, |surface| {
-                    surface.material.horizon
-                }),
+            spacing: assembly.cloud.spacing(),
+            horizon: model.body.horizon(),
             bonds: directed_bonds / 2,
             directed_bonds,
-            precut_bonds: model.precut_bonds,
-            operator: model.form.name(),
-            youngs_modulus: constants.young,
-            micromodulus: constants.micromodulus,
-            critical_stretch: finite(constants.critical_stretch),
-            fracture_energy: finite(constants.fracture_energy),
-            fracture_calibration: constants.fracture_calibration.map(|given| given.name()),
-            crack_planes: constants
-                .crack_planes
-                .iter()
-                .map(|plane| PlaneFacts {
-                    plane: plane.to_string(),
-                    deviation: plane.energy() / constants.fracture_energy - 1.0,
-                })
-                .collect(),
-            stiffness_error: constants.stiffness_error,
-            shear_error: constants.shear_error,
-            dt: model.dt,
-            steps: model.steps,
-            highest_frequency: model.body_frequency.map(|f| f.estimate),
-            highest_frequency_bound: model.body_frequency.map(|f| f.bound),
-            highest_frequency_failure_probability: model
+            precut_bonds: assembly.precut_bonds,
+            operator: assembly.form.name(),
+            youngs_modulus: constants.map(|constants| constants.young),
+            micromodulus: constants.map(|constants| constants.micromodulus),
+            critical_stretch: finite(match (&model.body, constants) {
+                (Body::Solid(_), constants) => {
+                    constants.map_or(f64::INFINITY, |constants| constants.critical_stretch)
+                }
+                (Body::Surface(surface), _) => surface.material.critical_stretch,
+            }),
+            fracture_energy: constants.and_then(|constants| finite(constants.fracture_energy)),
+            fracture_calibration: constants
+                .and_then(|constants| constants.fracture_calibration)
+                .map(|given| given.name()),
+            crack_planes: constants.map(plane_facts).unwrap_or_default(),
+            stiffness_error: constants.map(|constants| constants.stiffness_error),
+            shear_error: constants.map(|constants| constants.shear_error),
+            dt: assembly.dt,
+            steps: assembly.steps,
+            highest_frequency: assembly.body_frequency.map(|f| f.estimate),
+            highest_frequency_bound: assembly.body_frequency.map(|f| f.bound),
+            highest_frequency_failure_probability: assembly
                 .body_frequency
                 .map(|f| f.failure_probability),
-            frequency_converged: model.body_frequency.map(|f| f.converged),
-            limiting_frequency: model.frequency.map(|f| f.estimate),
-            limiting_frequency_bound: model.frequency.map(|f| f.bound),
-            stable_step: model.stable_step(),
-            memory_estimate: deck.memory_estimate(model),
-            scheme: model.integrator.name(),
-            refinement: RefinementFacts::of(deck, model),
-            loads: model
+            frequency_converged: assembly.body_frequency.map(|f| f.converged),
+            limiting_frequency: assembly.frequency.map(|f| f.estimate),
+            limiting_frequency_bound: assembly.frequency.map(|f| f.bound),
+            stable_step: assembly.stable_step(),
+            memory_estimate: assembly.memory_estimate(model),
+            scheme: assembly.integrator.name(),
+            refinement: RefinementFacts::of(model, assembly),
+            loads: assembly
                 .loads
                 .iter()
                 .map(|load| LoadFacts::of(load, dimension))
                 .collect(),
-            ends: model.ends.iter().map(EndFacts::of).collect(),
+            ends: assembly.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
-            warnings: model
-                .warnings
-                .iter()
-                .chain(&deck.judge_waves(model))
-                .map(|w| w.line())
-                .collect(),
-            changed_defaults: changed_defaults(deck, model),
+            warnings,
+            changed_defaults: Vec::new(),
+        }
+    }
+
+    /// The facts about the assembly of a deck: warnings say where in the text they belong, and defaults that the deck relies on are known.
+    pub fn of_deck(deck: &Deck, assembly: &Assembly) -> Self {
+        let waves = assembly.judge_waves(&deck.model);
+        let warnings = assembly.warnings.iter().chain(&waves);
+        let located = |warning: &ModelWarning| deck.located(warning.clone()).line();
+        Self {
+            changed_defaults: changed_defaults(deck, assembly),
+            ..Self::with(&deck.model, assembly, warnings.map(located).collect())
         }
     }
 }
 
+/// What cracks along the planes of the lattice cost.
+fn plane_facts(constants: &BondConstants) -> Vec<PlaneFacts> {
+    let planes = constants.crack_planes.iter();
+    let facts = planes.map(|plane| PlaneFacts {
+        plane: plane.to_string(),
+        deviation: plane.energy() / constants.fracture_energy - 1.0,
+    });
+    facts.collect()
+}
+
 /// What this deck leaves to defaults that differ from those of the last release.
-fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
+fn changed_defaults(deck: &Deck, assembly: &Assembly) -> Vec<String> {
     let mut changed = Vec::new();
-    let (material, constants) = (&deck.material.bonds, &model.constants);
+    let (Some(solid), Some(constants)) = (deck.model.body.solid(), &assembly.constants) else {
+        return changed;
+    };
+    let material = &solid.material.bonds;
     let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
     if lattice && !deck.gives("material.fracture_calibration") {
         let continuum = BondMaterial {
@@ -265,7 +288,7 @@ fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
             },
             ..material.clone()
         };
-        let before = continuum.constants(&model.cloud, deck.body.state);
+        let before = continuum.constants(&assembly.cloud, solid.state);
         let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
         changed.push(format!(
             "fracture_calibration = \"lattice\" gives the critical stretch {}; \"continuum\", the former default, gives {}",
@@ -273,7 +296,7 @@ fn changed_defaults(deck: &Deck, model: &Model) -> Vec<String> {
             significant(before, 4)
         ));
     }
-    if deck.material.surface_correction == SurfaceCorrection::Energy {
+    if solid.material.surface_correction == SurfaceCorrection::Energy {
         changed.push(
             "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one for all directions"
                 .into(),

@@ -31,6 +31,7 @@ impl Inputs {
     /// The files of a deck that was read from `file`. Those that cannot be read are left out: they are refused where they are needed.
     pub fn of(deck: &Deck, file: &str) -> Self {
         let inputs: Vec<Input> = deck
+            .model
             .files()
             .into_iter()
             .filter_map(|named| {

@@ -1,6 +1,8 @@
-//! Runs: the whole way from a deck to a finished folder of results, as a library.
+//! Runs: the whole way from a deck or a model to a finished folder of results, as a library.
 //!
-//! * [`Modelled`] – the model of a deck, with the facts about it ([`Facts`]); built with the [`Means`] of the machine.
+//! * [`discretise`] and [`assemble`] – from a [`Model`](pericles_deck::Model) to its points and sets ([`Discretisation`]), and on to the equation of
+//!   motion with state, scheme and time step ([`Assembly`]); [`build`] does both for a deck, with [`Resources`].
+//! * [`Assembled`] – the assembly of a deck with the facts about it ([`Facts`]), made with the [`Means`] of the machine.
 //! * [`Run`] – a run in its folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last checkpoint, then [`drive`](Run::drive) with
 //!   a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It writes what the deck asks for, checkpoints, and [`Report`] as `run.json`.
 //! * [`Results`] – the results of a run, read back from its folder.
@@ -12,16 +14,16 @@
 //! ```no_run
 //! use pericles_deck::Deck;
 //! use pericles_io::OutputFolder;
-//! use pericles_run::{Cancel, DeckText, Ending, Event, Means, Modelled, Run};
+//! use pericles_run::{Assembled, Cancel, DeckText, Ending, Event, Means, Run};
 //!
 //! let source = std::fs::read_to_string("plate.toml")?;
 //! let deck = Deck::parse(&source, "plate.toml", &[])?;
 //! let text = DeckText::of(&deck, "plate.toml".into());
 //!
 //! // The folder is made once nothing in the deck can be wrong any more.
-//! let modelled = Modelled::of(&deck, &Means::default(), &mut |_| {})?;
+//! let assembled = Assembled::of(&deck, &Means::default(), &mut |_| {})?;
 //! let folder = OutputFolder::create("plate", false)?;
-//! let mut run = Run::begin(&deck, text, modelled, folder)?;
+//! let mut run = Run::begin(&deck, text, assembled, folder)?;
 //!
 //! let cancel = Cancel::new();
 //! let ending = run.drive(None, &cancel, &mut |event| {
@@ -37,7 +39,9 @@
 //! ```
 
 mod animations;
+mod assembled;
 mod audit;
+mod build;
 mod cancel;
 mod checkpoint;
 pub mod convergence;
@@ -50,7 +54,6 @@ mod facts;
 mod inputs;
 pub mod machine;
 mod mirror;
-mod modelled;
 mod observers;
 pub mod refinement;
 mod report;
@@ -60,7 +63,13 @@ pub mod sweep;
 pub mod units;
 mod watch;
 
+pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
+pub use build::{
+    Assembly, Discretisation, ExactReference, FileError, Grids, Interior, KernelQuality,
+    LoadReport, PlaneWaves, PointsReader, Resources, Sets, SurfaceReader, TableReader, assemble,
+    body_points, build, discretise,
+};
 pub use cancel::Cancel;
 pub use deadline::Deadline;
 pub use deck_text::DeckText;
@@ -69,7 +78,6 @@ pub use event::{Event, Tell};
 pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
 pub use inputs::Inputs;
 pub use mirror::MirrorError;
-pub use modelled::{Caching, Means, Modelled, readers};
 pub use observers::picture_of;
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};

@@ -1,11 +1,11 @@
-//! The observers that a deck asks for: what a simulation writes into its folder.
+//! The observers that a model asks for: what a simulation writes into its folder.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use pericles::Simulation;
 use pericles::observe::{CrackTracker, Schedule};
-use pericles_deck::{Deck, ExactReference, Model, Picture, Precision, Scheme};
+use pericles_deck::{Model, Picture, Precision, Scheme};
 use pericles_io::OutputFolder;
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, FragmentCourse, History,
@@ -14,27 +14,28 @@ use pericles_io::observers::{
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
+use crate::build::{Assembly, ExactReference};
 use crate::checkpoint;
 use crate::error::RunError;
 
-/// The simulation of a model with the observers the deck asks for, writing into a folder.
+/// The simulation of an assembled model with the observers it asks for, writing into a folder.
 ///
 /// # Errors
 /// Sub-folders that cannot be made.
 pub fn simulation(
-    deck: &Deck,
-    mut model: Model,
+    model: &Model,
+    mut assembly: Assembly,
     folder: &OutputFolder,
 ) -> Result<Simulation, RunError> {
-    let (cloud, output) = (model.cloud.clone(), &deck.output);
+    let (cloud, output) = (assembly.cloud.clone(), &model.output);
     let dimension = cloud.dimension();
-    let can_break = model.system.operator().can_break();
-    let reactions = (!model.system.motions().is_empty())
-        .then(|| Reactions::new(folder.file("reactions.csv"), model.system.motions()));
-    let (probes, cracks) = (model.probes.clone(), model.cracks.clone());
-    let exact = model.exact.take();
-    let surface = model.surface.clone();
-    let mut simulation = model.simulation();
+    let can_break = assembly.system.operator().can_break();
+    let reactions = (!assembly.system.motions().is_empty())
+        .then(|| Reactions::new(folder.file("reactions.csv"), assembly.system.motions()));
+    let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
+    let exact = assembly.exact.take();
+    let surface = assembly.surface.clone();
+    let mut simulation = assembly.simulation();
     let mut names = [
         "run.json",
         "report.html",
@@ -47,7 +48,7 @@ pub fn simulation(
 
     let mut history = History::new(folder.file("history.csv"), dimension);
     if simulation.integrator().inner_iterations().is_some() {
-        history = history.with(match deck.time.scheme {
+        history = history.with(match model.time.scheme {
             Scheme::Relaxation(_) => InnerColumns::Residual,
             _ => InnerColumns::Velocity,
         });
@@ -73,9 +74,9 @@ pub fn simulation(
     }
     if can_break && !cracks.is_empty() {
         names.push("cracks.csv".into());
-        let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold);
+        let tracker = CrackTracker::new(&cloud, cracks, output.cracks().threshold);
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
-        simulation.observe(output.cracks.schedule, Box::new(cracks));
+        simulation.observe(output.cracks().schedule, Box::new(cracks));
     }
     if can_break && output.fragments.schedule != Schedule::Never {
         names.push("fragments.csv".into());
@@ -100,7 +101,7 @@ pub fn simulation(
         simulation.observe(output.fields, Box::new(fields));
     }
     names.extend(add_pictures(
-        deck,
+        model,
         folder,
         surface.as_ref(),
         &mut simulation,
@@ -109,35 +110,35 @@ pub fn simulation(
     Ok(simulation)
 }
 
-/// A picture that a deck asks for.
-pub fn picture_of(deck: &Deck, picture: &Picture, surface: Option<&Arc<Surface>>) -> PictureOf {
+/// A picture that a model asks for.
+pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface>>) -> PictureOf {
     PictureOf {
         component: picture.component,
         scale: picture.scale,
         range: picture.range,
-        title: deck.title.clone().unwrap_or_default(),
+        title: model.title.clone().unwrap_or_default(),
         view: picture.view,
         surface: surface.cloned(),
         ..PictureOf::new(picture.field)
     }
 }
 
-/// Adds the pictures that a deck asks for; their files, relative to the folder.
+/// Adds the pictures that a model asks for; their files, relative to the folder.
 fn add_pictures(
-    deck: &Deck,
+    model: &Model,
     folder: &OutputFolder,
     surface: Option<&Arc<Surface>>,
     simulation: &mut Simulation,
 ) -> Result<Vec<String>, RunError> {
-    if deck.output.pictures.is_empty() {
+    if model.output.pictures.is_empty() {
         return Ok(Vec::new());
     }
     let mut names = Vec::new();
     let place = folder.subfolder("pictures")?;
     let dimension = simulation.system().dimension();
     let mut uses: HashMap<String, u32> = HashMap::new();
-    for picture in &deck.output.pictures {
-        let what = picture_of(deck, picture, surface);
+    for picture in &model.output.pictures {
+        let what = picture_of(model, picture, surface);
         // Two pictures of one field get two names.
         let uses = uses.entry(what.name(dimension)).or_default();
         *uses += 1;

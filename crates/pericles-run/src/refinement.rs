@@ -10,9 +10,10 @@ use pericles::time::{
     HighestFrequency, Integrator, RefinementReport, RungeKutta, State, Tableau, VelocityVerlet,
 };
 use pericles::{Interrupt, PericlesError, System};
-use pericles_deck::{Deck, FineRegion, Model, Scheme};
+use pericles_deck::{FineRegion, Model, Scheme};
 use serde::Serialize;
 
+use crate::build::Assembly;
 use crate::units::{percent, significant};
 
 /// What is known of two time steps before the first; SI units.
@@ -69,12 +70,12 @@ pub struct RefinementAudit {
 }
 
 impl RefinementFacts {
-    /// The facts of a model whose scheme has two time steps.
-    pub fn of(deck: &Deck, model: &Model) -> Option<Self> {
-        let report = model.integrator.refinement()?;
+    /// The facts of an assembled model whose scheme has two time steps.
+    pub fn of(model: &Model, assembly: &Assembly) -> Option<Self> {
+        let report = assembly.integrator.refinement()?;
         let ratio = f64::from(report.ratio);
-        let body = model.body_frequency;
-        let limiting = model.frequency.map(|frequency| frequency.estimate);
+        let body = assembly.body_frequency;
+        let limiting = assembly.frequency.map(|frequency| frequency.estimate);
         Some(Self {
             ratio: report.ratio,
             fine_fraction: report.mean_fraction,
@@ -82,17 +83,17 @@ impl RefinementFacts {
             coarse_points: report.points - report.fine_points,
             border_points: report.border_points,
             follows_damage: matches!(
-                fine_region(&deck.time.scheme),
+                fine_region(&model.time.scheme),
                 Some(FineRegion::Adaptive(_))
             ),
             body_frequency: body.map(|body| body.estimate),
-            omega_dt: limiting.map(|omega| omega * model.dt),
-            omega_dt_fine: body.map(|body| body.estimate * model.dt / ratio),
+            omega_dt: limiting.map(|omega| omega * assembly.dt),
+            omega_dt_fine: body.map(|body| body.estimate * assembly.dt / ratio),
             evaluations: report.evaluations(),
             speed_up: report.speed_up(),
             speed_up_over_verlet: report.speed_up_over_verlet(),
             speed_up_over_stable_verlet: body
-                .map(|body| model.dt / verlet_step(&body) / report.evaluations()),
+                .map(|body| assembly.dt / verlet_step(&body) / report.evaluations()),
         })
     }
 }
@@ -161,24 +162,26 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Measures. The model is worn out by it: its state moves on.
+    /// Measures. The assembly is worn out by it: its state moves on.
     ///
     /// # Errors
     /// Schemes that do not converge.
-    pub fn measure(deck: &Deck, model: &mut Model) -> Result<Option<Self>, PericlesError> {
-        let Some(report) = model.integrator.refinement() else {
+    pub fn measure(model: &Model, assembly: &mut Assembly) -> Result<Option<Self>, PericlesError> {
+        let Some(report) = assembly.integrator.refinement() else {
             return Ok(None);
         };
         let ratio = f64::from(report.ratio);
-        let mut uniform: Option<RungeKutta> = match &deck.time.scheme {
+        let mut uniform: Option<RungeKutta> = match &model.time.scheme {
             Scheme::MultiTimeStep3 { alpha, .. } => {
-                Some(RungeKutta::new(&Tableau::rk3(*alpha)?, &model.system))
+                Some(RungeKutta::new(&Tableau::rk3(*alpha)?, &assembly.system))
             }
-            Scheme::MultiTimeStep4 { .. } => Some(RungeKutta::new(&Tableau::rk4(), &model.system)),
+            Scheme::MultiTimeStep4 { .. } => {
+                Some(RungeKutta::new(&Tableau::rk4(), &assembly.system))
+            }
             // r-RESPA with one step is velocity Verlet.
             _ => None,
         };
-        let (system, state, dt) = (&mut model.system, &mut model.state, model.dt);
+        let (system, state, dt) = (&mut assembly.system, &mut assembly.state, assembly.dt);
         let mut least = Self {
             seconds: f64::INFINITY,
             uniform: f64::INFINITY,
@@ -189,7 +192,7 @@ impl Comparison {
             let mut time = |scheme: &mut dyn Integrator, dt| {
                 seconds_per_step(system, state, scheme, dt, MOST, LONGEST / ROUNDS)
             };
-            least.seconds = least.seconds.min(time(&mut *model.integrator, dt)?);
+            least.seconds = least.seconds.min(time(&mut *assembly.integrator, dt)?);
             let verlet = ratio * time(&mut VelocityVerlet, dt / ratio)?;
             least.verlet = least.verlet.min(verlet);
             let uniform = match &mut uniform {

@@ -88,7 +88,7 @@ impl Report {
             status: Status::Running,
             error: None,
             stop_reason: None,
-            title: deck.title.clone(),
+            title: deck.model.title.clone(),
             program: Program {
                 name: "pericles",
                 version: env!("CARGO_PKG_VERSION"),

@@ -9,6 +9,7 @@ use pericles_deck::Deck;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
+use crate::assembled::{Assembled, Means};
 use crate::audit::{Audit, Start};
 use crate::cancel::Cancel;
 use crate::checkpoint::{Checkpoints, Stored};
@@ -17,7 +18,6 @@ use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
-use crate::modelled::{Means, Modelled};
 use crate::observers;
 use crate::report::{Report, Status};
 use crate::units::quantity;
@@ -51,13 +51,13 @@ impl Run {
     pub fn begin(
         deck: &Deck,
         text: DeckText,
-        modelled: Modelled,
+        assembled: Assembled,
         folder: OutputFolder,
     ) -> Result<Self, RunError> {
-        let Modelled { model, facts } = modelled;
-        let simulation = observers::simulation(deck, model, &folder)?;
+        let Assembled { assembly, facts } = assembled;
+        let simulation = observers::simulation(&deck.model, assembly, &folder)?;
         Ok(Self {
-            checkpoints: Checkpoints::new(&folder, deck.checkpoint, text.clone()),
+            checkpoints: Checkpoints::new(&folder, deck.model.checkpoint, text.clone()),
             start: Start::of(&simulation),
             simulation,
             report: Report::new(deck, text, facts, 0),
@@ -79,10 +79,13 @@ impl Run {
         }
         let stored = Stored::latest(&folder, means.memory)?;
         let deck = stored.metadata.deck.read()?;
-        let Modelled { model, mut facts } = Modelled::of(&deck, means, tell)?;
+        let Assembled {
+            assembly,
+            mut facts,
+        } = Assembled::of(&deck, means, tell)?;
         facts.warnings.extend(doubts(&stored, &deck, &facts));
         facts.warnings.extend(incomplete(&folder)?);
-        let mut simulation = observers::simulation(&deck, model, &folder)?;
+        let mut simulation = observers::simulation(&deck.model, assembly, &folder)?;
         // The state is still that of the start.
         let start = Start::of(&simulation);
         simulation
@@ -93,7 +96,7 @@ impl Run {
             })?;
         let step = simulation.state().step;
         let text = stored.metadata.deck;
-        let checkpoints = Checkpoints::new(&folder, deck.checkpoint, text.clone());
+        let checkpoints = Checkpoints::new(&folder, deck.model.checkpoint, text.clone());
         checkpoints.forget_failed();
         Ok(Some(Self {
             checkpoints,
@@ -294,7 +297,7 @@ fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
             metadata.instruction_set, facts.instruction_set
         ));
     }
-    let files = deck.files();
+    let files = deck.model.files();
     if let (Some(file), true) = (files.first(), metadata.deck.inputs.is_empty()) {
         let file = file.display();
         doubts.push(format!(

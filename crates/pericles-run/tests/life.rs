@@ -7,7 +7,7 @@ use std::thread;
 use pericles_deck::Deck;
 use pericles_io::OutputFolder;
 use pericles_run::{
-    Caching, Cancel, Deadline, DeckText, Ending, Event, Means, Modelled, Results, Run, RunError,
+    Assembled, Caching, Cancel, Deadline, DeckText, Ending, Event, Means, Results, Run, RunError,
     Status,
 };
 
@@ -47,9 +47,9 @@ fn means() -> Means {
 fn begun(folder: &Path) -> Run {
     let deck = Deck::parse(PLATE, "plate.toml", &[]).unwrap();
     let text = DeckText::of(&deck, "plate.toml".into());
-    let modelled = Modelled::of(&deck, &means(), &mut |_| {}).unwrap();
+    let assembled = Assembled::of(&deck, &means(), &mut |_| {}).unwrap();
     let folder = OutputFolder::create(folder, false).unwrap();
-    Run::begin(&deck, text, modelled, folder).unwrap()
+    Run::begin(&deck, text, assembled, folder).unwrap()
 }
 
 fn history(folder: &Path) -> String {

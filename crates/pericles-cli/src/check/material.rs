@@ -2,7 +2,7 @@
 
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, Calibration, ElasticWaves};
-use pericles_deck::{Deck, SurfaceDeck, VertexAreas};
+use pericles_deck::{Solid, SurfaceBody, VertexAreas};
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
@@ -12,34 +12,42 @@ use serde_json::json;
 
 use super::line::Line;
 
-pub(super) fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> Vec<Line> {
+pub(super) fn material(
+    solid: &Solid,
+    constants: &BondConstants,
+    facts: &Facts,
+    parts: &[BondConstants],
+) -> Vec<Line> {
     let mut lines = vec![
-        Line::new("Young's modulus", quantity(facts.youngs_modulus, "Pa")),
+        Line::new("Young's modulus", quantity(constants.young, "Pa")),
         Line::new(
             "bond constant c",
             format!(
                 "{:.6e} (SI, of the force density c α {})",
-                facts.micromodulus,
-                match deck.material.bonds.influence.acts_on {
+                constants.micromodulus,
+                match solid.material.bonds.influence.acts_on {
                     ActsOn::Stretch => "s",
                     ActsOn::Displacement => "η",
                 }
             ),
         ),
-        Line::new("stiffness error", stiffness_error(deck, facts)),
+        Line::new(
+            "stiffness error",
+            stiffness_error(solid, constants, facts.dimension),
+        ),
     ];
     let strength = facts.critical_stretch.zip(facts.fracture_energy);
     lines.push(Line::new("breaking", breaking(strength)));
     if !facts.crack_planes.is_empty() {
         lines.push(Line::new("crack planes", crack_planes(facts)));
     }
-    for (part, constants) in deck.material.parts.iter().zip(parts) {
-        let strength = Some((constants.critical_stretch, constants.fracture_energy))
+    for (part, own) in solid.material.parts.iter().zip(parts) {
+        let strength = Some((own.critical_stretch, own.fracture_energy))
             .filter(|(stretch, _)| stretch.is_finite());
         let text = format!(
             "{}: Young's modulus {}, {} kg/m³; breaking {}",
             part.name,
-            quantity(constants.young, "Pa"),
+            quantity(own.young, "Pa"),
             significant(part.density, 4),
             breaking(strength)
         );
@@ -47,15 +55,15 @@ pub(super) fn material(deck: &Deck, facts: &Facts, parts: &[BondConstants]) -> V
             "parts",
             json!({
                 "name": part.name,
-                "youngs_modulus": constants.young,
+                "youngs_modulus": own.young,
                 "density": part.density,
                 "critical_stretch": strength.map(|(stretch, _)| stretch),
                 "fracture_energy": strength.map(|(_, energy)| energy),
             }),
         ));
     }
-    let density = deck.material.bonds.density;
-    let speeds = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state);
+    let density = solid.material.bonds.density;
+    let speeds = ElasticWaves::of(constants.young, density, solid.state);
     let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
@@ -84,16 +92,19 @@ fn speed(speed: f64) -> String {
 }
 
 /// How far the grid's interior is from the stiffness asked for, and what can be done about it.
-fn stiffness_error(deck: &Deck, facts: &Facts) -> String {
+fn stiffness_error(solid: &Solid, constants: &BondConstants, dimension: usize) -> String {
     /// Worth a word.
     const NOTICED: f64 = 0.01;
-    let mut line = format!("{} in bulk", deviation(facts.stiffness_error));
-    if facts.dimension > 1 {
-        line += &format!(", {} in shear along the axes", deviation(facts.shear_error));
+    let mut line = format!("{} in bulk", deviation(constants.stiffness_error));
+    if dimension > 1 {
+        line += &format!(
+            ", {} in shear along the axes",
+            deviation(constants.shear_error)
+        );
     }
     line += ", of the grid's interior";
-    let calibration = deck.material.bonds.modulus.calibration;
-    if facts.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
+    let calibration = solid.material.bonds.modulus.calibration;
+    if constants.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
         line += "; modulus = \"lattice\" makes it 0 in bulk";
     }
     line
@@ -136,7 +147,7 @@ fn breaking(strength: Option<(f64, f64)>) -> String {
     }
 }
 
-pub(super) fn surface_material(surface: &SurfaceDeck) -> Vec<Line> {
+pub(super) fn surface_material(surface: &SurfaceBody) -> Vec<Line> {
     let material = &surface.material;
     let law = match material.bond {
         SurfaceBond::Displacement => "κ |η|^(p−2) η / d^(2+αp)",

@@ -8,10 +8,10 @@ mod waves;
 use std::path::Path;
 
 use pericles::observe::Probe;
-use pericles_deck::{Deck, Model, Scheme};
+use pericles_deck::{Body, Model, Scheme};
 use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
-use pericles_run::{Facts, Means, Modelled};
+use pericles_run::{Assembled, Assembly, Facts, Means};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -38,17 +38,22 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         memory: args.memory.bytes(),
     };
     let mut screen = Screen::new(false);
-    let Modelled { model, facts } = Modelled::of(&deck, &means, &mut |event| screen.show(event))?;
+    let Assembled { assembly, facts } =
+        Assembled::of(&deck, &means, &mut |event| screen.show(event))?;
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
     }
-    let mut lines = body(&deck, &facts);
-    lines.extend(neighbours(&model));
-    match &deck.surface {
-        Some(surface) => lines.extend(surface_material(surface)),
-        None => lines.extend(material(&deck, &facts, &model.parts)),
+    let model = &deck.model;
+    let mut lines = body(model, &facts);
+    lines.extend(neighbours(&assembly));
+    match (&model.body, &assembly.constants) {
+        (Body::Solid(solid), Some(constants)) => {
+            lines.extend(material(solid, constants, &facts, &assembly.parts));
+        }
+        (Body::Solid(_), None) => {}
+        (Body::Surface(surface), _) => lines.extend(surface_material(surface)),
     }
-    lines.extend(plane_waves(&deck, &model));
+    lines.extend(plane_waves(model, &assembly));
     lines.extend(time(&facts));
     /// Loads with a line of their own; `run.json` has all.
     const LOADS: usize = 20;
@@ -62,27 +67,27 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 .with("loads_not_listed", more),
         );
     }
-    lines.extend(probes(&model));
+    lines.extend(probes(&assembly));
     for end in &facts.ends {
         lines.push(Line::new("absorbing end", end.line()));
     }
     for changed in &facts.changed_defaults {
         lines.push(Line::new("changed default", changed.clone()));
     }
-    if matches!(deck.time.scheme, Scheme::Relaxation(_)) {
+    if matches!(model.time.scheme, Scheme::Relaxation(_)) {
         // A step goes from static state to static state: one would be the whole run.
         let note = "that of as many iterations as each static state takes";
         lines.push(Line::new("run time", note));
     } else {
-        let time = run_time(&deck, &facts, model, count_of_threads, &mut lines)?;
+        let time = run_time(model, &facts, assembly, count_of_threads, &mut lines)?;
         lines.push(time);
     }
     if let Some(path) = &args.json {
-        let results = json_of(&args.deck, &deck, &facts, &lines)?;
+        let results = json_of(&args.deck, model, &facts, &lines)?;
         console::write_json(path, &results)?;
     }
     if args.json.as_deref() != Some(Path::new("-")) {
-        let title = deck.title.as_deref().unwrap_or("no title");
+        let title = model.title.as_deref().unwrap_or("no title");
         let mut text = format!("{}: {title}", args.deck.display());
         for line in &lines {
             text += &format!("\n  {line}");
@@ -93,7 +98,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
 }
 
 /// All that `check` knows, in SI units: the facts under the keys that they have in `model` of `run.json`, and the values of the lines.
-fn json_of(path: &Path, deck: &Deck, facts: &Facts, lines: &[Line]) -> Result<Value, CliError> {
+fn json_of(path: &Path, model: &Model, facts: &Facts, lines: &[Line]) -> Result<Value, CliError> {
     #[derive(Serialize)]
     struct Named<'a> {
         deck: String,
@@ -103,7 +108,7 @@ fn json_of(path: &Path, deck: &Deck, facts: &Facts, lines: &[Line]) -> Result<Va
     }
     let mut json = serde_json::to_value(Named {
         deck: path.display().to_string(),
-        title: deck.title.as_deref(),
+        title: model.title.as_deref(),
         facts,
     })?;
     if let Value::Object(object) = &mut json {
@@ -114,23 +119,25 @@ fn json_of(path: &Path, deck: &Deck, facts: &Facts, lines: &[Line]) -> Result<Va
 
 /// How long the run will take, from a few of its steps; what that says of two time steps is added to the lines.
 fn run_time(
-    deck: &Deck,
+    model: &Model,
     facts: &Facts,
-    mut model: Model,
+    mut assembly: Assembly,
     count_of_threads: usize,
     lines: &mut Vec<Line>,
 ) -> Result<Line, CliError> {
-    model.integrator.start(&mut model.system, &mut model.state);
-    let comparison = Comparison::measure(deck, &mut model)?;
+    assembly
+        .integrator
+        .start(&mut assembly.system, &mut assembly.state);
+    let comparison = Comparison::measure(model, &mut assembly)?;
     if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {
         lines.extend(refinement::lines(two, facts.scheme, facts.dt, comparison));
     }
     let step = match comparison {
         Some(comparison) => comparison.seconds,
         None => seconds_per_step(
-            &mut model.system,
-            &mut model.state,
-            &mut *model.integrator,
+            &mut assembly.system,
+            &mut assembly.state,
+            &mut *assembly.integrator,
             facts.dt,
             // Not one more than the run has: histories of absorbing ends are no longer.
             facts.steps,
@@ -149,11 +156,11 @@ fn run_time(
         .with("threads", count_of_threads))
 }
 
-fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
-    let body = match &deck.surface {
-        Some(_) => Line::new("body", "surface in 3D"),
-        None => {
-            let state = deck.body.state.name();
+fn body(model: &Model, facts: &Facts) -> Vec<Line> {
+    let body = match &model.body {
+        Body::Surface(_) => Line::new("body", "surface in 3D"),
+        Body::Solid(solid) => {
+            let state = solid.state.name();
             let text = format!("{}D, {state}", facts.dimension);
             Line::new("body", text).with("state", state)
         }
@@ -197,18 +204,18 @@ fn body(deck: &Deck, facts: &Facts) -> Vec<Line> {
 }
 
 /// The fewest, mean and most neighbours of a point, where the operator knows them one by one.
-fn neighbours(model: &Model) -> Option<Line> {
-    let local = model.system.operator().as_local()?;
+fn neighbours(assembly: &Assembly) -> Option<Line> {
+    let local = assembly.system.operator().as_local()?;
     let count_of = |i: usize| {
         let mut count = 0u64;
         local.neighbours(i, &mut |_| count += 1);
         count
     };
-    let counts = (0..model.cloud.len()).map(count_of);
+    let counts = (0..assembly.cloud.len()).map(count_of);
     let (least, most, sum) = counts.fold((u64::MAX, 0, 0), |(least, most, sum), n| {
         (least.min(n), most.max(n), sum + n)
     });
-    let mean = sum as f64 / model.cloud.len() as f64;
+    let mean = sum as f64 / assembly.cloud.len() as f64;
     let text = format!(
         "{} to {} per point, {} on average",
         count(least),
@@ -220,13 +227,13 @@ fn neighbours(model: &Model) -> Option<Line> {
 }
 
 /// Where the probes read: at a point, or the mean over a set.
-fn probes(model: &Model) -> Vec<Line> {
+fn probes(assembly: &Assembly) -> Vec<Line> {
     let line = |probe: &Probe| {
         let mut value = json!({ "name": probe.name, "points": probe.points.len() });
         let text = match probe.points[..] {
             [point] => {
-                let place = model.cloud.point(point as usize);
-                let place = &place[..model.cloud.dimension()];
+                let place = assembly.cloud.point(point as usize);
+                let place = &place[..assembly.cloud.dimension()];
                 let shown: Vec<String> = place.iter().map(|x| quantity(*x, "m")).collect();
                 value["place"] = json!(place);
                 format!("{} at ({})", probe.name, shown.join(", "))
@@ -239,7 +246,7 @@ fn probes(model: &Model) -> Vec<Line> {
         };
         Line::new("probe", text).with_entry("probes", value)
     };
-    model.probes.iter().map(line).collect()
+    assembly.probes.iter().map(line).collect()
 }
 
 fn time(facts: &Facts) -> Vec<Line> {

@@ -1,23 +1,24 @@
 //! What `check` says of plane waves.
 
-use pericles_deck::{Deck, KernelQuality, Model};
+use pericles_deck::Model;
 use pericles_run::units::{percent, quantity, significant};
+use pericles_run::{Assembly, KernelQuality};
 use serde_json::json;
 
 use super::line::Line;
 
 /// What kernel and grid do to plane waves.
-pub(super) fn plane_waves(deck: &Deck, model: &Model) -> Vec<Line> {
-    let Some(waves) = deck.plane_waves(model) else {
+pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
+    let Some(waves) = assembly.plane_waves(model) else {
         return Vec::new();
     };
     let grid = waves.grid;
     let tolerance = percent(grid.tolerance);
     let length = std::f64::consts::TAU / grid.wavenumber;
-    let spacings = length / model.cloud.spacing();
+    let spacings = length / assembly.cloud.spacing();
     let mut lines = Vec::new();
     if let Some(longest) = waves.model {
-        let horizons = longest / deck.material.bonds.horizon;
+        let horizons = longest / model.body.horizon();
         let text = format!(
             "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
             quantity(longest, "m"),
@@ -38,7 +39,8 @@ pub(super) fn plane_waves(deck: &Deck, model: &Model) -> Vec<Line> {
     );
     let value = json!({ "tolerance": grid.tolerance, "wavelength": length, "spacings": spacings });
     lines.push(Line::new("grid dispersion", text).with("grid_dispersion", value));
-    if let (Some(pair), Some(table)) = (waves.tuning, &deck.material.tuned) {
+    let table = (model.body.solid()).and_then(|solid| solid.material.tuned.as_ref());
+    if let (Some(pair), Some(table)) = (waves.tuning, table) {
         lines.push(tuned_kernel(pair, table.tuning.lower_bound));
     }
     lines

@@ -2,7 +2,7 @@
 
 mod wavevectors;
 
-use pericles_deck::{Deck, KernelQuality, Model, PlaneWaves};
+use pericles_deck::Solid;
 use pericles_dispersion::spectrum::{SpectrumRun, measure};
 use pericles_dispersion::tuning::{TunedTable, bond_classes, continuum_speeds};
 use pericles_dispersion::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
@@ -11,7 +11,7 @@ use pericles_run::dispersion::{
     Curves, STEPS, write_bonds, write_classes, write_polar, write_spectrum,
 };
 use pericles_run::units::{percent, quantity, significant};
-use pericles_run::{RunError, readers};
+use pericles_run::{Interior, KernelQuality, PlaneWaves, RunError, build, readers};
 use serde_json::{Value as Json, json};
 
 use crate::args::DispersionArgs;
@@ -29,23 +29,25 @@ use wavevectors::AtWaveVector;
 pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let model = deck.build_with(readers())?;
-    let lattice = deck.bond_lattice(&model)?;
-    let study = Analysis::of(&deck, &model, lattice, args)?;
+    let assembly = build(&deck, &readers())?;
+    let model = &deck.model;
+    let interior = assembly.interior(model);
+    let interior = interior.map_err(|error| deck.refusal(error))?;
+    let (solid, title) = (interior.solid, model.title.as_deref());
+    let study = Analysis::of(interior, assembly.dt, args)?;
     if args.measure && !study.stability.is_stable() {
         return Err(CliError::UnstableSpectrum);
     }
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-dispersion")?;
-    let left_out = left_out(&deck);
+    let left_out = left_out(solid);
     for part in &left_out {
         console::note(format_args!(
             "warning: plane waves are those of [material] in the interior of the body: {part}"
         ));
     }
-    let title = deck.title.clone().unwrap_or_default();
     let curves = study.curves();
     curves.write(&folder.file("curves.csv"))?;
-    curves.draw(&folder.file("curves.png"), &title)?;
+    curves.draw(&folder.file("curves.png"), title.unwrap_or_default())?;
     if study.lattice.dimension() > 1 {
         let polar = polar_speeds(&study.lattice, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 360);
         write_polar(
@@ -55,18 +57,18 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
             &["p", "s1", "s2"][..study.lattice.dimension()],
         )?;
     }
-    study.write_classes(&deck, &folder)?;
+    study.write_classes(solid, &folder)?;
     if !study.wavevectors.is_empty() {
         wavevectors::write(&folder.file("wavevectors.csv"), &study.wavevectors)?;
     }
     let measured = match args.measure {
         false => Json::Null,
-        true => study.measure(&folder, &title)?,
+        true => study.measure(&folder, title.unwrap_or_default())?,
     };
-    let mut summary = study.summary(&deck, &measured);
+    let mut summary = study.summary(title, solid, &measured);
     summary["left_out"] = json!(left_out);
-    summary["tuning"] = deck.material.tuned.as_ref().map_or(Json::Null, tuning);
-    summary["plane_waves"] = deck.plane_waves(&model).map_or(Json::Null, plane_waves);
+    summary["tuning"] = solid.material.tuned.as_ref().map_or(Json::Null, tuning);
+    summary["plane_waves"] = assembly.plane_waves(model).map_or(Json::Null, plane_waves);
     let text = serde_json::to_string_pretty(&summary)?;
     write_atomically(&folder.file("dispersion.json"), |file| {
         use std::io::Write;
@@ -74,7 +76,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     })?;
     if !args.execution.quiet {
         study.print(&measured)?;
-        deck.material.tuned.as_ref().map_or(Ok(()), print_tuning)?;
+        solid.material.tuned.as_ref().map_or(Ok(()), print_tuning)?;
         console::print(format_args!("results in {}", folder.path().display()))?;
     }
     Ok(Exit::Done)
@@ -97,12 +99,12 @@ struct Analysis {
 }
 
 impl Analysis {
-    fn of(
-        deck: &Deck,
-        model: &Model,
-        lattice: BondLattice,
-        args: &DispersionArgs,
-    ) -> Result<Self, CliError> {
+    fn of(interior: Interior<'_>, dt: f64, args: &DispersionArgs) -> Result<Self, CliError> {
+        let Interior {
+            lattice,
+            solid,
+            constants,
+        } = interior;
         let dimension = lattice.dimension();
         let contour = match args.direction {
             Some(direction) => Contour::ray(&lattice, direction.of(dimension, "--direction")?),
@@ -110,11 +112,11 @@ impl Analysis {
         };
         let wavevectors = args.wavevector.iter().map(|k| {
             let k = k.of(dimension, "--wavevector")?;
-            Ok(AtWaveVector::of(&lattice, k, model.dt))
+            Ok(AtWaveVector::of(&lattice, k, dt))
         });
         let wavevectors = wavevectors.collect::<Result<_, CliError>>()?;
-        let bar = (model.constants.young / deck.material.bonds.density).sqrt();
-        let speeds = continuum_speeds(deck.body.state);
+        let bar = (constants.young / solid.material.bonds.density).sqrt();
+        let speeds = continuum_speeds(solid.state);
         let speeds: Vec<f64> = (0..lattice.dimension())
             .map(|branch| {
                 let speed = if branch == 0 {
@@ -134,7 +136,7 @@ impl Analysis {
             targets: targets.collect(),
             speeds,
             bar,
-            dt: model.dt,
+            dt,
             wavevectors,
             lattice,
         })
@@ -150,13 +152,13 @@ impl Analysis {
     }
 
     /// α of each class as the deck has it, with its bonds' share κ.
-    fn write_classes(&self, deck: &Deck, folder: &OutputFolder) -> Result<(), IoError> {
+    fn write_classes(&self, solid: &Solid, folder: &OutputFolder) -> Result<(), IoError> {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
         }
         let classes = bond_classes(&self.lattice);
-        let material = &deck.material.bonds;
-        let spacing = deck.body.grid.spacing;
+        let material = &solid.material.bonds;
+        let spacing = solid.shape.spacing();
         let alpha = classes
             .iter()
             .map(|class| {
@@ -228,15 +230,15 @@ impl Analysis {
             .collect()
     }
 
-    fn summary(&self, deck: &Deck, measured: &Json) -> Json {
+    fn summary(&self, title: Option<&str>, solid: &Solid, measured: &Json) -> Json {
         let found = &self.stability;
-        let state = deck.body.state;
+        let state = solid.state;
         json!({
-            "title": deck.title,
+            "title": title,
             "state": state.name(),
             "poisson_ratio": state.poisson_ratio(),
             "spacing": self.lattice.spacing(),
-            "horizon": deck.material.bonds.horizon,
+            "horizon": solid.material.bonds.horizon,
             "bar_wave_speed": self.bar,
             "continuum_speeds": self.speeds,
             "long_wave_speed_ratios": self.anisotropy(),
@@ -325,18 +327,22 @@ impl Analysis {
 }
 
 /// What a deck has that the plane waves of its first material know nothing of.
-fn left_out(deck: &Deck) -> Vec<String> {
-    let material = &deck.material;
+fn left_out(solid: &Solid) -> Vec<String> {
+    let material = &solid.material;
     let counted = |count: usize, what: &str| match count {
         0 => None,
         1 => Some(format!("one {what} is left out")),
         _ => Some(format!("{count} {what}s are left out")),
     };
+    let refined = solid
+        .shape
+        .lattice()
+        .map_or(0, |lattice| lattice.finer.len());
     let correction = material.surface_correction != Default::default();
     [
         counted(material.parts.len(), "other material"),
         counted(material.inclusions.len(), "inclusion"),
-        counted(deck.body.finer.len(), "region with a finer grid"),
+        counted(refined, "region with a finer grid"),
         correction.then(|| "the surface correction is left out".to_owned()),
     ]
     .into_iter()

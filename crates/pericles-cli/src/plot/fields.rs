@@ -6,10 +6,12 @@ use std::sync::Arc;
 
 use pericles::observe::Field;
 use pericles::space::PointCloud;
-use pericles_deck::{Deck, Resources};
+use pericles_deck::Model;
 use pericles_io::observers::{DrawnState, PictureOf};
 use pericles_io::{FieldData, write_animation};
-use pericles_run::{DeckText, FieldFile, Results, RunError, machine, picture_of, readers};
+use pericles_run::{
+    DeckText, FieldFile, Resources, Results, RunError, body_points, machine, picture_of, readers,
+};
 
 use crate::args::{Format, PlotArgs};
 use crate::frames::Frames;
@@ -29,26 +31,30 @@ pub(super) fn draw(
     };
     let deck: DeckText = results.deck()?;
     let deck = deck.read()?;
-    let (cloud, surface) = deck.body_points(Resources {
+    let resources = Resources {
+        folder: deck.folder(),
         memory: machine::memory(),
         ..readers()
-    })?;
+    };
+    let points = body_points(&deck.model, &resources);
+    let (cloud, surface) = points.map_err(|error| deck.refusal(error))?;
     let body = Body {
         rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
         cloud,
     };
     let surface = surface.map(Arc::new);
-    let mut pictures: Vec<PictureOf> = wanted(&deck, args, &last.read()?, body.cloud.dimension())?
-        .into_iter()
-        .map(|what| PictureOf {
-            surface: surface.clone(),
-            steady: args.animation,
-            width: args.width,
-            view: args.view.map(|view| view.vector()).or(what.view),
-            scale: args.scale.unwrap_or(what.scale),
-            ..what
-        })
-        .collect();
+    let mut pictures: Vec<PictureOf> =
+        wanted(&deck.model, args, &last.read()?, body.cloud.dimension())?
+            .into_iter()
+            .map(|what| PictureOf {
+                surface: surface.clone(),
+                steady: args.animation,
+                width: args.width,
+                view: args.view.map(|view| view.vector()).or(what.view),
+                scale: args.scale.unwrap_or(what.scale),
+                ..what
+            })
+            .collect();
     let all = Frames::All;
     let frames = match &args.time {
         Some(frames) => frames,
@@ -87,15 +93,17 @@ pub(super) fn draw(
 
 /// What is to be drawn: the fields that are asked for, else those of the deck's pictures, else damage where there is any, else the displacement.
 fn wanted(
-    deck: &Deck,
+    model: &Model,
     args: &PlotArgs,
     data: &FieldData,
     dimension: usize,
 ) -> Result<Vec<PictureOf>, RunError> {
-    let title = deck.title.clone().unwrap_or_default();
+    let title = model.title.clone().unwrap_or_default();
     if args.fields.is_empty() {
-        let own = deck.output.pictures.iter();
-        let own: Vec<PictureOf> = own.map(|picture| picture_of(deck, picture, None)).collect();
+        let own = model.output.pictures.iter();
+        let own: Vec<PictureOf> = own
+            .map(|picture| picture_of(model, picture, None))
+            .collect();
         let written = |what: &PictureOf| {
             columns(what.field, dimension)
                 .iter()
@@ -147,13 +155,13 @@ fn wanted(
             }
         })?;
         // A deck's own picture of the field says how it is best seen.
-        let own = deck
+        let own = model
             .output
             .pictures
             .iter()
             .find(|picture| (picture.field, picture.component) == (what.field, what.component));
         Ok(match own {
-            Some(own) => picture_of(deck, own, None),
+            Some(own) => picture_of(model, own, None),
             None => PictureOf {
                 title: title.clone(),
                 ..(*what).clone()

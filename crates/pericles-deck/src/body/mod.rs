@@ -8,7 +8,7 @@ mod surface;
 mod types;
 
 pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
-pub use types::{Body, PointsFile, Quadrature};
+pub use types::{Lattice, PointsFile, Quadrature, SolidShape};
 
 pub(crate) use types::{BodyRead, SurfaceRead};
 
@@ -26,7 +26,7 @@ use crate::region::{self, Frame};
 /// `[body]`.
 pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     let mut read = BodyRead {
-        body: None,
+        shape: None,
         frame: Frame {
             dimension: None,
             spacing: None,
@@ -77,10 +77,12 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     }
     let rules = rules(&table, kind, plain && holes.is_empty() && finer.is_empty());
     table.finish();
-    let body = assemble(&read, outline, section, holes, finer, rules);
-    read.body = body.map(|body| Body {
-        rectangular,
-        ..body
+    let lattice = assemble(&read, outline, section, holes, finer, rules);
+    read.shape = lattice.map(|lattice| {
+        SolidShape::Lattice(Lattice {
+            rectangular,
+            ..lattice
+        })
     });
     read
 }
@@ -96,7 +98,6 @@ fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead 
         cells: false,
     };
     read.state = Some(StressState::Spatial);
-    read.body = Some(types::no_grid());
     read.surface = Some(SurfaceRead { shape, areas });
     read
 }
@@ -146,21 +147,19 @@ fn assemble(
     holes: Vec<Option<Region>>,
     finer: Vec<Option<Finer>>,
     rules: Option<(bool, Quadrature)>,
-) -> Option<Body> {
+) -> Option<Lattice> {
     let (periodic, quadrature) = rules?;
     let outline = outline?;
     let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
     holes.extend(outline.bore);
-    Some(Body {
+    Some(Lattice {
         grid: Grid {
             shape: outline.shape,
             spacing: read.frame.spacing?,
             section: section?,
             holes,
         },
-        listed: None,
         finer: finer.into_iter().collect::<Option<_>>()?,
-        state: read.state?,
         periodic,
         quadrature,
         rectangular: None,

@@ -1,9 +1,7 @@
 //! Bodies whose points are listed in a file.
 
-use pericles::space::{Grid, Shape};
-
 use super::plane::{section, state};
-use super::types::{Body, BodyRead, PointsFile, Quadrature};
+use super::types::{BodyRead, PointsFile, SolidShape};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
@@ -29,39 +27,20 @@ pub(super) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
     let section = section(&table, dimension);
     read.state = state(&table, dimension);
     table.finish();
-    read.body = body(&read, section, path, dimension);
+    read.shape = shape(&read, section, path, dimension);
     read
 }
 
-fn body(
+fn shape(
     read: &BodyRead,
     section: Option<f64>,
     path: Option<String>,
     dimension: usize,
-) -> Option<Body> {
-    Some(Body {
-        grid: no_grid(dimension, read.frame.spacing?, section?),
-        listed: Some(PointsFile {
-            path: path?.into(),
-            dimension,
-        }),
-        rectangular: None,
-        finer: Vec::new(),
-        state: read.state?,
-        periodic: false,
-        quadrature: Quadrature::Midpoint,
-    })
-}
-
-/// The grid of listed points: only its spacing and section are used.
-fn no_grid(dimension: usize, spacing: f64, section: f64) -> Grid {
-    Grid {
-        shape: Shape::Box {
-            origin: [0.0; 3],
-            size: vec![spacing; dimension],
-        },
-        spacing,
-        section,
-        holes: Vec::new(),
-    }
+) -> Option<SolidShape> {
+    Some(SolidShape::Points(PointsFile {
+        path: path?.into(),
+        dimension,
+        spacing: read.frame.spacing?,
+        section: section?,
+    }))
 }

@@ -3,18 +3,22 @@
 use std::path::PathBuf;
 
 use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks, SurfaceError};
+use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
 /// Where a surface comes from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SurfaceShape {
     /// Triangles of a file.
     File {
         /// The file; a relative path starts at the folder of the deck.
+        #[serde(rename = "file")]
         path: PathBuf,
         /// What is allowed of it.
+        #[serde(default, with = "crate::form")]
         checks: SurfaceChecks,
     },
     /// A formula.
@@ -22,7 +26,8 @@ pub enum SurfaceShape {
 }
 
 /// Surfaces that are made by formula.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SurfaceFormula {
     /// A sphere from an icosahedron whose edges are halved `level` times.
     Icosphere {
@@ -70,10 +75,11 @@ pub enum SurfaceFormula {
 }
 
 /// The area that a vertex stands for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum VertexAreas {
     /// Shared out from the triangles.
-    Rule(AreaRule),
+    Rule(#[serde(with = "crate::form")] AreaRule),
     /// The same number for every vertex, m²: not the surface's, but what some papers compute with.
     Same(f64),
 }
@@ -91,7 +97,7 @@ pub(super) enum SurfaceKind {
 
 impl SurfaceFormula {
     /// How many vertices it will have, about; so many that no surface is made is no error here.
-    pub(crate) fn vertices(&self) -> f64 {
+    pub fn vertices(&self) -> f64 {
         match *self {
             Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } => {
                 10.0 * 4f64.powi(level.min(i32::MAX as u32) as i32) + 2.0

@@ -3,32 +3,126 @@
 use std::path::PathBuf;
 
 use pericles::material::StressState;
-use pericles::space::{Finer, Grid, Shape};
+use pericles::space::{Finer, Grid, Region};
+use serde::{Deserialize, Serialize};
 
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::region::Frame;
 
-/// The body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Body {
+/// Where the points of a body are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SolidShape {
+    /// In the cells of a grid.
+    Lattice(Lattice),
+    /// As a file lists them.
+    Points(PointsFile),
+}
+
+/// A body on a grid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lattice {
     /// Shape, spacing, section and holes.
+    #[serde(with = "crate::form")]
     pub grid: Grid,
-    /// The file of its points; of the grid only spacing and section are used then.
-    pub listed: Option<PointsFile>,
     /// Parts with smaller cells and horizon, later ones before earlier ones.
+    #[serde(default, rename = "refine", with = "crate::form")]
     pub finer: Vec<Finer>,
-    /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
-    pub state: StressState,
     /// Whether opposite faces are one.
+    #[serde(default)]
     pub periodic: bool,
     /// Where the points of a cell are.
+    #[serde(default)]
     pub quadrature: Quadrature,
     /// Spacing along each axis, m, of a box whose cells are no squares or cubes; the grid's is then the largest.
+    #[serde(default)]
     pub rectangular: Option<Vec<f64>>,
 }
 
+impl From<Grid> for Lattice {
+    /// One point in the middle of each cell of a grid.
+    fn from(grid: Grid) -> Self {
+        Self {
+            grid,
+            finer: Vec::new(),
+            periodic: false,
+            quadrature: Quadrature::Midpoint,
+            rectangular: None,
+        }
+    }
+}
+
+impl SolidShape {
+    /// The grid, if there is one.
+    pub fn lattice(&self) -> Option<&Lattice> {
+        match self {
+            Self::Lattice(lattice) => Some(lattice),
+            Self::Points(_) => None,
+        }
+    }
+
+    /// The grid, if there is one, to change it.
+    pub fn lattice_mut(&mut self) -> Option<&mut Lattice> {
+        match self {
+            Self::Lattice(lattice) => Some(lattice),
+            Self::Points(_) => None,
+        }
+    }
+
+    /// Whether a file lists the points.
+    pub fn is_listed(&self) -> bool {
+        self.lattice().is_none()
+    }
+
+    /// Spacing of the points, m: the largest one of a grid.
+    pub fn spacing(&self) -> f64 {
+        match self {
+            Self::Lattice(lattice) => lattice.grid.spacing,
+            Self::Points(file) => file.spacing,
+        }
+    }
+
+    /// Area of a bar (m²), thickness of a body in two dimensions (m), 1 in three dimensions.
+    pub fn section(&self) -> f64 {
+        match self {
+            Self::Lattice(lattice) => lattice.grid.section,
+            Self::Points(file) => file.section,
+        }
+    }
+
+    /// Whether opposite faces are one.
+    pub fn is_periodic(&self) -> bool {
+        self.lattice().is_some_and(|lattice| lattice.periodic)
+    }
+
+    /// Whether parts have smaller cells.
+    pub fn is_refined(&self) -> bool {
+        let lattice = self.lattice();
+        lattice.is_some_and(|lattice| !lattice.finer.is_empty())
+    }
+
+    /// Whether the points are Gauss nodes.
+    pub fn has_gauss_nodes(&self) -> bool {
+        let lattice = self.lattice();
+        lattice.is_some_and(|lattice| lattice.quadrature == Quadrature::Gauss)
+    }
+
+    /// The regions without points.
+    pub fn holes(&self) -> &[Region] {
+        let lattice = self.lattice();
+        lattice.map_or(&[], |lattice| lattice.grid.holes.as_slice())
+    }
+
+    /// Spacing along each axis, m, of a box whose cells are no squares or cubes.
+    pub fn rectangular(&self) -> Option<&[f64]> {
+        self.lattice()?.rectangular.as_deref()
+    }
+}
+
 /// Where the points of a cell are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Quadrature {
     /// One in its middle.
     #[default]
@@ -39,7 +133,7 @@ pub enum Quadrature {
 
 /// What other tables need of a body, as far as it could be read.
 pub(crate) struct BodyRead {
-    pub(crate) body: Option<Body>,
+    pub(crate) shape: Option<SolidShape>,
     pub(crate) frame: Frame,
     pub(crate) state: Option<StressState>,
     /// The body if it is a surface.
@@ -53,31 +147,16 @@ pub(crate) struct SurfaceRead {
 }
 
 /// The file that lists a body's points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PointsFile {
     /// The file; a relative path starts at the folder of the deck.
+    #[serde(rename = "file")]
     pub path: PathBuf,
     /// Dimension of the body.
     pub dimension: usize,
-}
-
-/// The placeholder for the grid of a body that is a surface.
-pub(super) fn no_grid() -> Body {
-    Body {
-        grid: Grid {
-            shape: Shape::Box {
-                origin: [0.0; 3],
-                size: vec![1.0; 3],
-            },
-            spacing: 1.0,
-            section: 1.0,
-            holes: Vec::new(),
-        },
-        listed: None,
-        finer: Vec::new(),
-        state: StressState::Spatial,
-        periodic: false,
-        quadrature: Quadrature::Midpoint,
-        rectangular: None,
-    }
+    /// Their spacing, m.
+    pub spacing: f64,
+    /// Area of a bar (m²), thickness of a body in two dimensions (m), 1 in three dimensions.
+    pub section: f64,
 }

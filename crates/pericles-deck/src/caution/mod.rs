@@ -13,7 +13,7 @@ use area::doubtful_area;
 use crate::wording::{percent, prefixed, reach, short, spot};
 
 /// Kinds of odd.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum Caution {
     /// A pre-crack without effect.

@@ -5,6 +5,9 @@
 use std::fmt;
 use std::sync::Arc;
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::{Expression, LONGEST, Malformed};
 
 /// Parentheses within parentheses.
@@ -178,6 +181,21 @@ fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>)
     }
     parts.push(&text[from..]);
     Ok((parts, found))
+}
+
+/// As its text.
+impl Serialize for Condition {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.text)
+    }
+}
+
+impl<'de> Deserialize<'de> for Condition {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        Self::parse(&text, &["x", "y", "z", "block"])
+            .map_err(|malformed| D::Error::custom(format!("`{text}`: {}", malformed.reason)))
+    }
 }
 
 impl fmt::Debug for Condition {

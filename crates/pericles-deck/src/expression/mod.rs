@@ -13,6 +13,9 @@ mod jet;
 use std::fmt;
 use std::sync::Arc;
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 pub use condition::Condition;
 use exmex::{Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 use jet::{Jet, JetOperators, Variation};
@@ -154,6 +157,21 @@ impl Rates {
         let given: Vec<Jet> = self.variables.iter().map(|&v| all[v]).collect();
         // As many values as variables: there is no other error.
         self.compiled.eval(&given).unwrap_or(none)
+    }
+}
+
+/// As its text.
+impl Serialize for Expression {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.text)
+    }
+}
+
+impl<'de> Deserialize<'de> for Expression {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        Self::parse(&text, &VARIABLES[..4])
+            .map_err(|malformed| D::Error::custom(format!("`{text}`: {}", malformed.reason)))
     }
 }
 

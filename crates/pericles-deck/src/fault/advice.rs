@@ -103,7 +103,9 @@ impl Subject for Fault {
                 "fewer or longer steps need less, as do exponentials (give a `tolerance`)".into()
             }
             // Their own text says what is allowed.
-            Self::WrongKind { .. } | Self::Model(_) => return None,
+            Self::WrongKind { .. } | Self::BadDiscretisation { .. } | Self::Model(_) => {
+                return None;
+            }
         })
     }
 
@@ -140,6 +142,7 @@ impl Subject for Fault {
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
             Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
+            Self::BadDiscretisation { .. } => "not of these points",
             Self::LostValue { .. } => "not finite",
             Self::NeverStops { .. } => "never met",
             Self::ThinFineSet { .. } => "too thin",

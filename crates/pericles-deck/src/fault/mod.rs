@@ -263,6 +263,12 @@ pub enum Fault {
         /// The number of the earlier one in the deck, from 1.
         earlier: usize,
     },
+    /// Points, grids and sets that do not belong together.
+    #[error("the discretisation cannot be assembled: {reason}")]
+    BadDiscretisation {
+        /// What does not fit.
+        reason: String,
+    },
     /// A set without points.
     #[error("the set `{}` selects no point", shortened(set))]
     EmptySet {
@@ -383,4 +389,14 @@ pub enum Fault {
     /// The library refuses the value.
     #[error(transparent)]
     Model(#[from] PericlesError),
+}
+
+impl Fault {
+    /// Whether the model is refused for the memory it needs.
+    pub fn is_too_large(&self) -> bool {
+        matches!(
+            self,
+            Self::TooLarge { .. } | Self::LongHistory { .. } | Self::LargeFile { .. }
+        )
+    }
 }

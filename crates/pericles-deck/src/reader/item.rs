@@ -2,9 +2,10 @@
 
 use serde_json::Value as Json;
 
-use super::{Form, Ledger, Path};
+use super::{Form, Ledger};
 use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
+use crate::key_path::KeyPath;
 use crate::nearest::nearest;
 use crate::quantity::Quantity;
 use crate::source::Place;
@@ -18,12 +19,12 @@ pub(crate) const POSITIVE: &str = "a positive number";
 #[derive(Clone)]
 pub(crate) struct Item<'a> {
     ledger: &'a Ledger,
-    path: Path,
+    path: KeyPath,
     node: &'a Node,
 }
 
 impl<'a> Item<'a> {
-    pub(super) fn new(ledger: &'a Ledger, path: Path, node: &'a Node) -> Self {
+    pub(super) fn new(ledger: &'a Ledger, path: KeyPath, node: &'a Node) -> Self {
         ledger.note_place(&path, node.place);
         Self { ledger, path, node }
     }
@@ -400,7 +401,7 @@ impl<'a> Item<'a> {
         self.ledger
     }
 
-    pub(super) fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &KeyPath {
         &self.path
     }
 

@@ -5,7 +5,6 @@
 //! finds everything wrong with it. The ledger also keeps where each value stood and what it became in SI units.
 
 mod item;
-mod path;
 mod survey;
 mod table;
 
@@ -15,13 +14,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::{Map, Value as Json};
 
 pub(crate) use item::{Item, POSITIVE};
-pub(crate) use path::{Path, Step};
 pub(crate) use survey::{Form, Survey, TableSurvey, below};
 pub(crate) use table::Table;
 
 use crate::document::Node;
 use crate::fault::Fault;
 use crate::finding::Problem;
+use crate::key_path::{KeyPath, Step};
 use crate::source::{Place, Sources};
 use crate::wording::shortened;
 
@@ -36,7 +35,7 @@ pub(crate) struct Ledger {
     problems: RefCell<Vec<Problem>>,
     /// Keys that are there, misspelt, with their tables: they are not missing.
     misspelt: RefCell<BTreeSet<(String, String)>>,
-    places: RefCell<BTreeMap<Path, Place>>,
+    places: RefCell<BTreeMap<KeyPath, Place>>,
     json: RefCell<Json>,
     survey: Option<RefCell<Survey>>,
 }
@@ -84,7 +83,7 @@ impl Ledger {
 
     /// The root table.
     pub(crate) fn root<'a>(&'a self, root: &'a Node) -> Option<Table<'a>> {
-        Item::new(self, Path::default(), root).table()
+        Item::new(self, KeyPath::default(), root).table()
     }
 
     pub(crate) fn report(&self, place: Place, fault: Fault) {
@@ -115,12 +114,12 @@ impl Ledger {
         shortened(text)
     }
 
-    fn note_place(&self, path: &Path, place: Place) {
+    fn note_place(&self, path: &KeyPath, place: Place) {
         self.places.borrow_mut().insert(path.clone(), place);
     }
 
     /// Enters a value into the record.
-    pub(crate) fn record(&self, path: &Path, value: Json) {
+    pub(crate) fn record(&self, path: &KeyPath, value: Json) {
         let mut slot = &mut *self.json.borrow_mut();
         for step in path.steps() {
             slot = match step {
@@ -179,13 +178,21 @@ pub(crate) struct Closed {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Record {
     pub(crate) sources: Sources,
-    places: BTreeMap<Path, Place>,
+    places: BTreeMap<KeyPath, Place>,
     pub(crate) json: Json,
 }
 
 impl Record {
+    /// Where the first of several values stood that the deck gives, else where the last of them could have stood.
+    pub(crate) fn place_of_any(&self, paths: &[KeyPath]) -> Place {
+        let given = paths.iter().find(|path| self.is_given(path));
+        given
+            .or(paths.last())
+            .map_or_else(Place::default, |path| self.place(path))
+    }
+
     /// Where a value stood; where the table stood in which it could have been, if it was left out.
-    pub(crate) fn place(&self, path: &Path) -> Place {
+    pub(crate) fn place(&self, path: &KeyPath) -> Place {
         let mut path = path.clone();
         loop {
             if let Some(place) = self.places.get(&path) {
@@ -199,17 +206,7 @@ impl Record {
     }
 
     /// Whether the deck gives a value, instead of leaving it to its default.
-    pub(crate) fn is_given(&self, path: &Path) -> bool {
+    pub(crate) fn is_given(&self, path: &KeyPath) -> bool {
         self.places.contains_key(path)
-    }
-
-    /// What a value became.
-    pub(crate) fn value(&self, path: &Path) -> Option<&Json> {
-        path.steps()
-            .iter()
-            .try_fold(&self.json, |value, step| match step {
-                Step::Key(key) => value.get(key),
-                Step::Index(index) => value.get(index),
-            })
     }
 }

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value as Json;
 
-use super::path::{Path, Step};
+use crate::key_path::{KeyPath, Step};
 use crate::quantity::Quantity;
 
 /// A form that a value may have.
@@ -112,9 +112,9 @@ pub(crate) struct Survey {
     values: BTreeMap<String, ValueSurvey>,
     tables: BTreeMap<String, TableSurvey>,
     /// Places of the present deck with their definitions.
-    definitions: BTreeMap<Path, &'static str>,
+    definitions: BTreeMap<KeyPath, &'static str>,
     /// Places of the present deck where the only entry of a vector stands without brackets.
-    bare: BTreeSet<Path>,
+    bare: BTreeSet<KeyPath>,
 }
 
 impl Survey {
@@ -159,54 +159,54 @@ impl Survey {
     }
 
     /// What lies at a place is said by a definition.
-    pub(super) fn define(&mut self, path: &Path, name: &'static str) {
+    pub(super) fn define(&mut self, path: &KeyPath, name: &'static str) {
         self.form(path, Form::Defined(name));
         self.definitions.insert(path.clone(), name);
     }
 
     /// As [`Self::define`], for the entries of a table of names.
-    pub(super) fn define_named(&mut self, table: &Path, entry: &Path, name: &'static str) {
+    pub(super) fn define_named(&mut self, table: &KeyPath, entry: &KeyPath, name: &'static str) {
         self.form(table, Form::Names(name));
         self.definitions.insert(entry.clone(), name);
     }
 
     /// A vector; whether it is an entry without brackets.
-    pub(super) fn vector(&mut self, path: &Path, bare: bool) {
+    pub(super) fn vector(&mut self, path: &KeyPath, bare: bool) {
         self.form(path, Form::Vector);
         if bare {
             self.bare.insert(path.clone());
         }
     }
 
-    pub(super) fn form(&mut self, path: &Path, form: Form) {
+    pub(super) fn form(&mut self, path: &KeyPath, form: Form) {
         let forms = &mut self.value_at(path).forms;
         if !forms.iter_mut().any(|known| known.takes_in(&form)) {
             forms.push(form);
         }
     }
 
-    pub(super) fn default(&mut self, path: &Path, default: Json) {
+    pub(super) fn default(&mut self, path: &KeyPath, default: Json) {
         let defaults = &mut self.value_at(path).defaults;
         if !defaults.contains(&default) {
             defaults.push(default);
         }
     }
 
-    pub(super) fn key(&mut self, table: &Path, key: &'static str) {
+    pub(super) fn key(&mut self, table: &KeyPath, key: &'static str) {
         let keys = &mut self.table_at(table).keys;
         if !keys.iter().any(|(name, _)| *name == key) {
             keys.push((key, 0));
         }
     }
 
-    pub(super) fn needed(&mut self, table: &Path, key: &'static str) {
+    pub(super) fn needed(&mut self, table: &KeyPath, key: &'static str) {
         let keys = &mut self.table_at(table).keys;
         if let Some((_, needed)) = keys.iter_mut().find(|(name, _)| *name == key) {
             *needed += 1;
         }
     }
 
-    pub(super) fn choice(&mut self, table: &Path, keys: &'static [&'static str], needed: bool) {
+    pub(super) fn choice(&mut self, table: &KeyPath, keys: &'static [&'static str], needed: bool) {
         let choices = &mut self.table_at(table).choices;
         let needed = usize::from(needed);
         match choices.iter_mut().find(|(known, _)| *known == keys) {
@@ -216,20 +216,20 @@ impl Survey {
     }
 
     /// A table has been read to its end.
-    pub(super) fn visited(&mut self, table: &Path) {
+    pub(super) fn visited(&mut self, table: &KeyPath) {
         self.table_at(table).visits += 1;
     }
 
-    fn value_at(&mut self, path: &Path) -> &mut ValueSurvey {
+    fn value_at(&mut self, path: &KeyPath) -> &mut ValueSurvey {
         self.values.entry(self.place(path)).or_default()
     }
 
-    fn table_at(&mut self, path: &Path) -> &mut TableSurvey {
+    fn table_at(&mut self, path: &KeyPath) -> &mut TableSurvey {
         self.tables.entry(self.place(path)).or_default()
     }
 
     /// The name of a place, from the nearest definition above it or from the root.
-    fn place(&self, path: &Path) -> String {
+    fn place(&self, path: &KeyPath) -> String {
         let mut rest = Vec::new();
         let mut above = path.clone();
         let mut name = loop {

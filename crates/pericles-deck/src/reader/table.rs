@@ -4,9 +4,10 @@ use std::cell::RefCell;
 
 use serde_json::Value as Json;
 
-use super::{Form, Item, Ledger, Path};
+use super::{Form, Item, Ledger};
 use crate::document::Entry;
 use crate::fault::Fault;
+use crate::key_path::KeyPath;
 use crate::nearest::nearest;
 use crate::source::Place;
 use crate::vocabulary::{canonical, synonyms};
@@ -14,7 +15,7 @@ use crate::vocabulary::{canonical, synonyms};
 /// A table being read.
 pub(crate) struct Table<'a> {
     ledger: &'a Ledger,
-    path: Path,
+    path: KeyPath,
     place: Place,
     entries: &'a [Entry],
     /// Keys asked for, by their first names.
@@ -24,7 +25,12 @@ pub(crate) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    pub(super) fn new(ledger: &'a Ledger, path: Path, place: Place, entries: &'a [Entry]) -> Self {
+    pub(super) fn new(
+        ledger: &'a Ledger,
+        path: KeyPath,
+        place: Place,
+        entries: &'a [Entry],
+    ) -> Self {
         Self {
             ledger,
             path,

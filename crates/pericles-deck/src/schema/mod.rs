@@ -6,8 +6,6 @@
 //! more than the reader, never less.
 
 mod descriptions;
-#[cfg(test)]
-mod extremes;
 mod json;
 mod markdown;
 mod specimens;
@@ -31,6 +29,15 @@ pub fn json_schema() -> Json {
 /// The reference of all keys, as Markdown: a section for every table.
 pub fn reference() -> String {
     markdown::document(&Schema::new())
+}
+
+/// Right decks that hold every key between them, in every form it may have: each a text with the overrides that complete it. Tests of what
+/// reads decks begin with them.
+pub fn specimens() -> impl Iterator<Item = (&'static str, Vec<String>)> {
+    specimens::SPECIMENS.iter().map(|specimen| {
+        let changes = specimen.changes.iter().map(|&text| text.into());
+        (specimen.deck, changes.collect())
+    })
 }
 
 /// The table that a key belongs to, as it is written in a deck: `[body]`, `[[output.picture]]`. None if there is no such key, or if several tables as near to the root have it.

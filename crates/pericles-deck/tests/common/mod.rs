@@ -1,6 +1,24 @@
 //! Decks that several tests share.
 #![allow(dead_code)] // each test uses its part
 
+use pericles::space::Grid;
+use pericles_deck::{Deck, DeckError, Lattice, Solid};
+
+/// The body of a deck that is no surface.
+pub fn solid(deck: &Deck) -> &Solid {
+    deck.model.body.solid().unwrap()
+}
+
+/// Its cells.
+pub fn lattice(deck: &Deck) -> &Lattice {
+    solid(deck).shape.lattice().unwrap()
+}
+
+/// Its grid.
+pub fn grid(deck: &Deck) -> &Grid {
+    &lattice(deck).grid
+}
+
 /// A right deck of a wave on a ring.
 pub const WAVE: &str = r#"[body]
 shape = "bar"
@@ -28,3 +46,89 @@ end = 3
 dt = 0.5
 scheme = "trigonometric"
 "#;
+
+/// A right deck of a surface.
+pub const SURFACE: &str = r#"[body]
+shape = "icosphere"
+level = 2
+radius = 1
+
+[geodesics]
+method = "edge"
+
+[material]
+model = "power"
+density = "1 kg/m2"
+alpha = 0.5
+p = 3
+horizon = 0.8
+
+[[initial]]
+random_velocity = { radius = 0.1, seed = 3 }
+
+[[load]]
+set = "all"
+traction = [0, 0, 1]
+
+[time]
+end = 1
+dt = 0.1
+scheme = "newmark"
+"#;
+
+pub struct Wrong {
+    pub replace: &'static str,
+    pub by: &'static str,
+    /// Line and column of the problem.
+    pub at: (usize, usize),
+    /// What the marked text begins with.
+    pub marked: &'static str,
+    /// What the message must hold.
+    pub says: &'static [&'static str],
+}
+
+pub const fn wrong(
+    replace: &'static str,
+    by: &'static str,
+    at: (usize, usize),
+    marked: &'static str,
+    says: &'static [&'static str],
+) -> Wrong {
+    Wrong {
+        replace,
+        by,
+        at,
+        marked,
+        says,
+    }
+}
+
+/// Wants every wrong deck to be refused where and as its case says.
+pub fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(), DeckError>) {
+    for case in wrong {
+        assert_eq!(
+            right.matches(case.replace).count(),
+            1,
+            "`{}` must be unique",
+            case.replace
+        );
+        let Err(error) = read(&right.replace(case.replace, case.by)) else {
+            panic!("`{}` is wrong", case.by)
+        };
+        let message = error.to_string();
+        let found = error.problems().iter().any(|problem| {
+            let at = problem.location();
+            (at.line(), at.column()) == case.at && at.excerpt().starts_with(case.marked)
+        });
+        assert!(found, "`{}`: {message}", case.by);
+        let place = format!("plate.toml:{}:{}:", case.at.0, case.at.1);
+        assert!(message.contains(&place), "{place} {message}");
+        for words in case.says {
+            assert!(
+                message.contains(words),
+                "`{}`: `{words}` is not in: {message}",
+                case.by
+            );
+        }
+    }
+}

@@ -10,12 +10,12 @@ use pericles_io::{IoError, OutputFolder, write_atomically};
 use super::axis::Axis;
 use super::record::{Member, Record};
 use super::table::Table;
+use crate::assembled::{Assembled, Means};
 use crate::cancel::Cancel;
 use crate::deadline::Deadline;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Event;
-use crate::modelled::{Means, Modelled};
 use crate::results::Results;
 use crate::run::{Ending, Run};
 
@@ -239,8 +239,8 @@ fn run_member(
             // A run that died before its first checkpoint begins again.
             let folder = OutputFolder::create(path, path.exists())?;
             let deck = member.deck.read()?;
-            let modelled = Modelled::of(&deck, means, &mut tell)?;
-            Run::begin(&deck, member.deck.clone(), modelled, folder)?
+            let assembled = Assembled::of(&deck, means, &mut tell)?;
+            Run::begin(&deck, member.deck.clone(), assembled, folder)?
         };
         run.drive(deadline, cancel, &mut tell)
     })

@@ -1,6 +1,7 @@
 //! A notched plate pulled from both sides: the crack runs and branches.
 
 use pericles::material::ElasticWaves;
+use pericles::space::PointCloud;
 use pericles_deck::Deck;
 use pericles_io::Axis;
 use pericles_run::RunError;
@@ -113,8 +114,11 @@ fn read(overrides: &[&str]) -> Result<Deck, RunError> {
 }
 
 fn watched(deck: &Deck, context: &Context<'_>) -> Result<Recorded, RunError> {
-    let columns = (LENGTH / deck.body.grid.spacing).round() as usize;
-    record(deck, |cloud| Symmetry::up_down(cloud, columns), context)
+    let symmetry = |cloud: &_| {
+        let columns = (LENGTH / PointCloud::spacing(cloud)).round() as usize;
+        Symmetry::up_down(cloud, columns)
+    };
+    record(deck, symmetry, context)
 }
 
 /// The crack's way through the plate.
@@ -169,9 +173,11 @@ impl Course {
 
 fn base_rows(deck: &Deck, recorded: &Recorded, course: &Course) -> Vec<Row> {
     let facts = &recorded.facts;
-    let density = deck.material.bonds.density;
-    let rayleigh = ElasticWaves::of(facts.youngs_modulus, density, deck.body.state)
-        .transverse
+    let waves = deck.model.body.solid().zip(facts.youngs_modulus);
+    let waves = waves
+        .map(|(solid, young)| ElasticWaves::of(young, solid.material.bonds.density, solid.state));
+    let rayleigh = waves
+        .and_then(|waves| waves.transverse)
         .map_or(f64::NAN, |transverse| transverse.rayleigh);
     let peak = course.peak_speed();
     let last = recorded.looks.last();

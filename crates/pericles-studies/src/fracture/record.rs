@@ -9,7 +9,7 @@ use pericles::observe::{
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Control, Simulation};
 use pericles_deck::Deck;
-use pericles_run::{Event, Facts, RunError};
+use pericles_run::{Event, Facts, Resources, RunError, build};
 
 use super::looks::{LOOK, THRESHOLD};
 use crate::row::Row;
@@ -135,15 +135,15 @@ pub(super) fn record(
     symmetry: impl FnOnce(&PointCloud) -> Symmetry,
     context: &Context<'_>,
 ) -> Result<Recorded, RunError> {
-    let model = deck.build()?;
-    let facts = Facts::of(deck, &model);
+    let assembly = build(deck, &Resources::default())?;
+    let facts = Facts::of_deck(deck, &assembly);
     let recorder = Recorder {
-        tracker: CrackTracker::new(&model.cloud, model.cracks.clone(), THRESHOLD),
-        symmetry: symmetry(&model.cloud),
+        tracker: CrackTracker::new(&assembly.cloud, assembly.cracks.clone(), THRESHOLD),
+        symmetry: symmetry(&assembly.cloud),
         looks: Arc::default(),
     };
     let looks = Arc::clone(&recorder.looks);
-    let mut simulation = model.simulation();
+    let mut simulation = assembly.simulation();
     simulation.observe(Schedule::Interval(LOOK), Box::new(recorder));
     (context.tell)(Event::LoopBegins {
         first: 0,

@@ -5,8 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pericles::cache::{Cache, Key};
 use pericles::{Archive, System};
-use pericles_deck::Resources;
-use pericles_run::RunError;
+use pericles_run::{Resources, RunError, build};
 
 use super::modes::breathing;
 use super::presets::{PAPER, STANDARD, change};
@@ -111,7 +110,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             cache: &kept,
             ..Resources::default()
         };
-        Ok(STANDARD.deck(&changes)?.build_with(resources)?.system)
+        Ok(build(&STANDARD.deck(&changes)?, &resources)?.system)
     };
     let mut rows = Vec::new();
     for (number, (alpha, continuum)) in CONTINUUM.into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use pericles::{Control, Simulation};
 use pericles_io::{Axis, Curve, LineChart};
 use pericles_manifold::SurfaceMeasure;
-use pericles_run::RunError;
+use pericles_run::{Resources, RunError, build};
 
 use super::presets::Preset;
 use crate::study::Context;
@@ -56,9 +56,9 @@ pub(super) fn run(
     changes: &[String],
     mut look: impl FnMut(&Simulation) -> Result<(), RunError>,
 ) -> Result<(Simulation, Course), RunError> {
-    let model = preset.deck(changes)?.build()?;
-    let measure = model.surface.clone().map(SurfaceMeasure::new);
-    let mut simulation = model.simulation();
+    let assembly = build(&preset.deck(changes)?, &Resources::default())?;
+    let measure = assembly.surface.clone().map(SurfaceMeasure::new);
+    let mut simulation = assembly.simulation();
     let mut course = Course::default();
     let mut note = |run: &Simulation| {
         let energies = run.snapshot().energies();

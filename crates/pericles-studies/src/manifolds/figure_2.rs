@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pericles::time::highest_frequency;
 use pericles_io::Axis;
-use pericles_run::RunError;
+use pericles_run::{Resources, RunError, build};
 
 use super::course::{chart, run};
 use super::modes::breathing;
@@ -33,15 +33,15 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut curves = Vec::new();
     for (alpha, printed, period, highest, calibrated) in cases {
         let changes = [change("material.alpha", alpha)];
-        let model = STANDARD.deck(&changes)?.build()?;
-        let found = TAU / breathing(&model.system)?.sqrt();
+        let assembly = build(&STANDARD.deck(&changes)?, &Resources::default())?;
+        let found = TAU / breathing(&assembly.system)?.sqrt();
         rows.push(
             Row::new(format!("period, standard, α = {alpha}"), "s", Some(found))
                 .printed(printed)
                 .within_share(period, 1e-3)
                 .note(WHY),
         );
-        let omega = highest_frequency(&model.system, &model.state.u)
+        let omega = highest_frequency(&assembly.system, &assembly.state.u)
             .map_err(|error| RunError::Simulation(error.into()))?;
         rows.push(
             Row::new(
@@ -52,8 +52,8 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             .within_share(highest, 1e-3)
             .note("converges for dt < 2/ω: the P-(EC)^k scheme is no better than an explicit one"),
         );
-        let model = CALIBRATED.deck(&changes)?.build()?;
-        let found = TAU / breathing(&model.system)?.sqrt();
+        let assembly = build(&CALIBRATED.deck(&changes)?, &Resources::default())?;
+        let found = TAU / breathing(&assembly.system)?.sqrt();
         rows.push(
             Row::new(format!("period, calibrated, α = {alpha}"), "s", Some(found))
                 .printed(printed)

@@ -4,7 +4,7 @@ use pericles::observe::Field;
 use pericles_io::Axis;
 use pericles_io::observers::PictureOf;
 use pericles_manifold::SurfaceMeasure;
-use pericles_run::RunError;
+use pericles_run::{Resources, RunError, build};
 
 use super::course::{chart, run};
 use super::presets::{CALIBRATED, PAPER, change};
@@ -24,7 +24,7 @@ fn study(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
         change("material.p", 5),
         change("initial.0.random_velocity.radius", 1),
     ];
-    let Some(surface) = CALIBRATED.deck(&changes)?.build()?.surface else {
+    let Some(surface) = build(&CALIBRATED.deck(&changes)?, &Resources::default())?.surface else {
         return Ok(Vec::new());
     };
     let measure = SurfaceMeasure::new(surface.clone());

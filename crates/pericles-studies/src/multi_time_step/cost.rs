@@ -231,8 +231,8 @@ fn on_two_threads(bench: &mut Bench, ratio: u32) -> Result<Vec<Row>, RunError> {
 fn papers_case() -> Result<Vec<Row>, RunError> {
     let problem = problem!("crack.toml");
     let mut bench = Bench::new(&problem)?;
-    let model = problem.model(Method::Two(4, 4), &[])?;
-    let strip = model.sets.iter().find(|(name, _)| name == "strip");
+    let assembly = problem.assembly(Method::Two(4, 4), &[])?;
+    let strip = assembly.sets.iter().find(|(name, _)| name == "strip");
     let Some((_, fine)) = strip else {
         return Ok(Vec::new());
     };

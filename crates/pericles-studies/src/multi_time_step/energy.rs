@@ -3,7 +3,7 @@
 //! All modes are excited, so that the damping of short waves by Runge–Kutta methods shows: per step 1 − z⁴/24 (order three) and 1 − z⁶/144 (order four) at z = ω dt.
 
 use pericles::Control;
-use pericles_deck::Model;
+use pericles_run::Assembly;
 use pericles_run::RunError;
 
 use super::problem::{Method, PAPER, Problem, problem};
@@ -19,8 +19,8 @@ pub(crate) const STUDY: Study = Study {
 };
 
 fn plate() -> Problem {
-    problem!("free.toml", |model: &mut Model| {
-        for (k, v) in model.state.v.iter_mut().enumerate() {
+    problem!("free.toml", |assembly: &mut Assembly| {
+        for (k, v) in assembly.state.v.iter_mut().enumerate() {
             *v = 1.0 + 10.0 * ((k * k) as f64).sin();
         }
     })
@@ -39,14 +39,14 @@ struct Kept {
 }
 
 fn keep(method: Method, omega_dt: f64, steps: u64, changes: &[String]) -> Result<Kept, RunError> {
-    let mut model = plate().model(method, changes)?;
-    let omega = model
+    let mut assembly = plate().assembly(method, changes)?;
+    let omega = assembly
         .frequency
         .map_or(f64::NAN, |frequency| frequency.estimate);
-    model.dt = omega_dt / omega;
-    model.steps = steps;
-    let momentum = model.system.momentum(&model.state.v);
-    let mut run = model.simulation();
+    assembly.dt = omega_dt / omega;
+    assembly.steps = steps;
+    let momentum = assembly.system.momentum(&assembly.state.v);
+    let mut run = assembly.simulation();
     let at_start = run.start_energy().energy;
     let evaluated = run.system().evaluated_points();
     let mut largest = [0.0f64; 2];

@@ -3,7 +3,7 @@
 //! The grain is M² times stiffer than the plate, so that the plate's stable step is M times that of the grain. Velocity Verlet must take the small step everywhere; r-RESPA and
 //! Runge–Kutta with two steps need not.
 
-use pericles_deck::Model;
+use pericles_run::Assembly;
 use pericles_run::RunError;
 
 use super::problem::{Method, PAPER, Problem, problem, relative};
@@ -35,14 +35,14 @@ fn speed() -> Result<Vec<Row>, RunError> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     one.install(|| {
         let problem = problem!(example "inclusion.toml", |_| ());
-        let model = problem.model(Method::Respa(RATIO), &[])?;
+        let assembly = problem.assembly(Method::Respa(RATIO), &[])?;
         let mut bench = Bench::new(&problem)?;
-        bench.dt = model.dt;
-        let Some((_, fine)) = model.sets.iter().find(|(name, _)| name == "fine") else {
+        bench.dt = assembly.dt;
+        let Some((_, fine)) = assembly.sets.iter().find(|(name, _)| name == "fine") else {
             return Ok(Vec::new());
         };
         let fraction = fine.len() as f64 / bench.points() as f64;
-        let report = model.integrator.refinement();
+        let report = assembly.integrator.refinement();
         let turns = Turns::take(&mut bench, RATIO, fine, [5, 4])?;
         let speed_up = turns.verlet / turns.respa;
         Ok(vec![
@@ -78,9 +78,9 @@ fn speed() -> Result<Vec<Row>, RunError> {
 /// fine step.
 fn errors(problem: &Problem, set: &str, steps: u64, end: f64) -> Result<[f64; 3], RunError> {
     let end = [format!("time.end={end:?}")];
-    let model = problem.model(Method::Verlet, &[])?;
-    let n = model.cloud.len();
-    let found = model.sets.iter().find(|(name, _)| name == set);
+    let assembly = problem.assembly(Method::Verlet, &[])?;
+    let n = assembly.cloud.len();
+    let found = assembly.sets.iter().find(|(name, _)| name == set);
     let points = found.map_or(&[][..], |(_, points)| points);
     let part = |u: &[f64]| -> Vec<f64> {
         let of = |c: usize| points.iter().map(move |&i| c * n + i as usize);
@@ -105,18 +105,18 @@ fn ringing() -> Result<Vec<Row>, RunError> {
     const RADIUS: f64 = 8e-3;
     /// Two coarse steps: one period or so of the breathing.
     const END: f64 = 3.2e-6;
-    let problem = problem!(example "inclusion.toml", |model: &mut Model| {
-        let n = model.cloud.len();
-        let grain = model.sets.iter().find(|(name, _)| name == "grain");
+    let problem = problem!(example "inclusion.toml", |assembly: &mut Assembly| {
+        let n = assembly.cloud.len();
+        let grain = assembly.sets.iter().find(|(name, _)| name == "grain");
         for &i in grain.map_or(&[][..], |(_, points)| points) {
             let i = i as usize;
-            let place = model.cloud.point(i);
+            let place = assembly.cloud.point(i);
             let [x, y] = [place[0] - CENTRE[0], place[1] - CENTRE[1]];
             let r = x.hypot(y);
             let speed = (std::f64::consts::PI * r / RADIUS).sin();
             let slope = if r > 0.0 { speed / r } else { 0.0 };
-            model.state.v[i] = slope * x;
-            model.state.v[n + i] = slope * y;
+            assembly.state.v[i] = slope * x;
+            assembly.state.v[n + i] = slope * y;
         }
     });
     let [respa, two, verlet] = errors(&problem, "grain", 2, END)?;

@@ -2,8 +2,8 @@
 
 use pericles::time::{Integrator, RungeKutta, Tableau};
 use pericles::{Control, Simulation};
-use pericles_deck::{Deck, Model};
-use pericles_run::RunError;
+use pericles_deck::Deck;
+use pericles_run::{Assembly, Resources, RunError, build};
 
 /// The paper of the topic.
 pub(super) const PAPER: &str = "Liu et al. 2024, arXiv 2401.04966";
@@ -12,7 +12,7 @@ pub(super) const PAPER: &str = "Liu et al. 2024, arXiv 2401.04966";
 pub(super) struct Problem {
     pub(super) file: &'static str,
     pub(super) text: &'static str,
-    pub(super) prepare: fn(&mut Model),
+    pub(super) prepare: fn(&mut Assembly),
 }
 
 /// A problem of `validation/multi-time-step/`, or of the examples.
@@ -83,22 +83,30 @@ pub(super) fn tableau(order: u32) -> Result<Tableau, RunError> {
 }
 
 impl Problem {
-    pub(super) fn model(&self, method: Method, changes: &[String]) -> Result<Model, RunError> {
+    pub(super) fn assembly(
+        &self,
+        method: Method,
+        changes: &[String],
+    ) -> Result<Assembly, RunError> {
         let mut all = method.changes();
         all.extend_from_slice(changes);
-        let mut model = Deck::parse(self.text, self.file, &all)?.build()?;
-        (self.prepare)(&mut model);
+        let mut assembly = build(
+            &Deck::parse(self.text, self.file, &all)?,
+            &Resources::default(),
+        )?;
+        (self.prepare)(&mut assembly);
         let one_step: Option<Box<dyn Integrator>> = match method {
-            Method::Uniform(order) => {
-                Some(Box::new(RungeKutta::new(&tableau(order)?, &model.system)))
-            }
+            Method::Uniform(order) => Some(Box::new(RungeKutta::new(
+                &tableau(order)?,
+                &assembly.system,
+            ))),
             Method::Verlet => Some(Box::new(pericles::time::VelocityVerlet)),
             _ => None,
         };
         if let Some(scheme) = one_step {
-            model.integrator = scheme;
+            assembly.integrator = scheme;
         }
-        Ok(model)
+        Ok(assembly)
     }
 
     /// The end of the problem in so many steps.
@@ -108,10 +116,10 @@ impl Problem {
         steps: u64,
         changes: &[String],
     ) -> Result<Simulation, RunError> {
-        let end = Deck::parse(self.text, self.file, changes)?.time.end;
+        let end = Deck::parse(self.text, self.file, changes)?.model.time.end;
         let mut all = vec![format!("time.dt={:?}", end / steps as f64)];
         all.extend_from_slice(changes);
-        let mut simulation = self.model(method, &all)?.simulation();
+        let mut simulation = self.assembly(method, &all)?.simulation();
         finish(&mut simulation)?;
         Ok(simulation)
     }

@@ -3,7 +3,7 @@
 //! A small clamped plate is shaken in all its modes and stepped on; growth is that of the square root of its energy per coarse step. The rates depend on the plate and on where it is fine.
 
 use pericles::Interrupt;
-use pericles_deck::Model;
+use pericles_run::Assembly;
 use pericles_run::RunError;
 
 use super::problem::{Method, PAPER, Problem, problem};
@@ -19,8 +19,8 @@ pub(crate) const STUDY: Study = Study {
 };
 
 fn plate() -> Problem {
-    problem!("clamped.toml", |model: &mut Model| {
-        for (k, v) in model.state.v.iter_mut().enumerate() {
+    problem!("clamped.toml", |assembly: &mut Assembly| {
+        for (k, v) in assembly.state.v.iter_mut().enumerate() {
             // All modes, whatever the order of points.
             *v = ((k * k) as f64).sin();
         }
@@ -35,13 +35,13 @@ fn growth(
     [from, to]: [u64; 2],
 ) -> Result<f64, RunError> {
     const BURST: f64 = 1e200;
-    let Model {
+    let Assembly {
         mut system,
         mut state,
         mut integrator,
         frequency,
         ..
-    } = plate().model(method, changes)?;
+    } = plate().assembly(method, changes)?;
     let Some(frequency) = frequency else {
         return Ok(f64::NAN);
     };

@@ -8,7 +8,7 @@ use pericles::time::{
     RungeKutta, State, VelocityVerlet,
 };
 use pericles::{Interrupt, PericlesError, System};
-use pericles_deck::Model;
+use pericles_run::Assembly;
 use pericles_run::RunError;
 
 use super::problem::{Method, Problem, tableau};
@@ -23,14 +23,14 @@ pub(super) struct Bench {
 impl Bench {
     /// The body of a problem; the coarse step is ω dt = 1.
     pub(super) fn new(problem: &Problem) -> Result<Self, RunError> {
-        let Model {
+        let Assembly {
             mut system,
             mut state,
             mut integrator,
             frequency,
             dt,
             ..
-        } = problem.model(Method::Verlet, &[])?;
+        } = problem.assembly(Method::Verlet, &[])?;
         integrator.start(&mut system, &mut state);
         Ok(Self {
             dt: frequency.map_or(dt, |frequency| 1.0 / frequency.estimate),

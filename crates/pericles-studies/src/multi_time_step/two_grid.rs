@@ -4,7 +4,8 @@ use pericles::Control;
 use pericles::operator::On;
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::time::highest_frequency;
-use pericles_deck::{Deck, Model};
+use pericles_deck::Deck;
+use pericles_run::Assembly;
 use pericles_run::RunError;
 
 use super::problem::{Method, PAPER, Problem, problem};
@@ -45,8 +46,8 @@ struct Places {
 }
 
 impl Places {
-    fn of(model: &Model, deck: &Deck) -> Self {
-        let (cloud, horizon) = (&model.cloud, deck.material.bonds.horizon);
+    fn of(assembly: &Assembly, deck: &Deck) -> Self {
+        let (cloud, horizon) = (&assembly.cloud, deck.model.body.horizon());
         let [low, high] = cloud.bounds();
         // The part with smaller cells is a box in the middle: its border is found from the cells themselves.
         let small = |i: usize| cloud.cell_size(i) < 0.9 * cloud.spacing();
@@ -83,9 +84,9 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
     let spacing = 4e-3 / f64::from(finer);
     let changes = [format!("body.spacing={spacing:?}")];
     let deck = Deck::parse(plate().text, plate().file, &changes)?;
-    let model = plate().model(Method::Verlet, &changes)?;
-    let places = Places::of(&model, &deck);
-    let (cloud, system) = (&model.cloud, &model.system);
+    let assembly = plate().assembly(Method::Verlet, &changes)?;
+    let places = Places::of(&assembly, &deck);
+    let (cloud, system) = (&assembly.cloud, &assembly.system);
     let n = cloud.len();
     let mut strained = vec![0.0; 2 * n];
     for i in 0..n {
@@ -96,7 +97,8 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
         .operator()
         .add_force(0.0, &strained, On::All, &mut force);
     // The force density over E e/δ, what a free surface would be pulled with.
-    let scale = model.constants.young * STRAIN / deck.material.bonds.horizon;
+    let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young);
+    let scale = young * STRAIN / deck.model.body.horizon();
     let largest = |of: &dyn Fn(usize) -> bool| {
         (0..n)
             .filter(|&i| of(i))
@@ -106,7 +108,7 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
     let inside = largest(&|i| !places.interface[i] && !places.surface[i]);
     let interface = largest(&|i| places.interface[i] && !places.surface[i]);
     let surface = largest(&|i| places.surface[i]);
-    let error = balanced_error(&model, &strained, &places)?;
+    let error = balanced_error(&assembly, &strained, &places)?;
     let name = format!("spacing {} mm", 1e3 * spacing);
     Ok(vec![
         Row::new(
@@ -135,8 +137,8 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
 }
 
 /// max |u − u_strained| over e L, where K u = 0 with the points near the border held at the uniform strain.
-fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f64, RunError> {
-    let system = &model.system;
+fn balanced_error(assembly: &Assembly, strained: &[f64], places: &Places) -> Result<f64, RunError> {
+    let system = &assembly.system;
     let n = system.points();
     let volumes = system.cloud().volumes();
     let held = |entry: usize| places.surface[entry % n];
@@ -177,9 +179,9 @@ fn balanced_error(model: &Model, strained: &[f64], places: &Places) -> Result<f6
 
 /// How much shorter the stable step of the small cells is.
 fn frequencies() -> Result<Vec<Row>, RunError> {
-    let model = plate().model(Method::Respa(RATIO), &[])?;
-    let whole = highest_frequency(&model.system, &model.state.u)?.estimate;
-    let coarse = model.frequency.map(|frequency| frequency.estimate);
+    let assembly = plate().assembly(Method::Respa(RATIO), &[])?;
+    let whole = highest_frequency(&assembly.system, &assembly.state.u)?.estimate;
+    let coarse = assembly.frequency.map(|frequency| frequency.estimate);
     Ok(vec![
         Row::new(
             "highest frequency of the body over that which limits the coarse step",
@@ -194,15 +196,15 @@ fn frequencies() -> Result<Vec<Row>, RunError> {
 /// A free body: momentum to round-off, energy within bounds.
 fn conservation() -> Result<Vec<Row>, RunError> {
     const STEPS: u64 = 2000;
-    let mut model = plate().model(Method::Respa(RATIO), &[])?;
-    for (k, v) in model.state.v.iter_mut().enumerate() {
+    let mut assembly = plate().assembly(Method::Respa(RATIO), &[])?;
+    for (k, v) in assembly.state.v.iter_mut().enumerate() {
         *v = 1.0 + ((k * k) as f64).sin();
     }
-    model.steps = STEPS;
+    assembly.steps = STEPS;
     // Half the stable step.
-    model.dt *= 0.5;
-    let momentum = model.system.momentum(&model.state.v);
-    let mut run = model.simulation();
+    assembly.dt *= 0.5;
+    let momentum = assembly.system.momentum(&assembly.state.v);
+    let mut run = assembly.simulation();
     let at_start = run.start_energy().energy;
     let mut worst = [0.0f64; 2];
     run.run(|run| {
@@ -237,16 +239,16 @@ fn conservation() -> Result<Vec<Row>, RunError> {
 fn speed() -> Result<Vec<Row>, RunError> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     one.install(|| {
-        let model = plate().model(Method::Respa(RATIO), &[])?;
+        let assembly = plate().assembly(Method::Respa(RATIO), &[])?;
         let mut bench = Bench::new(&plate())?;
-        bench.dt = model.dt;
-        let Some((_, fine)) = model.sets.iter().find(|(name, _)| name == "fine") else {
+        bench.dt = assembly.dt;
+        let Some((_, fine)) = assembly.sets.iter().find(|(name, _)| name == "fine") else {
             return Ok(Vec::new());
         };
         let turns = Turns::take(&mut bench, RATIO, fine, [5, 10])?;
-        let cells = model.cloud.len() as f64;
-        let large = model.cloud.spacing();
-        let [low, high] = model.cloud.bounds();
+        let cells = assembly.cloud.len() as f64;
+        let large = assembly.cloud.spacing();
+        let [low, high] = assembly.cloud.bounds();
         let everywhere =
             (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(RATIO)).powi(2);
         Ok(vec![

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use pericles::System;
 use pericles_deck::Deck;
-use pericles_run::RunError;
+use pericles_run::{Resources, RunError, build};
 
 use crate::row::Row;
 use crate::study::{Context, Study};
@@ -163,12 +163,12 @@ const LARGE: [Body; 3] = [
 fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     let mut rows = Vec::new();
     for (name, deck, changes) in BODIES {
-        let model = model(deck, changes)?;
-        let Some(found) = model.body_frequency else {
+        let assembly = assembly(deck, changes)?;
+        let Some(found) = assembly.body_frequency else {
             rows.push(Row::new(name, "", None).within(1.0, 0.0));
             continue;
         };
-        let truth = largest_eigenvalue(&model.system, &model.state.u).sqrt();
+        let truth = largest_eigenvalue(&assembly.system, &assembly.state.u).sqrt();
         // At most the truth, and not below it by more than a thousandth; at least the truth, and not above it by more.
         rows.push(
             Row::new(
@@ -189,7 +189,7 @@ fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
         );
     }
     for (name, deck, changes) in LARGE {
-        let found = model(deck, changes)?.body_frequency;
+        let found = assembly(deck, changes)?.body_frequency;
         let ratio = found.map(|found| found.bound / found.estimate);
         rows.push(
             Row::new(format!("{name}: bound/estimate"), "", ratio)
@@ -202,9 +202,10 @@ fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
     Ok(rows)
 }
 
-fn model(deck: &str, changes: &[&str]) -> Result<pericles_deck::Model, RunError> {
+fn assembly(deck: &str, changes: &[&str]) -> Result<pericles_run::Assembly, RunError> {
     let changes: Vec<String> = changes.iter().map(|&change| change.into()).collect();
-    Ok(Deck::parse(deck, "highest-frequency.toml", &changes)?.build()?)
+    let deck = Deck::parse(deck, "highest-frequency.toml", &changes)?;
+    Ok(build(&deck, &Resources::default())?)
 }
 
 /// The largest eigenvalue of M^-1/2 K M^-1/2, its columns computed one by one.

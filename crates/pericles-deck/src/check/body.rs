@@ -1,0 +1,213 @@
+//! Ranges of `[body]` and `[material]`.
+
+use pericles::kernel::Influence;
+use pericles::material::{ElasticModulus, Fracture, Modulus, StressState};
+use pericles::space::{Region, Shape};
+use pericles_manifold::{PowerMaterial, SurfaceBond};
+
+use super::ranges::{Check, POSITIVE};
+use crate::body::{Lattice, Quadrature, SolidShape, VertexAreas};
+use crate::key_path::KeyPath;
+use crate::material::{Inclusion, Material};
+use crate::model::Solid;
+use crate::surface::SurfaceBody;
+
+impl Check {
+    pub(super) fn solid(&mut self, key: &KeyPath, solid: &Solid) {
+        self.positive(key.key("spacing"), solid.shape.spacing());
+        let section = ["body.area", "body.thickness", "body"];
+        let dimension = match &solid.shape {
+            SolidShape::Lattice(lattice) => {
+                self.lattice(key, lattice);
+                lattice.grid.dimension()
+            }
+            SolidShape::Points(file) => file.dimension,
+        };
+        let right = (1..=3).contains(&dimension);
+        self.within(right, key.key("dimension"), dimension, "allowed: 1, 2 or 3");
+        if !right {
+            return;
+        }
+        self.positive(section[dimension - 1].into(), solid.shape.section());
+        let fits = match solid.state {
+            StressState::Uniaxial => dimension == 1,
+            StressState::PlaneStress | StressState::PlaneStrain => dimension == 2,
+            StressState::Spatial => dimension == 3,
+        };
+        let allowed = "allowed: uniaxial in one dimension, plane stress or plane strain in two, spatial in three";
+        self.within(fits, key.key("plane"), solid.state.name(), allowed);
+        self.material(&solid.material, solid.state, dimension);
+    }
+
+    fn lattice(&mut self, key: &KeyPath, lattice: &Lattice) {
+        match &lattice.grid.shape {
+            Shape::Box { size, .. } => {
+                for (k, side) in size.iter().enumerate() {
+                    self.positive(key.key("size").index(k), *side);
+                }
+            }
+            Shape::Disc { radius, .. } | Shape::Ball { radius, .. } => {
+                self.positive(key.key("radius"), *radius);
+            }
+            Shape::Cylinder {
+                axis,
+                radius,
+                height,
+                ..
+            } => {
+                self.axis(key.key("axis"), *axis);
+                self.positive(key.key("radius"), *radius);
+                self.positive(key.key("height"), *height);
+            }
+        }
+        let sides = match &lattice.grid.shape {
+            Shape::Box { size, .. } => size.len(),
+            _ => 0,
+        };
+        if let Some(spacings) = &lattice.rectangular {
+            let allowed = "allowed: a spacing for each side of a box";
+            let right = spacings.len() == sides;
+            self.within(right, key.key("spacing"), spacings.len(), allowed);
+            for (k, spacing) in spacings.iter().enumerate() {
+                self.positive(key.key("spacing").index(k), *spacing);
+            }
+        }
+        let gauss = lattice.quadrature == Quadrature::Gauss;
+        let allowed = "allowed: \"midpoint\", except for a bar";
+        self.within(
+            !gauss || sides == 1,
+            key.key("quadrature"),
+            "gauss",
+            allowed,
+        );
+        for (k, hole) in lattice.grid.holes.iter().enumerate() {
+            self.region(&key.key("hole").index(k), hole);
+        }
+        for (k, part) in lattice.finer.iter().enumerate() {
+            let key = key.key("refine").index(k);
+            let right = (2..=16).contains(&part.ratio);
+            let allowed = "allowed: a whole number from 2 to 16";
+            self.within(right, key.key("ratio"), part.ratio, allowed);
+            self.region(&key, &part.region);
+        }
+    }
+
+    pub(super) fn region(&mut self, key: &KeyPath, region: &Region) {
+        match region {
+            Region::Cylinder { axis, .. } => self.axis(key.key("axis"), *axis),
+            Region::Polygon { corners } => {
+                let allowed = "allowed: at least 3 corners";
+                let right = corners.len() >= 3;
+                self.within(right, key.key("corners"), corners.len(), allowed);
+            }
+            Region::Union(parts) | Region::Intersection(parts) => {
+                for part in parts {
+                    self.region(key, part);
+                }
+            }
+            Region::Complement(part) => self.region(key, part),
+            Region::All
+            | Region::Box { .. }
+            | Region::Ball { .. }
+            | Region::HalfSpace { .. }
+            | Region::Layer { .. } => {}
+        }
+    }
+
+    fn material(&mut self, material: &Material, state: StressState, dimension: usize) {
+        let key = KeyPath::from("material");
+        let bonds = &material.bonds;
+        self.positive(key.key("density"), bonds.density);
+        self.positive(key.key("horizon"), bonds.horizon);
+        self.modulus(&key, &bonds.modulus, state);
+        self.fracture(&key, &bonds.fracture);
+        self.influence(&key, &bonds.influence, dimension, bonds.horizon);
+        self.inclusions(&material.inclusions);
+        for (k, part) in material.parts.iter().enumerate() {
+            let key = key.key("part").index(k);
+            self.positive(key.key("density"), part.density);
+            self.modulus(&key, &part.modulus, state);
+            self.fracture(&key, &part.fracture);
+        }
+        let pairs = material.interface.critical_stretches.iter().enumerate();
+        for (k, (pair, stretch)) in pairs {
+            let key = KeyPath::from("material.interface.pair").index(k);
+            self.positive(key.key("critical_stretch"), *stretch);
+            let known = |&number: &u8| usize::from(number) <= material.parts.len();
+            let right = pair.iter().all(known) && pair[0] != pair[1];
+            let allowed = "allowed: the numbers of two different materials, 0 for the body's, from 1 on for the parts'";
+            self.within(right, key.key("between"), format!("{pair:?}"), allowed);
+        }
+    }
+
+    fn modulus(&mut self, key: &KeyPath, modulus: &Modulus, state: StressState) {
+        let (name, value) = match modulus.value {
+            ElasticModulus::Young(value) => ("youngs_modulus", value),
+            ElasticModulus::Bulk(value) => ("bulk_modulus", value),
+            ElasticModulus::Shear(value) => ("shear_modulus", value),
+        };
+        self.positive(key.key(name), value);
+        self.engine(key.key(name), modulus.value.young(state));
+    }
+
+    fn fracture(&mut self, key: &KeyPath, fracture: &Fracture) {
+        match *fracture {
+            Fracture::Unbreakable => {}
+            Fracture::CriticalStretch(stretch) => {
+                self.positive(key.key("critical_stretch"), stretch);
+            }
+            Fracture::Energy { energy, .. } => self.positive(key.key("fracture_energy"), energy),
+        }
+    }
+
+    fn influence(&mut self, key: &KeyPath, influence: &Influence, dimension: usize, horizon: f64) {
+        self.engine(key.key("influence"), influence.check(dimension, horizon));
+    }
+
+    fn inclusions(&mut self, inclusions: &[Inclusion]) {
+        for (k, inclusion) in inclusions.iter().enumerate() {
+            let key = KeyPath::from("material.inclusion").index(k);
+            self.positive(key.key("stiffness"), inclusion.stiffness);
+        }
+    }
+
+    pub(super) fn surface(&mut self, surface: &SurfaceBody) {
+        if let VertexAreas::Same(area) = surface.areas {
+            self.positive("body.areas".into(), area);
+        }
+        let PowerMaterial {
+            density,
+            kappa,
+            alpha,
+            p,
+            horizon,
+            bond,
+            self_cell,
+            critical_stretch,
+        } = surface.material;
+        let key = KeyPath::from("material");
+        self.positive(key.key("density"), density);
+        self.positive(key.key("kappa"), kappa);
+        self.between(key.key("alpha"), alpha, [0.0, 1.0]);
+        let allowed = "allowed: a number of at least 2";
+        self.within(p >= 2.0 && p.is_finite(), key.key("p"), p, allowed);
+        self.positive(key.key("horizon"), horizon);
+        let laplacian = p == 2.0 && bond == SurfaceBond::Displacement;
+        let allowed = "allowed: false, unless p = 2 and bond = \"displacement\"";
+        self.within(
+            !self_cell || laplacian,
+            key.key("self_cell"),
+            "true",
+            allowed,
+        );
+        // Infinite for bonds that never break.
+        let right = critical_stretch > 0.0;
+        self.within(
+            right,
+            key.key("critical_stretch"),
+            critical_stretch,
+            POSITIVE,
+        );
+        self.inclusions(&surface.inclusions);
+    }
+}

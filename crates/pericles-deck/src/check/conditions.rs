@@ -1,0 +1,87 @@
+//! Ranges of what acts on the body.
+
+use super::ranges::Check;
+use crate::boundary::BoundaryCondition;
+use crate::conditions::LoadAmplitude;
+use crate::exact::{Exact, KnownSolution, Pulse};
+use crate::key_path::KeyPath;
+use crate::model::Model;
+
+impl Check {
+    pub(super) fn conditions(&mut self, model: &Model) {
+        for (k, initial) in model.initial.iter().enumerate() {
+            if let Some(random) = initial.random_velocity {
+                let key = KeyPath::from("initial").index(k).key("random_velocity");
+                self.positive(key.key("radius"), random.radius);
+            }
+        }
+        for (k, motion) in model.prescribe.iter().enumerate() {
+            let key = KeyPath::from("prescribe").index(k);
+            if let Some(until) = motion.until {
+                self.positive(key.key("until"), until);
+            }
+        }
+        for (k, load) in model.loads.iter().enumerate() {
+            let key = KeyPath::from("load").index(k);
+            if let LoadAmplitude::Traction {
+                area: Some(area), ..
+            } = load.amplitude
+            {
+                self.positive(key.key("area"), area);
+            }
+            let [from, until] = load.window();
+            let allowed = "allowed: a time later than `from`";
+            self.within(from < until, key.key("until"), until, allowed);
+        }
+    }
+
+    pub(super) fn boundaries(&mut self, boundaries: &[BoundaryCondition]) {
+        for (k, boundary) in boundaries.iter().enumerate() {
+            let key = KeyPath::from("boundary").index(k);
+            match boundary {
+                BoundaryCondition::Absorbing {
+                    plan,
+                    exterior_data,
+                    ..
+                } => {
+                    if let Some(tolerance) = plan.tolerance {
+                        self.between(key.key("tolerance"), tolerance, [1e-14, 1.0]);
+                    }
+                    if let Some(depth) = exterior_data {
+                        self.positive(key.key("exterior_data"), *depth);
+                    }
+                }
+                BoundaryCondition::DampingLayer {
+                    thickness,
+                    reflection,
+                    power,
+                    ..
+                } => {
+                    self.positive(key.key("thickness"), *thickness);
+                    self.between(key.key("reflection"), *reflection, [1e-12, 1.0]);
+                    let right = (0.0..=10.0).contains(power);
+                    let allowed = "allowed: a number from 0 to 10";
+                    self.within(right, key.key("power"), power, allowed);
+                }
+            }
+        }
+    }
+
+    pub(super) fn exact(&mut self, exact: &Exact) {
+        let key = KeyPath::from("exact");
+        let length = match exact.solution {
+            KnownSolution::NonlocalPulse { pulse, length } => {
+                self.positive(key.key("width"), pulse.width);
+                length
+            }
+            KnownSolution::LocalPulse(Pulse { width, .. }) => width,
+            KnownSolution::StretchedBar { length, .. } | KnownSolution::BarMode { length, .. } => {
+                length
+            }
+        };
+        self.positive(key.key("length"), length);
+        if let Some(window) = exact.window {
+            self.positive(key.key("window"), window);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Ranges of `[time]`, `[output]` and `[checkpoint]`.
+
+use pericles::observe::{Field, Schedule};
+
+use super::ranges::Check;
+use crate::key_path::KeyPath;
+use crate::output::{Checkpoint, Output};
+use crate::scheme::{FineRegion, FineStep, Scheme};
+use crate::stop::StopCondition;
+use crate::time::{Time, TimeStep};
+
+impl Check {
+    pub(super) fn time(&mut self, time: &Time) {
+        let key = KeyPath::from("time");
+        self.positive(key.key("end"), time.end);
+        match time.step {
+            TimeStep::Auto { safety } => {
+                let right = safety > 0.0 && safety <= 1.0;
+                let allowed = "allowed: a number above 0 and at most 1";
+                self.within(right, key.key("safety"), safety, allowed);
+            }
+            TimeStep::Fixed(dt) => self.positive(key.key("dt"), dt),
+            TimeStep::Equal(count) => self.count(key.key("load_steps"), count),
+        }
+        match &time.scheme {
+            Scheme::RungeKutta3 { alpha } => self.alpha(&key, *alpha),
+            Scheme::MultiTimeStep3 { alpha, fine, .. } => {
+                self.alpha(&key, *alpha);
+                self.fine(&key, fine);
+            }
+            Scheme::MultiTimeStep4 { fine, .. } | Scheme::Respa { fine } => self.fine(&key, fine),
+            Scheme::DormandPrince { tolerance } | Scheme::DiscreteGradient { tolerance } => {
+                self.between(key.key("tolerance"), *tolerance, [0.0, 1.0]);
+            }
+            Scheme::Newmark(options) => {
+                self.positive(key.key("tolerance"), options.tolerance);
+                self.count(key.key("iterations"), options.iterations);
+            }
+            Scheme::Relaxation(options) => {
+                self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
+                self.count(key.key("iterations"), options.iterations);
+            }
+            Scheme::VelocityVerlet
+            | Scheme::RungeKutta4
+            | Scheme::Implicit { .. }
+            | Scheme::Trigonometric(_) => {}
+        }
+        for (k, stop) in time.stop_when.iter().enumerate() {
+            let key = key.key("stop_when").index(k);
+            match stop.condition {
+                StopCondition::ReactionBelow(share) => {
+                    self.between(key.key("reaction_below"), share, [0.0, 1.0]);
+                }
+                StopCondition::DamageAbove(damage) => {
+                    let allowed = "allowed: a damage of at least 0 and below 1";
+                    let right = (0.0..1.0).contains(&damage);
+                    self.within(right, key.key("damage_above"), damage, allowed);
+                }
+            }
+        }
+    }
+
+    fn alpha(&mut self, key: &KeyPath, alpha: f64) {
+        let right = alpha != 0.0 && alpha.is_finite();
+        self.within(right, key.key("alpha"), alpha, "allowed: any number but 0");
+    }
+
+    fn fine(&mut self, key: &KeyPath, fine: &FineStep) {
+        self.count(key.key("ratio"), fine.ratio);
+        if let FineRegion::Adaptive(follow) = &fine.region {
+            let key = key.key("adaptive");
+            self.count(key.key("every"), follow.every);
+            self.count(key.key("layers"), follow.layers);
+            self.between(key.key("threshold"), follow.threshold, [0.0, 1.0]);
+        }
+    }
+
+    pub(super) fn output(&mut self, output: &Output, dimension: usize) {
+        let key = KeyPath::from("output");
+        self.schedule(&key.key("fields"), output.fields);
+        self.schedule(&key.key("history"), output.history);
+        self.schedule(&key.key("fragments"), output.fragments.schedule);
+        if let Some(cracks) = output.cracks {
+            self.schedule(&key.key("cracks"), cracks.schedule);
+        }
+        for (field, component) in &output.extremes {
+            self.component(
+                key.key("history").key("extremes"),
+                *field,
+                *component,
+                dimension,
+            );
+        }
+        if let Some(rate) = output.energy_bound {
+            self.positive(key.key("energy_bound"), rate);
+        }
+        for (k, picture) in output.pictures.iter().enumerate() {
+            let key = key.key("picture").index(k);
+            self.schedule(&key, picture.schedule);
+            self.component(
+                key.key("field"),
+                picture.field,
+                picture.component,
+                dimension,
+            );
+        }
+    }
+
+    /// Wants a component of a field to exist.
+    fn component(
+        &mut self,
+        key: KeyPath,
+        field: Field,
+        component: Option<usize>,
+        dimension: usize,
+    ) {
+        if let Some(component) = component {
+            let known = field.components(dimension).len();
+            let allowed = format!("allowed: a component below {known}");
+            self.within(component < known, key, component, &allowed);
+        }
+    }
+
+    fn schedule(&mut self, key: &KeyPath, schedule: Schedule) {
+        match schedule {
+            Schedule::Never => {}
+            Schedule::Every(steps) => self.count(key.key("every"), steps),
+            Schedule::Interval(interval) => self.positive(key.key("interval"), interval),
+            Schedule::Count(count) => self.count(key.key("count"), count),
+        }
+    }
+
+    pub(super) fn checkpoint(&mut self, checkpoint: Checkpoint) {
+        let key = KeyPath::from("checkpoint");
+        match checkpoint {
+            Checkpoint::Wall(seconds) => self.positive(key.key("wall"), seconds),
+            Checkpoint::Every(steps) => self.count(key.key("every"), steps),
+            Checkpoint::Interval(interval) => self.positive(key.key("interval"), interval),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Ranges of a model's numbers: a deck is refused for them while it is read, a model made by a program is checked here.
+
+mod body;
+mod conditions;
+mod course;
+mod ranges;
+
+use self::ranges::Check;
+use crate::key_path::KeyPath;
+use crate::model::{Body, Model};
+use crate::remark::BuildError;
+use crate::set::Members;
+
+impl Model {
+    /// Refuses numbers out of their ranges, which are those of decks: a model that was read from a deck is never refused.
+    ///
+    /// # Errors
+    /// All numbers out of their ranges, with their keys.
+    pub fn check(&self) -> Result<(), BuildError> {
+        let mut check = Check::default();
+        let body = KeyPath::from("body");
+        match &self.body {
+            Body::Solid(solid) => check.solid(&body, solid),
+            Body::Surface(surface) => check.surface(surface),
+        }
+        for set in &self.sets {
+            if let Members::Region(region) = &set.members {
+                check.region(&KeyPath::from("sets").key(&set.name), region);
+            }
+        }
+        check.conditions(self);
+        check.boundaries(&self.boundaries);
+        if let Some(exact) = &self.exact {
+            check.exact(exact);
+        }
+        check.time(&self.time);
+        check.output(&self.output, self.body.dimension().clamp(1, 3));
+        check.checkpoint(self.checkpoint);
+        match check.problems.is_empty() {
+            true => Ok(()),
+            false => Err(BuildError::of(check.problems)),
+        }
+    }
+}

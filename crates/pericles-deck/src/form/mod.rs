@@ -1,0 +1,118 @@
+//! The serialised form of a model: that of the engine's types that it holds. Keys and words are those of decks where decks have them.
+//!
+//! [`described`](self) is the module to name in `#[serde(with = "form")]`: it serialises and deserialises every type that is [`Described`],
+//! and options, lists and boxes of such types.
+
+mod kernel;
+mod manifold;
+mod material;
+mod number;
+mod output;
+mod space;
+mod time;
+mod tuned;
+mod waves;
+mod words;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A type with a serialised form.
+pub(crate) trait Described: Sized {
+    /// Writes the form.
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error>;
+
+    /// Reads the form.
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error>;
+}
+
+/// For `#[serde(with)]`.
+pub(crate) fn serialize<T: Described, S: Serializer>(
+    value: &T,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    value.write(serializer)
+}
+
+/// For `#[serde(with)]`.
+pub(crate) fn deserialize<'de, T: Described, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    T::read(deserializer)
+}
+
+/// A described value as serde knows it.
+struct Writer<'a, T>(&'a T);
+
+impl<T: Described> Serialize for Writer<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.write(serializer)
+    }
+}
+
+/// A described value as serde reads it.
+struct Reader<T>(T);
+
+impl<'de, T: Described> Deserialize<'de> for Reader<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::read(deserializer).map(Self)
+    }
+}
+
+impl<T: Described> Described for Option<T> {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.as_ref().map(Writer).serialize(serializer)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let read = Option::<Reader<T>>::deserialize(deserializer)?;
+        Ok(read.map(|Reader(value)| value))
+    }
+}
+
+impl<T: Described> Described for Vec<T> {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter().map(Writer))
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let read = Vec::<Reader<T>>::deserialize(deserializer)?;
+        Ok(read.into_iter().map(|Reader(value)| value).collect())
+    }
+}
+
+impl<T: Described> Described for Box<T> {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        T::write(self, serializer)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::read(deserializer).map(Box::new)
+    }
+}
+
+impl<A: Described, B: Described> Described for (A, B) {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (Writer(&self.0), Writer(&self.1)).serialize(serializer)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (Reader(a), Reader(b)) = Deserialize::deserialize(deserializer)?;
+        Ok((a, b))
+    }
+}
+
+/// Describes a type of the engine by a form that serde derives for it.
+macro_rules! described {
+    ($($type:ty: $form:ty),* $(,)?) => {$(
+        impl crate::form::Described for $type {
+            fn write<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                <$form>::serialize(self, serializer)
+            }
+
+            fn read<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                <$form>::deserialize(deserializer)
+            }
+        }
+    )*};
+}
+use described;

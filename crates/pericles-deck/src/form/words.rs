@@ -1,0 +1,140 @@
+//! Types whose values are words: those of decks.
+
+use pericles::boundary::MotionKind;
+use pericles::family::{EndRule, VolumeCorrection};
+use pericles::kernel::ActsOn;
+use pericles::material::{
+    Calibration, CubicLaw, FractureCalibration, InterfaceRule, PairLaw, StressState,
+    SurfaceCorrection, Treatment,
+};
+use pericles::observe::Field;
+use pericles::space::Face;
+use pericles::time::{ImplicitRule, Interpolant, LinearSolver, Predictor, VelocityNorm};
+use pericles_dispersion::tuning::{Combination, Method};
+use pericles_manifold::SurfaceBond;
+use pericles_manifold::geodesic::{Ball, GeodesicMethod};
+use pericles_manifold::surface::AreaRule;
+use pericles_waves::absorbing::history::HistoryForm;
+use pericles_waves::absorbing::{KernelMethod, Side};
+use pericles_waves::{ForceForm, FunctionMethod, LoadRule};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serializer};
+
+use super::Described;
+
+/// Describes a type by a list of its values with their words.
+macro_rules! words {
+    ($($type:ty: $words:expr;)*) => {$(
+        impl Described for $type {
+            fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let words = $words;
+                let word = words.iter().find(|(_, value)| value == self).map(|(word, _)| *word);
+                let word = word.ok_or_else(|| serde::ser::Error::custom("a value without a word"))?;
+                serializer.serialize_str(word)
+            }
+
+            fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let word = String::deserialize(deserializer)?;
+                let words = $words;
+                let found = words.iter().find(|(known, _)| *known == word);
+                found.map(|(_, value)| *value).ok_or_else(|| {
+                    let allowed: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+                    D::Error::custom(format!("unknown word `{word}`; allowed: {}", allowed.join(", ")))
+                })
+            }
+        }
+    )*};
+}
+
+words! {
+    MotionKind: [("displacement", MotionKind::Displacement), ("velocity", MotionKind::Velocity)];
+    EndRule: [("closed", EndRule::Closed), ("open", EndRule::Open)];
+    VolumeCorrection: [
+        ("extended", VolumeCorrection::Extended),
+        ("linear", VolumeCorrection::Linear),
+        ("none", VolumeCorrection::None),
+    ];
+    ActsOn: [("stretch", ActsOn::Stretch), ("displacement", ActsOn::Displacement)];
+    Calibration: [
+        ("continuum", Calibration::Continuum),
+        ("lattice", Calibration::Lattice),
+        ("unmodified", Calibration::Unmodified),
+    ];
+    FractureCalibration: [
+        ("lattice", FractureCalibration::Lattice),
+        ("continuum", FractureCalibration::Continuum),
+    ];
+    InterfaceRule: [
+        ("harmonic", InterfaceRule::Harmonic),
+        ("arithmetic", InterfaceRule::Arithmetic),
+        ("weaker", InterfaceRule::Weaker),
+    ];
+    // The word of `model`, with that of `treatment`.
+    PairLaw: [
+        ("linear", PairLaw::Linear),
+        ("bond-stretch", PairLaw::BondStretch),
+        ("green-strain", PairLaw::GreenStrain),
+        ("literal57", PairLaw::Literal57),
+        ("green-strain taylor-2", PairLaw::Treated(CubicLaw::GreenStrain, Treatment::SecondOrder)),
+        ("green-strain trapezoidal", PairLaw::Treated(CubicLaw::GreenStrain, Treatment::Trapezoidal)),
+        ("literal57 taylor-2", PairLaw::Treated(CubicLaw::Literal57, Treatment::SecondOrder)),
+        ("literal57 trapezoidal", PairLaw::Treated(CubicLaw::Literal57, Treatment::Trapezoidal)),
+    ];
+    StressState: [
+        ("uniaxial", StressState::Uniaxial),
+        ("plane-stress", StressState::PlaneStress),
+        ("plane-strain", StressState::PlaneStrain),
+        ("spatial", StressState::Spatial),
+    ];
+    SurfaceCorrection: [
+        ("none", SurfaceCorrection::None),
+        ("volume", SurfaceCorrection::Volume),
+        ("energy", SurfaceCorrection::Energy),
+    ];
+    Field: Field::ALL.map(|field| (field.name(), field));
+    Face: ["-x", "+x", "-y", "+y", "-z", "+z"]
+        .iter()
+        .filter_map(|name| Some((*name, Face::named(name)?)))
+        .collect::<Vec<_>>();
+    ImplicitRule: [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal].map(|rule| (rule.name(), rule));
+    Interpolant: [Interpolant::Hermite, Interpolant::Stages].map(|kind| (kind.name(), kind));
+    LinearSolver: LinearSolver::ALL.map(|solver| (solver.name(), solver));
+    Predictor: [Predictor::Structured, Predictor::BackwardDifference].map(|kind| (kind.name(), kind));
+    VelocityNorm: [VelocityNorm::Sum, VelocityNorm::Weighted, VelocityNorm::Largest]
+        .map(|norm| (norm.name(), norm));
+    Combination: Combination::ALL.map(|combination| (combination.name(), combination));
+    Method: Method::ALL.map(|method| (method.name(), method));
+    SurfaceBond: [("displacement", SurfaceBond::Displacement), ("chord", SurfaceBond::Chord)];
+    Ball: [("geodesic", Ball::Geodesic), ("euclid", Ball::Euclid)];
+    AreaRule: [("barycentric", AreaRule::Barycentric), ("mixed-voronoi", AreaRule::MixedVoronoi)];
+    HistoryForm: [
+        ("direct", HistoryForm::Direct),
+        ("blocked", HistoryForm::Blocked),
+        ("exponentials", HistoryForm::Exponentials),
+    ];
+    KernelMethod: [KernelMethod::Discrete, KernelMethod::SemiDiscrete, KernelMethod::Historical]
+        .map(|method| (method.name(), method));
+    Side: [Side::Left, Side::Right].map(|side| (side.name(), side));
+    ForceForm: [
+        ("fastest", ForceForm::Fastest),
+        ("grid", ForceForm::Grid),
+        ("grid-f32", ForceForm::FloatGrid),
+        ("list", ForceForm::List),
+        ("convolution", ForceForm::Convolution),
+        ("spectral", ForceForm::Spectral),
+    ];
+    FunctionMethod: FunctionMethod::ALL.map(|method| (method.name(), method));
+    LoadRule: [("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)];
+}
+
+impl Described for GeodesicMethod {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        let unknown = |_| D::Error::custom(format!("`{word}` is none of {}", Self::NAMES));
+        word.parse().map_err(unknown)
+    }
+}

@@ -1,0 +1,77 @@
+//! The way from the root of a deck to a value.
+
+use std::fmt;
+
+/// One step down.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Step {
+    Key(String),
+    Index(usize),
+}
+
+/// The place of a value in a deck or model: steps from the root, with keys under their first names and entries of lists by their numbers
+/// from zero, such as `load.0.traction`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct KeyPath(Vec<Step>);
+
+impl KeyPath {
+    /// The place of a key in this table.
+    pub fn key(&self, key: &str) -> Self {
+        self.then(Step::Key(key.into()))
+    }
+
+    /// The place of an entry of this list, counted from zero.
+    pub fn index(&self, index: usize) -> Self {
+        self.then(Step::Index(index))
+    }
+
+    /// The table or list that holds the value; none for the root.
+    pub fn parent(&self) -> Option<Self> {
+        let (_, steps) = self.0.split_last()?;
+        Some(Self(steps.to_vec()))
+    }
+
+    pub(crate) fn steps(&self) -> &[Step] {
+        &self.0
+    }
+
+    /// The keys joined by dots, as in an override.
+    pub fn dotted(&self) -> String {
+        let steps: Vec<String> = self.0.iter().map(Step::to_string).collect();
+        steps.join(".")
+    }
+
+    fn then(&self, step: Step) -> Self {
+        let mut steps = self.0.clone();
+        steps.push(step);
+        Self(steps)
+    }
+}
+
+impl From<&str> for KeyPath {
+    /// From keys joined by dots, for paths fixed in the program.
+    fn from(dotted: &str) -> Self {
+        dotted
+            .split('.')
+            .fold(Self::default(), |path, key| path.key(key))
+    }
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(key) => f.write_str(key),
+            Self::Index(index) => write!(f, "{index}"),
+        }
+    }
+}
+
+impl fmt::Display for KeyPath {
+    /// As the name of a table in messages: `[load.0]`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return f.write_str("the deck");
+        }
+        write!(f, "[{}]", self.dotted())
+    }
+}

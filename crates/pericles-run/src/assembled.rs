@@ -1,0 +1,141 @@
+//! From a deck or a model to its assembly, with the means that a machine has: a cache, memory, readers of files beside the deck.
+
+use std::path::{Path, PathBuf};
+
+use pericles::cache::{Cache, NoCache};
+use pericles_deck::{Deck, Model};
+use pericles_io::{
+    DiskCache, IoError, MeshError, PointsError, RowsError, read_points, read_rows, read_surface,
+};
+
+use crate::build::{Assembly, FileError, Resources, assemble, build, discretise};
+use crate::error::RunError;
+use crate::event::{Event, Tell};
+use crate::facts::Facts;
+use crate::machine;
+
+/// What a model may be made with.
+#[derive(Debug, Clone)]
+pub struct Means {
+    /// Where results that take long to compute are kept.
+    pub caching: Caching,
+    /// Memory, bytes.
+    pub memory: u64,
+}
+
+impl Default for Means {
+    /// The user's cache, and the memory that the machine has free.
+    fn default() -> Self {
+        Self {
+            caching: Caching::User,
+            memory: machine::memory(),
+        }
+    }
+}
+
+/// Where results that take long to compute, such as kernels and distances, are kept from run to run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Caching {
+    /// In the user's cache folder; nowhere if the user has none.
+    User,
+    /// In this folder.
+    Folder(PathBuf),
+    /// Nowhere: everything is computed anew.
+    Off,
+}
+
+impl Caching {
+    /// The cache; none if it is off or the user has no place for one.
+    fn cache(&self) -> Option<DiskCache> {
+        match self {
+            Self::User => DiskCache::of_user(),
+            Self::Folder(folder) => Some(DiskCache::new(folder)),
+            Self::Off => None,
+        }
+    }
+}
+
+/// An assembled model, with what is known of it before the first step.
+pub struct Assembled {
+    /// The assembly.
+    pub assembly: Assembly,
+    /// The facts about it.
+    pub facts: Facts,
+}
+
+impl Assembled {
+    /// Discretises and assembles the model of a deck; what takes long to compute comes from the cache if it is there.
+    ///
+    /// # Errors
+    /// A deck that is refused.
+    pub fn of(deck: &Deck, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
+        let assembly = means.with_resources(tell, |resources| build(deck, resources))?;
+        let facts = Facts::of_deck(deck, &assembly);
+        Ok(Self { assembly, facts })
+    }
+
+    /// Discretises and assembles a model without a deck; `folder` is where its relative paths start.
+    ///
+    /// # Errors
+    /// A model that is refused.
+    pub fn of_model(
+        model: &Model,
+        folder: &Path,
+        means: &Means,
+        tell: Tell<'_>,
+    ) -> Result<Self, RunError> {
+        let assembly = means.with_resources(tell, |resources| {
+            let resources = Resources {
+                folder,
+                ..*resources
+            };
+            let discretisation = discretise(model, &resources)?;
+            assemble(model, discretisation, &resources)
+        })?;
+        let facts = Facts::of(model, &assembly);
+        Ok(Self { assembly, facts })
+    }
+}
+
+impl Means {
+    /// Makes something with the resources, and tells what the cache notes.
+    fn with_resources<T>(&self, tell: Tell<'_>, make: impl FnOnce(&Resources<'_>) -> T) -> T {
+        let cache = self.caching.cache();
+        let cache = cache.map(|cache| cache.within(self.memory));
+        let made = make(&Resources {
+            cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
+            memory: self.memory,
+            ..readers()
+        });
+        for note in cache.iter().flat_map(DiskCache::notes) {
+            tell(Event::CacheNote(&note.to_string()));
+        }
+        made
+    }
+}
+
+/// What files beside a deck are read with.
+pub fn readers() -> Resources<'static> {
+    Resources {
+        cache: &NoCache,
+        read_surface: &|path, memory| {
+            read_surface(path, memory).map_err(|error| match &error {
+                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_points: &|path, dimension, memory| {
+            read_points(path, dimension, memory).map_err(|error| match &error {
+                PointsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_table: &|path, rows, columns, memory| {
+            read_rows(path, rows, columns, memory).map_err(|error| match &error {
+                RowsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        ..Resources::default()
+    }
+}

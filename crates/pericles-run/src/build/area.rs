@@ -1,0 +1,204 @@
+//! The area that a traction acts on, when the deck leaves it out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use pericles::space::{PointCloud, Region};
+use pericles_deck::AreaDoubt;
+
+/// The axis normal to the loaded face: that of a layer's face, else that of the load.
+pub(crate) fn normal_axis(
+    region: Option<&Region>,
+    acts_along: &[bool; 3],
+) -> Result<usize, &'static str> {
+    if let Some(Region::Layer { face, .. }) = region {
+        return Ok(face.axis);
+    }
+    let mut axes = (0..3).filter(|&c| acts_along[c]);
+    match (axes.next(), axes.next()) {
+        (Some(axis), None) => Ok(axis),
+        (None, _) => Err("the traction is zero"),
+        (Some(_), Some(_)) => {
+            Err("the set is no layer, and the traction is not along one of the axes")
+        }
+    }
+}
+
+/// Whether a set is a layer of a face.
+pub(crate) fn is_layer(region: Option<&Region>) -> bool {
+    matches!(region, Some(Region::Layer { .. }))
+}
+
+/// What is doubtful about the area of a set that is no layer by its definition, seen along `axis`: a set that is one layer on one face has none.
+pub(crate) fn doubt(cloud: &PointCloud, points: &[u32], axis: usize) -> Option<AreaDoubt> {
+    /// How much deeper a layer may be along the axis than along another.
+    const DEEPER: f64 = 1.5;
+    /// How much deeper a column may be than the median one: caps of balls and cylinders are.
+    const UNEVEN: usize = 4;
+    let area = seen_along(cloud, points, axis);
+    let levels = columns(cloud, points, axis);
+    let apart = |levels: &BTreeSet<i64>| {
+        let (first, last) = (levels.first(), levels.last());
+        first
+            .zip(last)
+            .is_some_and(|(first, last)| last - first + 1 > levels.len() as i64)
+    };
+    let mut depths: Vec<usize> = levels.values().map(BTreeSet::len).collect();
+    depths.sort_unstable();
+    let uneven = depths[depths.len() - 1] > UNEVEN * depths[depths.len() / 2];
+    if uneven || levels.values().any(apart) {
+        return Some(AreaDoubt::Parts { axis, area });
+    }
+    let depth = |axis: usize| points.len() as f64 / columns(cloud, points, axis).len() as f64;
+    let others = (0..cloud.dimension()).filter(|&c| c != axis);
+    let other = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)))?;
+    (depth(axis) > DEEPER * depth(other)).then(|| AreaDoubt::Thinner {
+        axis,
+        area,
+        other,
+        face: seen_along(cloud, points, other),
+    })
+}
+
+/// The area of a set seen along an axis, m²: that of the cells which no other cell of the set hides. For a box it is a face of the box, for a
+/// layer of a cylinder the cells of its base.
+pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
+    let count = columns(cloud, points, axis).len();
+    let across = (0..cloud.dimension()).filter(|&c| c != axis);
+    let cell: f64 = across.map(|c| cloud.cell_side(c)).product();
+    count as f64 * cloud.section() * cell
+}
+
+/// The cells of a set by columns along an axis: the levels that each column has.
+fn columns(cloud: &PointCloud, points: &[u32], axis: usize) -> BTreeMap<[i64; 3], BTreeSet<i64>> {
+    let dimension = cloud.dimension();
+    let [corner, _] = cloud.bounds();
+    let mut columns: BTreeMap<[i64; 3], BTreeSet<i64>> = BTreeMap::new();
+    for &i in points {
+        let place = cloud.point(i as usize);
+        // Centres of cells, divided ones too, lie well inside the large cells.
+        let cell = |c: usize| ((place[c] - corner[c]) / cloud.cell_side(c)).floor() as i64;
+        let column = std::array::from_fn(|c| {
+            if c == axis || c >= dimension {
+                0
+            } else {
+                cell(c)
+            }
+        });
+        columns.entry(column).or_default().insert(cell(axis));
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pericles::space::{Face, Grid, Shape, rectangular_cells};
+
+    #[test]
+    fn faces_of_boxes_and_bases_of_cylinders() {
+        let points = |shape, section| {
+            let holes = vec![];
+            Grid {
+                shape,
+                spacing: 0.1,
+                section,
+                holes,
+            }
+            .points()
+            .unwrap()
+        };
+        let origin = [0.3, 0.0, 0.0];
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        let area = |cloud: &PointCloud, axis| {
+            let all: Vec<u32> = (0..cloud.len() as u32).collect();
+            seen_along(cloud, &all, axis)
+        };
+        let size = vec![2.0];
+        close(area(&points(Shape::Box { origin, size }, 0.25), 0), 0.25);
+        let size = vec![2.0, 1.0];
+        let plate = points(Shape::Box { origin, size }, 0.25);
+        close(area(&plate, 0), 0.25);
+        close(area(&plate, 1), 0.5);
+        let size = vec![2.0, 1.0, 3.0];
+        close(area(&points(Shape::Box { origin, size }, 1.0), 1), 6.0);
+        let oblong = rectangular_cells([0.0; 3], &[2.0, 1.0], &[0.1, 0.05], 0.25, &[]).unwrap();
+        close(area(&oblong, 0), 0.25);
+        close(area(&oblong, 1), 0.5);
+        let rod = Shape::Cylinder {
+            base: [0.0; 3],
+            axis: 0,
+            radius: 1.0,
+            height: 2.0,
+        };
+        let rod = points(rod, 1.0);
+        // Twenty cells along the axis hide each other.
+        close(area(&rod, 0), rod.len() as f64 / 20.0 * 0.01);
+    }
+
+    #[test]
+    fn sets_that_are_no_single_layer_are_doubted() {
+        let plate = Grid {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size: vec![8.0, 4.0],
+            },
+            spacing: 0.1,
+            section: 1.0,
+            holes: vec![],
+        };
+        let cloud = plate.points().unwrap();
+        let set = |inside: &dyn Fn(f64, f64) -> bool| -> Vec<u32> {
+            let all = 0..cloud.len() as u32;
+            all.filter(|&i| {
+                let [x, y, _] = cloud.point(i as usize);
+                inside(x, y)
+            })
+            .collect()
+        };
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        let right = set(&|x, _| x > 7.7);
+        assert_eq!(doubt(&cloud, &right, 0), None);
+        // Shear on a box three cells deep: the load's own axis sees its narrow side.
+        match doubt(&cloud, &right, 1) {
+            Some(AreaDoubt::Thinner {
+                axis: 1,
+                area,
+                other: 0,
+                face,
+            }) => {
+                close(area, 0.3);
+                close(face, 4.0);
+            }
+            other => panic!("{other:?}"),
+        }
+        // Opposite faces, and two that meet in an edge.
+        for union in [
+            set(&|x, _| !(0.3..7.7).contains(&x)),
+            set(&|x, y| x > 7.7 || y > 3.7),
+        ] {
+            let doubt = doubt(&cloud, &union, 0);
+            assert!(
+                matches!(doubt, Some(AreaDoubt::Parts { axis: 0, .. })),
+                "{doubt:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_axis_is_that_of_the_layer_or_of_the_load() {
+        let layer = Region::Layer {
+            face: Face {
+                axis: 1,
+                upper: true,
+            },
+            depth: 1.0,
+        };
+        assert_eq!(normal_axis(Some(&layer), &[true, false, false]), Ok(1));
+        assert_eq!(
+            normal_axis(Some(&Region::All), &[false, true, false]),
+            Ok(1)
+        );
+        assert!(normal_axis(None, &[true, true, false]).is_err());
+        assert!(normal_axis(None, &[false; 3]).is_err());
+    }
+}

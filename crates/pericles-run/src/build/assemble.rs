@@ -1,0 +1,137 @@
+//! From points and sets to what can be run.
+
+use std::sync::Arc;
+
+use pericles::System;
+use pericles_deck::{Body, BuildError, Deck, DeckError, Fault, Model};
+
+use super::assembler::Assembler;
+use super::assembly::Assembly;
+use super::body::BodyParts;
+use super::boundary::exterior_frequency;
+use super::damping::strongest;
+use super::discretisation::Discretisation;
+use super::discretise::discretise;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+
+/// Makes forces and conditions of a model on its points, and finds the time step.
+///
+/// The run ends at `time.end` exactly: an automatic step is the longest stable one of which a whole number ends there; a given step that does
+/// not divide the time is shortened to the next one that does, with a warning. What takes long to compute and depends on few inputs comes
+/// from the cache of the resources if it is there, and is stored there if it is not.
+///
+/// # Errors
+/// What the engine refuses, at the key of the model that caused it; a step that is not stable; points, grids and sets that do not belong
+/// together.
+pub fn assemble(
+    model: &Model,
+    discretisation: Discretisation,
+    resources: &Resources<'_>,
+) -> Result<Assembly, BuildError> {
+    discretisation.check()?;
+    let assembler = Assembler { model };
+    let mut warnings = discretisation.warnings.clone();
+    let Discretisation {
+        cloud,
+        surface,
+        sets,
+        ..
+    } = &discretisation;
+    let BodyParts {
+        constants,
+        parts,
+        bonds,
+        cracks,
+        density,
+    } = match (&model.body, surface) {
+        (Body::Surface(body), Some(surface)) => {
+            assembler.surface_parts(body, surface, &discretisation, resources, &mut warnings)?
+        }
+        (Body::Surface(_), None) => {
+            let reason = "the points are not those of a surface".into();
+            return Err(at_path("body", Fault::BadDiscretisation { reason }));
+        }
+        (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
+    };
+    let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
+        .map_err(|error| at("material.density", error))?;
+    let mut state = assembler.initial_state(cloud, sets, resources)?;
+    let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
+    if let (Some(exact), Some(true)) = (&exact, model.exact.map(|exact| exact.start)) {
+        exact
+            .solution
+            .displacement_into(0.0, cloud.axis(0), &mut state.u);
+    }
+    let areas = assembler.add_loads(&mut system, cloud, sets, &mut warnings)?;
+    assembler.add_motions(&mut system, &state, sets)?;
+    assembler.judge_conditions(&system, &mut warnings);
+    warnings.extend(assembler.judge_idle_keys(&system));
+    warnings.extend(assembler.judge_rest(&state));
+    let probes = assembler.point_probes(cloud, sets, &mut warnings)?;
+    let integrator = assembler.integrator(&system, sets)?;
+    let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
+    let exterior = exterior_frequency(&ends);
+    let layers = assembler.damping_layers(&system, constants.as_ref())?;
+    let damping = strongest(&layers, cloud);
+    let steps = assembler.steps(
+        &system,
+        &state,
+        &*integrator,
+        exterior,
+        damping,
+        &mut warnings,
+    )?;
+    assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
+    assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
+    let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
+    assembler.add_damping_layers(&mut system, layers, &steps)?;
+    assembler.refuse_lost_values(&system, &steps)?;
+    let stops = assembler.stops(&system, sets)?;
+    let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);
+    let Discretisation {
+        cloud,
+        surface,
+        sets,
+        ..
+    } = discretisation;
+    Ok(Assembly {
+        cloud,
+        surface,
+        sets,
+        constants,
+        parts,
+        form: bonds.form,
+        precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
+        cracks,
+        system,
+        state,
+        integrator,
+        frequency: steps.frequency,
+        body_frequency: steps.body_frequency,
+        dt: steps.dt,
+        steps: steps.count,
+        probes,
+        ends,
+        exact,
+        stops,
+        loads,
+        warnings,
+        damping,
+        allow_unstable: model.time.allow_unstable,
+    })
+}
+
+/// Discretises and assembles the model of a deck. Relative paths start at the deck's folder, whatever the resources say.
+///
+/// # Errors
+/// As [`discretise`] and [`assemble`], with the places in the text of the deck.
+pub fn build(deck: &Deck, resources: &Resources<'_>) -> Result<Assembly, DeckError> {
+    let resources = Resources {
+        folder: deck.folder(),
+        ..*resources
+    };
+    let assembly = discretise(&deck.model, &resources)
+        .and_then(|discretisation| assemble(&deck.model, discretisation, &resources));
+    assembly.map_err(|error| deck.refusal(error))
+}

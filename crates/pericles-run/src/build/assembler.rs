@@ -1,0 +1,37 @@
+//! What assembles a model.
+
+use pericles::space::PointSet;
+use pericles_deck::{BuildError, Fault, Keys, Model};
+
+use super::discretisation::Sets;
+use super::refusal::at_path;
+
+/// Makes the parts of an assembly; each module of this folder adds the methods of its subject.
+#[derive(Clone, Copy)]
+pub(super) struct Assembler<'a> {
+    pub(super) model: &'a Model,
+}
+
+impl Assembler<'_> {
+    /// The points of a set. A model read from a deck names only sets that it defines; one made by a program may not.
+    pub(super) fn members<'s>(
+        self,
+        sets: &'s Sets,
+        name: &str,
+        path: impl Into<Keys>,
+    ) -> Result<&'s PointSet, BuildError> {
+        let found = sets.iter().find(|(known, _)| known == name);
+        found.map(|(_, points)| points).ok_or_else(|| {
+            let allowed = sets.iter().map(|(known, _)| known.clone()).collect();
+            at_path(
+                path,
+                Fault::UnknownWord {
+                    what: "set",
+                    value: name.into(),
+                    nearest: None,
+                    allowed,
+                },
+            )
+        })
+    }
+}

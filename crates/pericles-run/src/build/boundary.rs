@@ -1,0 +1,270 @@
+//! Absorbing ends of a model.
+
+use pericles::StepKind;
+use pericles::kernel::InfluenceFunction;
+use pericles::space::PointCloud;
+use pericles::time::{Integrator, State};
+use pericles::{PericlesError, System};
+use pericles_deck::{
+    ALL, BoundaryCondition, BuildError, Caution, Fault, KeyPath, ModelWarning, Remark, Solid,
+};
+use pericles_waves::absorbing::{
+    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
+    LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
+};
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+use super::step::Steps;
+
+/// An end to be made once the step is known.
+pub(super) struct End {
+    path: KeyPath,
+    layer: OuterLayer,
+    scheme: LatticeScheme,
+    plan: EndPlan,
+    /// Displacements and velocities of the exterior's sites.
+    beyond: Option<[Vec<f64>; 2]>,
+}
+
+impl Assembler<'_> {
+    /// The outer layers that the exterior continues.
+    pub(super) fn ends(
+        &self,
+        system: &System,
+        state: &State,
+        sets: &Sets,
+        integrator: &dyn Integrator,
+        resources: &Resources<'_>,
+    ) -> Result<Vec<End>, BuildError> {
+        let no_fail = self.union_of(sets, self.model.body.no_fail())?;
+        let mut ends = Vec::new();
+        let mut sides: Vec<Side> = Vec::new();
+        let mut exterior = 0.0;
+        for (k, boundary) in self.model.boundaries.iter().enumerate() {
+            let path = KeyPath::from("boundary").index(k);
+            let refuse = |error| at_path(&path, PericlesError::from(error).into());
+            let kind = integrator.step_kind();
+            let wrong_scheme = |what, needed| {
+                let error = PericlesError::BoundaryScheme {
+                    what,
+                    scheme: integrator.name(),
+                    kind,
+                    needed,
+                };
+                at("time.scheme", error)
+            };
+            let BoundaryCondition::Absorbing {
+                side,
+                plan,
+                exterior_data,
+            } = *boundary
+            else {
+                if kind == StepKind::EndOfStep {
+                    continue;
+                }
+                return Err(wrong_scheme("a damping layer", &[StepKind::EndOfStep]));
+            };
+            let Some(scheme) = LatticeScheme::of(kind) else {
+                return Err(wrong_scheme("an absorbing end", LatticeScheme::KINDS));
+            };
+            if scheme != LatticeScheme::VelocityVerlet && exterior_data.is_some() {
+                let what = "exterior_data";
+                return Err(refuse(AbsorbingError::VerletOnly { what }));
+            }
+            if sides.contains(&side) {
+                let side = side.name();
+                return Err(refuse(AbsorbingError::Twice { side }));
+            }
+            sides.push(side);
+            let (layer, beyond) = match exterior_data {
+                None => (OuterLayer::of(system, side, state, &no_fail), None),
+                Some(depth) => {
+                    self.refuse_initial_files()?;
+                    exterior += depth / system.cloud().spacing();
+                    self.check_exterior(&path.key("exterior_data"), exterior, resources)?;
+                    let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
+                    (layer, Some(self.fields_beyond(side, depth, system.cloud())))
+                }
+            };
+            ends.push(End {
+                layer: layer.map_err(refuse)?,
+                path,
+                scheme,
+                plan,
+                beyond,
+            });
+        }
+        Ok(ends)
+    }
+
+    /// Refuses initial states from files where the initial fields are continued beyond the body.
+    fn refuse_initial_files(&self) -> Result<(), BuildError> {
+        let Some(k) = self
+            .model
+            .initial
+            .iter()
+            .position(|initial| initial.file.is_some())
+        else {
+            return Ok(());
+        };
+        let fault = Fault::Misplaced {
+            key: "file".into(),
+            table: "an [[initial]] of a deck with `exterior_data`".into(),
+            allowed: "a file holds no values beyond the body; give `displacement` and `velocity` as expressions".into(),
+        };
+        Err(at_path(
+            KeyPath::from("initial").index(k).key("file"),
+            fault,
+        ))
+    }
+
+    /// The initial fields of all points, continued beyond an end; displacement and velocity of each site.
+    fn fields_beyond(&self, side: Side, depth: f64, cloud: &PointCloud) -> [Vec<f64>; 2] {
+        let spacing = cloud.spacing();
+        let (last, step) = match side {
+            Side::Left => (cloud.point(0), -spacing),
+            Side::Right => (cloud.point(cloud.len() - 1), spacing),
+        };
+        let count = (depth / spacing).ceil() as usize;
+        let mut fields = [vec![0.0; count], vec![0.0; count]];
+        for initial in self
+            .model
+            .initial
+            .iter()
+            .filter(|initial| initial.set == ALL)
+        {
+            let given = [&initial.displacement, &initial.velocity];
+            for (field, vector) in fields.iter_mut().zip(given) {
+                let Some(vector) = vector else { continue };
+                for (n, value) in field.iter_mut().enumerate() {
+                    let x = last[0] + (n + 1) as f64 * step;
+                    *value = vector[0].value([x, last[1], last[2]], 0.0);
+                }
+            }
+        }
+        fields
+    }
+
+    /// Makes the ends for the run's steps.
+    pub(super) fn add_ends(
+        &self,
+        system: &mut System,
+        ends: Vec<End>,
+        start: &State,
+        steps: &Steps,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<Vec<(Side, EndReport)>, BuildError> {
+        /// An initial field of this share at an end is worth a warning.
+        const NOTABLE_FIELD: f64 = 1e-10;
+        let largest =
+            [&start.u, &start.v].map(|field| field.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
+        let mut reports = Vec::new();
+        let mut sites = 0;
+        for mut end in ends {
+            let path = end.path;
+            let refuse = |error| at_path(&path, PericlesError::from(error).into());
+            let stencil = end.layer.stencil.clone();
+            let step = LatticeStep {
+                scheme: end.scheme,
+                dt: steps.dt,
+            };
+            step.check(&stencil).map_err(refuse)?;
+            if let Some(solid) = self.model.body.solid() {
+                warnings.extend(self.judge_reach(solid, &stencil, system.cloud()));
+            }
+            let neglected = end.layer.neglected;
+            if neglected > NOTABLE_FIELD {
+                let side = end.layer.side.name();
+                warnings.push(Remark::new(
+                    &path,
+                    Caution::FieldAtEnd {
+                        side,
+                        share: neglected,
+                    },
+                ));
+            }
+            let count = steps.count as usize;
+            let own = stencil.reach() * if end.beyond.is_some() { 3 } else { 1 };
+            if !end.plan.forgets() {
+                sites += own;
+                self.check_history(&path, sites, count as f64, resources)?;
+            }
+            let make = |plan: EndPlan| plan.history(&stencil, step, count, resources.cache);
+            let mut made = make(end.plan);
+            if let Err(AbsorbingError::Fit {
+                tolerance,
+                residual,
+                ..
+            }) = made
+            {
+                if end.plan.forgets() {
+                    sites += own;
+                    self.check_history(&path, sites, count as f64, resources)?;
+                }
+                let caution = Caution::ExactHistory {
+                    tolerance,
+                    residual,
+                };
+                warnings.push(Remark::new(&path.key("history"), caution));
+                end.plan.form = Some(HistoryForm::Blocked);
+                made = make(end.plan);
+            }
+            let (history, report) = made.map_err(refuse)?;
+            if let Some(growth) = report.growth {
+                warnings.push(Remark::new(
+                    &path.key("method"),
+                    Caution::HistoricalKernels { growth },
+                ));
+            }
+            reports.push((end.layer.side, report));
+            if end.scheme == LatticeScheme::Midpoint {
+                let made = MidpointEnd::new(end.layer, history, steps.dt);
+                system.add_boundary(Box::new(made.map_err(refuse)?));
+                continue;
+            }
+            let mut made = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
+            if let Some([u, v]) = &end.beyond {
+                let another = || make(end.plan).map(|(history, _)| history).map_err(refuse);
+                let histories = [another()?, another()?];
+                let wave = FreeWave::new(&stencil, steps.dt, [u, v], largest, histories);
+                let refuse = |error| {
+                    at_path(
+                        &path.key("exterior_data"),
+                        PericlesError::from(error).into(),
+                    )
+                };
+                made = made.with_free_wave(wave.map_err(refuse)?);
+            }
+            system.add_boundary(Box::new(made));
+        }
+        Ok(reports)
+    }
+
+    /// Warns where the longest bonds of a table of classes have no stiffness: the exterior, read off the bonds, does not know of them.
+    fn judge_reach(
+        &self,
+        solid: &Solid,
+        stencil: &LatticeStencil,
+        cloud: &PointCloud,
+    ) -> Option<ModelWarning> {
+        let material = &solid.material.bonds;
+        if !matches!(material.influence.function, InfluenceFunction::Classes(_)) {
+            return None;
+        }
+        let given = (material.horizon / cloud.spacing() + 1e-9).floor() as usize;
+        let reach = stencil.reach();
+        let caution = Caution::IdleClasses { given, reach };
+        (reach < given).then(|| Remark::new("material.influence", caution))
+    }
+}
+
+/// The highest frequency of the lattices beyond the ends, 1/s; 0 without ends.
+pub(super) fn exterior_frequency(ends: &[End]) -> f64 {
+    ends.iter()
+        .map(|end| end.layer.stencil.highest_frequency())
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,134 @@
+//! Speeds with which bonds break in masses rather than along cracks.
+
+use pericles::System;
+use pericles::material::{BondConstants, ElasticWaves};
+use pericles::operator::On;
+use pericles::time::State;
+use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Scheme};
+
+use super::assembler::Assembler;
+use super::step::Steps;
+
+/// Times at which prescribed speeds are looked at.
+const SAMPLES: usize = 200;
+
+impl Assembler<'_> {
+    /// Warns of initial and prescribed speeds above the Rayleigh speed, and of such as stretch bonds beyond the critical stretch within the first step, where bonds can break. Static
+    /// states have no speeds.
+    pub(super) fn judge_breaking(
+        &self,
+        system: &System,
+        state: &State,
+        constants: Option<&BondConstants>,
+        steps: &Steps,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
+        let dynamic = !matches!(self.model.time.scheme, Scheme::Relaxation(_));
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
+            return;
+        };
+        if !dynamic || !system.operator().can_break() {
+            return;
+        }
+        let density = solid.material.bonds.density;
+        let waves = ElasticWaves::of(constants.young, density, solid.state);
+        let limit = waves.transverse.map_or(waves.pressure, |t| t.rayleigh);
+        let first = |key: &str| KeyPath::from(key).index(0);
+        // A body that moves as a whole is at rest for an observer that moves with it.
+        let speed = largest_speed(
+            &about_mean(&state.v, system.dimension()),
+            system.dimension(),
+        );
+        if speed > limit {
+            let caution = fast("initial velocity", speed, limit, system.dimension());
+            warnings.push(Remark::new(&first("initial"), caution));
+        }
+        for (k, speed) in prescribed_speeds(system, steps).into_iter().enumerate() {
+            if speed > limit && system.motions()[k].points.len() < system.points() {
+                let caution = fast("prescribed motion", speed, limit, system.dimension());
+                warnings.push(Remark::new(KeyPath::from("prescribe").index(k), caution));
+            }
+        }
+        let mut u: Vec<f64> = state.u.clone();
+        u.iter_mut()
+            .zip(&state.v)
+            .for_each(|(u, v)| *u += steps.dt * v);
+        let mut torn = torn(system, &u);
+        let mut path = first("initial");
+        if torn == 0 {
+            system.place_on(steps.dt, &On::All, &mut u);
+            torn = self::torn(system, &u);
+            path = first("prescribe");
+        }
+        if torn > 0 {
+            let caution = Caution::TornAtOnce {
+                points: torn,
+                of: system.points(),
+                dt: steps.dt,
+            };
+            warnings.push(Remark::new(&path, caution));
+        }
+    }
+}
+
+/// The largest speed of each motion over the run, m/s.
+fn prescribed_speeds(system: &System, steps: &Steps) -> Vec<f64> {
+    let (n, dimension) = (system.points(), system.dimension());
+    let mut largest = vec![0.0f64; system.motions().len()];
+    if largest.is_empty() {
+        return largest;
+    }
+    let mut v = vec![0.0; dimension * n];
+    for sample in 0..SAMPLES {
+        let t = steps.count as f64 * steps.dt * sample as f64 / SAMPLES as f64;
+        system.drive_on(t, &On::All, &mut v);
+        for (largest, motion) in largest.iter_mut().zip(system.motions()) {
+            let axes: Vec<usize> = motion.axes().collect();
+            let square =
+                |&i: &u32| -> f64 { axes.iter().map(|c| v[c * n + i as usize].powi(2)).sum() };
+            let fastest = motion.points.iter().map(square).fold(0.0, f64::max);
+            *largest = largest.max(fastest.sqrt());
+        }
+    }
+    largest
+}
+
+fn fast(what: &'static str, speed: f64, limit: f64, dimension: usize) -> Caution {
+    Caution::FastMotion {
+        what,
+        speed,
+        limit,
+        wave: if dimension == 1 {
+            "wave speed of the bar"
+        } else {
+            "Rayleigh speed"
+        },
+    }
+}
+
+/// Points with bonds beyond the critical stretch.
+fn torn(system: &System, u: &[f64]) -> usize {
+    let Some(breaking) = system.operator().capabilities().breaking else {
+        return 0;
+    };
+    let mut marks = vec![false; system.points()];
+    breaking.mark_endangered(u, 1.0, &mut marks);
+    marks.iter().filter(|mark| **mark).count()
+}
+
+/// The largest norm of a component-major field of vectors.
+fn largest_speed(v: &[f64], dimension: usize) -> f64 {
+    let n = v.len() / dimension;
+    let square = |i: usize| (0..dimension).map(|c| v[c * n + i].powi(2)).sum::<f64>();
+    (0..n).map(square).fold(0.0, f64::max).sqrt()
+}
+
+/// A field of vectors without its mean.
+fn about_mean(v: &[f64], dimension: usize) -> Vec<f64> {
+    let n = v.len() / dimension;
+    let components = v.chunks(n).flat_map(|component| {
+        let mean = component.iter().sum::<f64>() / n as f64;
+        component.iter().map(move |x| x - mean)
+    });
+    components.collect()
+}

@@ -1,0 +1,217 @@
+//! Initial state, prescribed motions and probes of a model.
+
+use std::path::Path as FilePath;
+
+use pericles::System;
+use pericles::boundary::PrescribedMotion;
+use pericles::noise::uniform_in_ball;
+use pericles::observe::Probe as PointProbe;
+use pericles::space::{Point, PointCloud};
+use pericles::time::State;
+use pericles_deck::{
+    BuildError, Caution, Fault, KeyPath, ModelWarning, ProbePlace, RandomVelocity, Remark,
+};
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::at_path;
+use super::resources::Resources;
+
+impl Assembler<'_> {
+    /// Entries for the same point replace each other in the order of the deck.
+    pub(super) fn initial_state(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+        resources: &Resources<'_>,
+    ) -> Result<State, BuildError> {
+        let n = cloud.len();
+        let mut state = State::at_rest(cloud.dimension() * n);
+        for (k, initial) in self.model.initial.iter().enumerate() {
+            let path = KeyPath::from("initial").index(k);
+            let points = self.members(sets, &initial.set, &path)?;
+            if let Some(file) = &initial.file {
+                let rows = self.initial_rows(&path, file, cloud, resources)?;
+                let columns = 2 * cloud.dimension();
+                for &i in points {
+                    let row = cloud.user_number(i as usize) * columns;
+                    for c in 0..cloud.dimension() {
+                        let at = c * n + i as usize;
+                        state.u[at] = rows[row + c];
+                        state.v[at] = rows[row + cloud.dimension() + c];
+                    }
+                }
+            }
+            let fields = [
+                (&initial.displacement, &mut state.u),
+                (&initial.velocity, &mut state.v),
+            ];
+            for (vector, field) in fields {
+                let Some(vector) = vector else { continue };
+                for c in 0..cloud.dimension() {
+                    for &i in points {
+                        let value = vector[c].value(cloud.point(i as usize), 0.0);
+                        if !value.is_finite() {
+                            return Err(self.no_value(&path, vector, c, cloud, i));
+                        }
+                        field[c * n + i as usize] = value;
+                    }
+                }
+            }
+            if let Some(random) = initial.random_velocity {
+                if initial.velocity.is_none() && initial.file.is_none() {
+                    for c in 0..cloud.dimension() {
+                        for &i in points {
+                            state.v[c * n + i as usize] = 0.0;
+                        }
+                    }
+                }
+                Self::add_random(random, cloud, points, &mut state.v);
+            }
+        }
+        Ok(state)
+    }
+
+    /// The rows of a file with the initial state: for each point, in the user's order, its displacement, m, and velocity, m/s.
+    fn initial_rows(
+        &self,
+        path: &KeyPath,
+        file: &FilePath,
+        cloud: &PointCloud,
+        resources: &Resources<'_>,
+    ) -> Result<Vec<f64>, BuildError> {
+        const COLUMNS: [[&str; 3]; 2] = [["u_x", "u_y", "u_z"], ["v_x", "v_y", "v_z"]];
+        let columns = COLUMNS.map(|names| names[..cloud.dimension()].to_vec());
+        let (file, points) = (resources.beside(file), cloud.len());
+        (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
+            |error| {
+                let fault = error.fault(|reason| Fault::BadInitialFile { reason, points });
+                at_path(&path.key("file"), fault)
+            },
+        )
+    }
+
+    /// The whole body is drawn, in the user's order, whatever the set: a point's velocity depends on seed and number only.
+    fn add_random(
+        random: RandomVelocity,
+        cloud: &PointCloud,
+        points: &[u32],
+        velocity: &mut [f64],
+    ) {
+        let n = cloud.len();
+        let drawn = uniform_in_ball(cloud.dimension(), random.radius, random.seed, n);
+        for &i in points {
+            let vector = drawn[cloud.user_number(i as usize)];
+            for c in 0..cloud.dimension() {
+                velocity[c * n + i as usize] += vector[c];
+            }
+        }
+    }
+
+    pub(super) fn add_motions(
+        &self,
+        system: &mut System,
+        state: &State,
+        sets: &Sets,
+    ) -> Result<(), BuildError> {
+        let mut names: Vec<String> = Vec::new();
+        for (k, motion) in self.model.prescribe.iter().enumerate() {
+            // Two motions of one set (along different axes) need two names in tables.
+            let mut name = motion.set.clone();
+            let mut number = 1;
+            while names.contains(&name) {
+                number += 1;
+                name = format!("{}_{number}", motion.set);
+            }
+            names.push(name.clone());
+            let path = KeyPath::from("prescribe").index(k);
+            let points = self.members(sets, &motion.set, &path)?.clone();
+            let function = motion.function.smooth_function();
+            let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
+            self.refuse_second_motion(k, &points, sets)?;
+            let along = self.axis_motions(&path, motion, system.cloud(), &points)?;
+            let mut prescribed = PrescribedMotion::along(
+                name,
+                points,
+                motion.kind,
+                along,
+                function,
+                &state.u,
+                system.points(),
+            );
+            prescribed.until = motion.until;
+            system
+                .add_motion(prescribed)
+                .map_err(|error| at_path(&path, error.into()))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a motion of points that an earlier one moves along the same axis.
+    fn refuse_second_motion(
+        &self,
+        k: usize,
+        points: &[u32],
+        sets: &Sets,
+    ) -> Result<(), BuildError> {
+        let later = &self.model.prescribe[k];
+        for (earlier, other) in self.model.prescribe[..k].iter().enumerate() {
+            let path = KeyPath::from("prescribe").index(earlier);
+            let others = self.members(sets, &other.set, &path)?;
+            // Sets are in order.
+            let shared = points.iter().filter(|i| others.binary_search(i).is_ok());
+            let (shared, both) = (
+                shared.count(),
+                (0..3).find(|&c| later.amplitude[c].is_some() && other.amplitude[c].is_some()),
+            );
+            if let (Some(c), true) = (both, shared > 0) {
+                let fault = Fault::PrescribedTwice {
+                    points: shared,
+                    axis: ['x', 'y', 'z'][c],
+                    earlier: earlier + 1,
+                };
+                return Err(at_path(KeyPath::from("prescribe").index(k), fault));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn point_probes(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<Vec<PointProbe>, BuildError> {
+        let mut probes = Vec::new();
+        for (k, probe) in self.model.probes.iter().enumerate() {
+            let path = KeyPath::from("probe").index(k);
+            let points = match &probe.place {
+                ProbePlace::Set(set) => self.members(sets, set, &path)?.clone(),
+                ProbePlace::At(place) => {
+                    let (nearest, distance) = nearest(cloud, *place);
+                    // Inside a cell no place is farther from its centre than half a diagonal.
+                    let diagonal = (cloud.dimension() as f64).sqrt() * cloud.spacing();
+                    if distance > 0.5 * diagonal * (1.0 + 1e-9) {
+                        let name = probe.name.clone();
+                        let caution = Caution::ProbeOutside { name, distance };
+                        warnings.push(Remark::new(&path.key("at"), caution));
+                    }
+                    vec![nearest]
+                }
+            };
+            probes.push(PointProbe {
+                name: probe.name.clone(),
+                points,
+            });
+        }
+        Ok(probes)
+    }
+}
+
+/// The point nearest to a place, and its distance.
+fn nearest(cloud: &PointCloud, place: Point) -> (u32, f64) {
+    let nearest = cloud.nearest(place);
+    let found = cloud.point(nearest);
+    let square: f64 = (0..3).map(|c| (found[c] - place[c]).powi(2)).sum();
+    (nearest as u32, square.sqrt())
+}

@@ -1,0 +1,105 @@
+//! Damping layers of a model, and the steps that are stable with them.
+
+use pericles::boundary::{DampingLayer, DampingProfile};
+use pericles::material::BondConstants;
+use pericles::space::{Face, PointCloud};
+use pericles::{PericlesError, System};
+use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
+
+use super::assembler::Assembler;
+use super::refusal::at_path;
+use super::step::Steps;
+
+impl Assembler<'_> {
+    /// The damping layers with their numbers in the deck.
+    ///
+    /// # Errors
+    /// Layers of a surface.
+    pub(super) fn damping_layers(
+        &self,
+        system: &System,
+        constants: Option<&BondConstants>,
+    ) -> Result<Vec<(usize, Face, DampingProfile)>, BuildError> {
+        let is_layer = |boundary: &BoundaryCondition| {
+            matches!(boundary, BoundaryCondition::DampingLayer { .. })
+        };
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
+            return match self.model.boundaries.iter().position(is_layer) {
+                None => Ok(Vec::new()),
+                Some(k) => {
+                    let reason = "a closed surface has no sides".into();
+                    let error = PericlesError::BadDampingLayer { reason };
+                    Err(at_path(KeyPath::from("boundary").index(k), error.into()))
+                }
+            };
+        };
+        // Of the first material, where there are several.
+        let modulus = solid.state.longitudinal_modulus(constants.young);
+        let speed = (modulus / system.density().at(0)).sqrt();
+        let layer = |(k, boundary): (usize, &BoundaryCondition)| {
+            let BoundaryCondition::DampingLayer {
+                face,
+                thickness,
+                reflection,
+                power,
+            } = *boundary
+            else {
+                return None;
+            };
+            let profile = DampingProfile::of_reflection(thickness, reflection, power, speed);
+            Some((k, face, profile))
+        };
+        let boundaries = self.model.boundaries.iter().enumerate();
+        Ok(boundaries.filter_map(layer).collect())
+    }
+
+    /// Adds the damping layers.
+    pub(super) fn add_damping_layers(
+        &self,
+        system: &mut System,
+        layers: Vec<(usize, Face, DampingProfile)>,
+        steps: &Steps,
+    ) -> Result<(), BuildError> {
+        let frequency = steps.frequency.map(|frequency| frequency.estimate);
+        for (k, face, profile) in layers {
+            let path = KeyPath::from("boundary").index(k);
+            let refuse = |error: PericlesError| at_path(&path, error.into());
+            let layer = DampingLayer::new(
+                system.cloud(),
+                system.density(),
+                face,
+                profile,
+                steps.dt,
+                frequency,
+            );
+            system.add_boundary(Box::new(layer.map_err(refuse)?));
+        }
+        Ok(())
+    }
+}
+
+/// The strongest damping that points may have, 1/s: in corners that of several layers adds up, and of opposite ones where both reach across the middle.
+pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointCloud) -> f64 {
+    let along = |axis: usize| {
+        let depth_of = |upper: bool| {
+            let layers = layers
+                .iter()
+                .filter(move |(_, face, _)| face.axis == axis && face.upper == upper);
+            layers.fold(
+                (0.0, 0.0),
+                |(depth, strength): (f64, f64), (.., profile)| {
+                    (depth.max(profile.thickness), strength + profile.strength)
+                },
+            )
+        };
+        let [(low, a), (high, b)] = [false, true].map(depth_of);
+        let cell = cloud.cell_side(axis);
+        let axis = cloud.axis(axis).iter();
+        let ends = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(*x), high.max(*x))
+        });
+        let length = ends.1 - ends.0 + cell;
+        if low + high > length { a + b } else { a.max(b) }
+    };
+    (0..cloud.dimension()).map(along).sum()
+}

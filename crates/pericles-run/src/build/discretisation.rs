@@ -1,0 +1,92 @@
+//! Points and sets as plain data.
+
+use std::sync::Arc;
+
+use pericles::space::{PointCloud, PointSet};
+use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning};
+use pericles_manifold::surface::Surface;
+
+use super::refusal::at_path;
+
+/// Sets of points by name, the points of each in rising order.
+pub type Sets = Vec<(String, PointSet)>;
+
+/// The points of a model with their sets: plain arrays that a program may look at, change or replace before it goes on to
+/// [`assemble`](crate::assemble).
+#[derive(Debug, Clone)]
+pub struct Discretisation {
+    /// The points with their volumes.
+    pub cloud: Arc<PointCloud>,
+    /// The grids that the points belong to.
+    pub grids: Grids,
+    /// The surface, if the body is one; its vertices are the points.
+    pub surface: Option<Arc<Surface>>,
+    /// The sets of points by name, "all" first.
+    pub sets: Sets,
+    /// What is odd about the points.
+    pub warnings: Vec<ModelWarning>,
+}
+
+/// The grids of a body, of which parts may have smaller cells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Grids {
+    /// Division of each grid's cells: 1 for the whole body's, then those of the refined parts.
+    pub ratios: Vec<u32>,
+    /// The grid of each point, by its number in `ratios`.
+    pub of_point: Vec<u8>,
+}
+
+impl Grids {
+    /// One grid for so many points.
+    pub fn one(points: usize) -> Self {
+        Self {
+            ratios: vec![1],
+            of_point: vec![0; points],
+        }
+    }
+}
+
+impl Discretisation {
+    /// The points of a set.
+    pub fn set(&self, name: &str) -> Option<&PointSet> {
+        let found = self.sets.iter().find(|(known, _)| known == name);
+        found.map(|(_, points)| points)
+    }
+
+    /// The points of a set, to change them; they must stay in rising order.
+    pub fn set_mut(&mut self, name: &str) -> Option<&mut PointSet> {
+        let found = self.sets.iter_mut().find(|(known, _)| known == name);
+        found.map(|(_, points)| points)
+    }
+
+    /// Refuses points, grids and sets that do not belong together. What [`discretise`] makes does; what a program has changed may not.
+    pub(super) fn check(&self) -> Result<(), BuildError> {
+        let points = self.cloud.len();
+        let refuse =
+            |keys: KeyPath, reason: String| Err(at_path(keys, Fault::BadDiscretisation { reason }));
+        let grids = &self.grids;
+        let known = |&grid: &u8| usize::from(grid) < grids.ratios.len();
+        if grids.of_point.len() != points || !grids.of_point.iter().all(known) {
+            let reason = format!("the grids are not those of {points} points");
+            return refuse("body.refine".into(), reason);
+        }
+        if let Some(surface) = self.surface.as_ref().filter(|s| s.len() != points) {
+            let reason = format!(
+                "a surface of {} vertices has {points} points",
+                surface.len()
+            );
+            return refuse("body".into(), reason);
+        }
+        for (name, set) in &self.sets {
+            let rising = set.windows(2).all(|pair| pair[0] < pair[1]);
+            if !rising || set.last().is_some_and(|&last| last as usize >= points) {
+                let reason = format!(
+                    "the set `{name}` does not hold points 0 to {} in rising order",
+                    points - 1
+                );
+                return refuse(KeyPath::from("sets").key(name), reason);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,127 @@
+//! Points and sets of a model.
+
+use std::sync::Arc;
+
+use pericles::material::{Fracture, PairLaw, SurfaceCorrection};
+use pericles::space::{GradedCloud, PointCloud};
+use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Model, Remark, Solid};
+use pericles_manifold::surface::Surface;
+use pericles_waves::ForceForm;
+
+use super::assembler::Assembler;
+use super::discretisation::{Discretisation, Grids, Sets};
+use super::refusal::at_path;
+use super::resources::Resources;
+
+/// Makes the points of a model and selects its sets.
+///
+/// # Errors
+/// Numbers out of their ranges, points that the engine refuses or that do not fit into the memory, files that cannot be read, sets without points.
+pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisation, BuildError> {
+    model.check()?;
+    let assembler = Assembler { model };
+    let mut warnings = Vec::new();
+    let (points, surface) = match &model.body {
+        Body::Surface(body) => {
+            let (surface, cloud) = assembler.surface_points(body, resources)?;
+            (GradedCloud::of_one_grid(cloud), Some(Arc::new(surface)))
+        }
+        Body::Solid(solid) => {
+            assembler.check_periodic(solid)?;
+            (assembler.points(solid, resources, &mut warnings)?, None)
+        }
+    };
+    Ok(Discretisation {
+        sets: assembler.select(&points.cloud)?,
+        cloud: Arc::new(points.cloud),
+        grids: Grids {
+            ratios: points.ratios,
+            of_point: points.grid_of_point,
+        },
+        surface,
+        warnings,
+    })
+}
+
+/// The points of the body alone, with the surface if it is one: what is needed to draw results again.
+///
+/// # Errors
+/// As [`discretise`], except for sets.
+pub fn body_points(
+    model: &Model,
+    resources: &Resources<'_>,
+) -> Result<(PointCloud, Option<Surface>), BuildError> {
+    model.check()?;
+    let assembler = Assembler { model };
+    match &model.body {
+        Body::Surface(body) => {
+            let (surface, cloud) = assembler.surface_points(body, resources)?;
+            Ok((cloud, Some(surface)))
+        }
+        Body::Solid(solid) => Ok((
+            assembler.points(solid, resources, &mut Vec::new())?.cloud,
+            None,
+        )),
+    }
+}
+
+impl Assembler<'_> {
+    /// Refuses everything at once that a periodic body cannot have.
+    pub(super) fn check_periodic(&self, solid: &Solid) -> Result<(), BuildError> {
+        let material = &solid.material;
+        let spectral = material.form == ForceForm::Spectral;
+        let law = material.bonds.law;
+        let right_law = law == PairLaw::Linear || (law == PairLaw::GreenStrain && spectral);
+        let breaks = material.bonds.fracture != Fracture::Unbreakable;
+        let listed = matches!(
+            material.form,
+            ForceForm::List | ForceForm::Grid | ForceForm::FloatGrid
+        );
+        let corrected = material.surface_correction != SurfaceCorrection::None;
+        let conflicts: Vec<String> = [
+            (!right_law, format!("model = \"{}\"", material.model_name())),
+            (
+                breaks,
+                "bonds that break (`fracture_energy`, `critical_stretch`)".into(),
+            ),
+            (listed, format!("bonds = \"{}\"", material.form.name())),
+            (
+                !self.model.cracks.is_empty(),
+                "pre-cracks ([[crack]])".into(),
+            ),
+            (
+                !material.inclusions.is_empty(),
+                "[[material.inclusion]]".into(),
+            ),
+            (!material.parts.is_empty(), "[[material.part]]".into()),
+            (corrected, "a surface correction".into()),
+        ]
+        .into_iter()
+        .filter_map(|(found, what)| found.then_some(what))
+        .collect();
+        if !solid.shape.is_periodic() || conflicts.is_empty() {
+            return Ok(());
+        }
+        Err(at_path("body.periodic", Fault::NotPeriodic { conflicts }))
+    }
+
+    fn select(&self, cloud: &PointCloud) -> Result<Sets, BuildError> {
+        let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
+        let mut problems = Vec::new();
+        for set in &self.model.sets {
+            let points = set.members.of(cloud);
+            if points.is_empty() {
+                let fault = Fault::EmptySet {
+                    set: set.name.clone(),
+                };
+                problems.push(Remark::new(KeyPath::from("sets").key(&set.name), fault));
+            }
+            sets.push((set.name.clone(), points));
+        }
+        if problems.is_empty() {
+            Ok(sets)
+        } else {
+            Err(BuildError::of(problems))
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The exact solution of a model and the points it is compared at.
+
+use pericles::material::BondConstants;
+use pericles::space::{PointCloud, PointSet};
+use pericles_deck::{
+    BuildError, Caution, Fault, KnownSolution, ModelWarning, Pulse, Remark, Solid,
+};
+use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
+
+use super::assembler::Assembler;
+use super::refusal::at_path;
+
+/// What a run is compared with.
+pub struct ExactReference {
+    /// The solution.
+    pub solution: Box<dyn ExactSolution>,
+    /// The points that count.
+    pub points: PointSet,
+}
+
+impl Assembler<'_> {
+    pub(super) fn exact_reference(
+        &self,
+        cloud: &PointCloud,
+        constants: Option<&BondConstants>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<Option<ExactReference>, BuildError> {
+        let Some(exact) = self.model.exact else {
+            return Ok(None);
+        };
+        let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
+            let reason = "they are known for bars only";
+            return Err(at_path("exact", Fault::NoExactSolution { reason }));
+        };
+        let young = constants.young;
+        let density = solid.material.bonds.density;
+        let speed = (young / density).sqrt();
+        let (solution, centre): (Box<dyn ExactSolution>, f64) = match exact.solution {
+            KnownSolution::NonlocalPulse {
+                pulse:
+                    Pulse {
+                        width,
+                        amplitude,
+                        centre,
+                    },
+                length,
+            } => {
+                let line = LineSolution {
+                    young,
+                    density,
+                    length,
+                    width,
+                    amplitude,
+                    centre,
+                };
+                self.check_terms(&line, cloud)?;
+                self.judge_period(solid, &line, cloud, exact.window, warnings);
+                (Box::new(line), centre)
+            }
+            KnownSolution::LocalPulse(Pulse {
+                width,
+                amplitude,
+                centre,
+            }) => {
+                let pulse = TravellingPulse {
+                    speed,
+                    width,
+                    amplitude,
+                    centre,
+                };
+                (Box::new(pulse), centre)
+            }
+            KnownSolution::StretchedBar { length, strain } => {
+                let bar = StretchedBar {
+                    length,
+                    strain,
+                    speed,
+                };
+                (Box::new(bar), 0.0)
+            }
+            KnownSolution::BarMode { length, amplitude } => {
+                let mode = BarMode {
+                    length,
+                    amplitude,
+                    speed,
+                };
+                (Box::new(mode), 0.0)
+            }
+        };
+        let counts = |x: f64| {
+            exact
+                .window
+                .is_none_or(|window| (x - centre).abs() <= window * (1.0 + 1e-12))
+        };
+        let x = cloud.axis(0);
+        let points: PointSet = (0..x.len() as u32)
+            .filter(|&i| counts(x[i as usize]))
+            .collect();
+        if let (Some(window), true) = (exact.window, points.is_empty()) {
+            let distances = x.iter().map(|x| (x - centre).abs());
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            let fault = Fault::EmptyWindow {
+                window,
+                centre,
+                nearest,
+            };
+            return Err(at_path("exact.window", fault));
+        }
+        Ok(Some(ExactReference { solution, points }))
+    }
+
+    /// Refuses a pulse so far from the points, or so narrow for the run, that its sum would take hours or all memory.
+    fn check_terms(&self, line: &LineSolution, cloud: &PointCloud) -> Result<(), BuildError> {
+        /// Terms for one point.
+        const MOST: f64 = 1e5;
+        let distances = cloud.axis(0).iter().map(|x| (x - line.centre).abs());
+        let reach = distances.fold(0.0, f64::max);
+        let terms = line.terms(self.model.time.end, reach);
+        if terms <= MOST {
+            return Ok(());
+        }
+        let fault = Fault::LongSum { terms, most: MOST };
+        Err(at_path("exact.solution", fault))
+    }
+
+    /// Warns of a period so short that the waves of the next one arrive within the run.
+    fn judge_period(
+        &self,
+        solid: &Solid,
+        line: &LineSolution,
+        cloud: &PointCloud,
+        window: Option<f64>,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
+        /// Share of the amplitude from which it is told.
+        const NOTABLE: f64 = 1e-6;
+        if !solid.shape.is_periodic() {
+            return;
+        }
+        let period = cloud.len() as f64 * cloud.spacing();
+        let window = window.unwrap_or(0.5 * period);
+        let estimate = line.image_error(period, window, self.model.time.end);
+        if estimate > NOTABLE {
+            let caution = Caution::ShortPeriod {
+                period,
+                estimate,
+                window,
+            };
+            warnings.push(Remark::new("body.periodic", caution));
+        }
+    }
+}

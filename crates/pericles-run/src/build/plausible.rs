@@ -1,0 +1,86 @@
+//! Whether the values of a deck are physically plausible and have an effect.
+
+use pericles::System;
+use pericles::boundary::MotionKind;
+use pericles::material::BondConstants;
+use pericles::observe::Schedule;
+use pericles::time::State;
+use pericles_deck::{Caution, LoadAmplitude, Model, ModelWarning, Remark, Solid};
+
+use super::assembler::Assembler;
+
+impl Assembler<'_> {
+    /// Warns of densities and moduli that no solid has. Decks in units of their own (ρ = 1, E = 1) are left alone.
+    pub(super) fn judge_solid(
+        &self,
+        solid: &Solid,
+        constants: &BondConstants,
+    ) -> Vec<ModelWarning> {
+        /// kg/m³. Osmium has 22 600.
+        const DENSEST: f64 = 1e5;
+        /// kg/m³. Aerogels have less than this.
+        const SOLID: f64 = 100.0;
+        /// Pa. The softest gels have 1000.
+        const SOFTEST: f64 = 1e3;
+        let density = solid.material.bonds.density;
+        let modulus = constants.young;
+        let heavy =
+            (density > DENSEST).then_some(("material.density", Caution::HeavySolid { density }));
+        let soft = (density > SOLID && density <= DENSEST && modulus < SOFTEST)
+            .then_some(("material", Caution::SoftSolid { modulus, density }));
+        let found = heavy.into_iter().chain(soft);
+        found
+            .map(|(key, caution)| Remark::new(key, caution))
+            .collect()
+    }
+
+    /// Warns of keys that only breaking bonds give a meaning.
+    pub(super) fn judge_idle_keys(&self, system: &System) -> Vec<ModelWarning> {
+        if system.operator().can_break() {
+            return Vec::new();
+        }
+        let Model { body, output, .. } = self.model;
+        let solid = body.solid();
+        let measures_damage = solid.is_some_and(|solid| solid.material.damage.is_some());
+        // What pre-cracks took is damage, however the bonds behave later.
+        let uncracked = self.model.cracks.is_empty();
+        let writes_cracks = output
+            .cracks
+            .is_some_and(|cracks| cracks.schedule != Schedule::Never);
+        let idle = [
+            ("material.no_fail", !body.no_fail().is_empty()),
+            ("material.damage", measures_damage && uncracked),
+            ("output.cracks", writes_cracks),
+            (
+                "output.fragments",
+                output.fragments.schedule != Schedule::Never,
+            ),
+        ];
+        let given = idle.into_iter().filter(|(_, idle)| *idle);
+        given
+            .map(|(key, _)| Remark::new(key, Caution::NothingBreaks { key }))
+            .collect()
+    }
+
+    /// Warns of a run in which nothing happens.
+    pub(super) fn judge_rest(&self, state: &State) -> Option<ModelWarning> {
+        let at_rest = state.u.iter().chain(&state.v).all(|x| *x == 0.0);
+        let loaded = self.model.loads.iter().any(|load| {
+            let (LoadAmplitude::BodyForce(field)
+            | LoadAmplitude::Traction {
+                traction: field, ..
+            }) = &load.amplitude;
+            field.iter().any(|entry| entry.number() != Some(0.0))
+        });
+        let moved = self.model.prescribe.iter().any(|motion| {
+            let fixed = motion
+                .amplitude
+                .iter()
+                .flatten()
+                .all(|entry| entry.number() == Some(0.0));
+            !fixed && (motion.moves() || motion.kind == MotionKind::Displacement)
+        });
+        let acts = loaded || moved || !self.model.boundaries.is_empty();
+        (at_rest && !acts).then(|| Remark::new("time", Caution::NothingActs))
+    }
+}

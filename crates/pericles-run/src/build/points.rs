@@ -1,0 +1,193 @@
+//! The points of a body: those of its grid, or those listed in a file.
+
+use pericles::PericlesError;
+use pericles::family::pairs_within;
+use pericles::space::{
+    GradedCloud, GradedGrid, ListedPoints, PointCloud, Shape, gauss_bar, idle_holes,
+    rectangular_cells,
+};
+use pericles_deck::{
+    BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Quadrature,
+    Remark, Solid, SolidShape,
+};
+
+use super::assembler::Assembler;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+
+impl Assembler<'_> {
+    pub(super) fn points(
+        &self,
+        solid: &Solid,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<GradedCloud, BuildError> {
+        let points = match &solid.shape {
+            SolidShape::Points(file) => self
+                .listed_points(solid, file, resources, warnings)
+                .map(GradedCloud::of_one_grid),
+            SolidShape::Lattice(lattice) => self.grid_points(solid, lattice, resources, warnings),
+        }?;
+        /// The distance of atoms in a crystal, m.
+        const ATOMS: f64 = 1e-10;
+        let spacing = points.cloud.spacing();
+        if spacing < ATOMS {
+            warnings.push(Remark::new(
+                "body.spacing",
+                Caution::TinySpacing { spacing },
+            ));
+        }
+        Ok(points)
+    }
+
+    fn listed_points(
+        &self,
+        solid: &Solid,
+        file: &PointsFile,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<PointCloud, BuildError> {
+        /// Volumes and spacing disagree by this factor only if one of them has another unit.
+        const OFF: f64 = 2.0;
+        let path = resources.beside(&file.path);
+        let listed = (resources.read_points)(&path, file.dimension, resources.memory);
+        let listed = listed.map_err(|error| {
+            let fault = error.fault(|reason| Fault::BadPoints { reason });
+            at_path("body.file", fault)
+        })?;
+        let cloud = listed
+            .cloud(file.dimension, solid.shape.section())
+            .map_err(|error| at("body.file", error))?;
+        let (given, found) = (solid.shape.spacing(), cloud.spacing());
+        if (1.0 / OFF..=OFF).contains(&(found / given)) {
+            self.check_listed(solid, &cloud, resources)?;
+            warnings.extend(self.judge_listed(&listed, &cloud));
+            return Ok(cloud);
+        }
+        let section = ["area", "thickness"].get(file.dimension - 1).copied();
+        let fault = Fault::OtherSpacing {
+            given,
+            found,
+            section,
+        };
+        Err(at_path("body.spacing", fault))
+    }
+
+    /// Warns of coordinates that the body does not use, and of points that are much closer to each other than the others.
+    fn judge_listed(&self, listed: &ListedPoints, cloud: &PointCloud) -> Vec<ModelWarning> {
+        /// Share of the spacing.
+        const CLOSE: f64 = 1e-3;
+        let mut cautions = Vec::new();
+        for c in cloud.dimension()..3 {
+            let value = listed.positions[0][c];
+            if value != 0.0 {
+                let axis = ['x', 'y', 'z'][c];
+                cautions.push(Caution::UnusedCoordinate { axis, value });
+            }
+        }
+        let (start, near) = pairs_within(cloud, CLOSE * cloud.spacing());
+        if let Some(&second) = near.first() {
+            let first = start.partition_point(|&start| start == 0) - 1;
+            let (a, b) = (cloud.point(first), cloud.point(second as usize));
+            let square: f64 = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum();
+            cautions.push(Caution::ClosePoints {
+                points: [first, second as usize].map(|i| cloud.user_number(i) + 1),
+                distance: square.sqrt(),
+                spacing: cloud.spacing(),
+            });
+        }
+        let cautions = cautions.into_iter();
+        cautions
+            .map(|caution| Remark::new("body.file", caution))
+            .collect()
+    }
+
+    /// Warns of holes that take nothing from the body.
+    fn judge_holes(&self, lattice: &Lattice, graded: &GradedGrid) -> Vec<ModelWarning> {
+        let grid = &graded.grid;
+        let idle = match (&grid.shape, &lattice.rectangular) {
+            (Shape::Box { origin, size }, Some(spacing)) => {
+                idle_holes(*origin, size, spacing, &grid.holes)
+            }
+            _ => graded.idle_holes(),
+        };
+        // What is wrong with the grid is reported where its points are made.
+        let idle = idle.unwrap_or_default().into_iter();
+        idle.map(|k| {
+            let hole = KeyPath::from("body.hole").index(k);
+            // The bore of a tube or ring follows the holes of the deck.
+            Remark::new([hole, "body.inner_radius".into()], Caution::IdleHole)
+        })
+        .collect()
+    }
+
+    fn grid_points(
+        &self,
+        solid: &Solid,
+        lattice: &Lattice,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<GradedCloud, BuildError> {
+        let graded = GradedGrid {
+            grid: lattice.grid.clone(),
+            finer: lattice.finer.clone(),
+        };
+        let gauss = lattice.quadrature == Quadrature::Gauss;
+        self.check_grid(solid, &graded, if gauss { 2.0 } else { 1.0 }, resources)?;
+        warnings.extend(self.judge_holes(lattice, &graded));
+        let grid = &graded.grid;
+        let points = match (&grid.shape, lattice.quadrature) {
+            (Shape::Box { origin, size }, _) if lattice.rectangular.is_some() => {
+                let spacing = lattice.rectangular.as_deref().unwrap_or_default();
+                rectangular_cells(*origin, size, spacing, grid.section, &grid.holes)
+                    .map(GradedCloud::of_one_grid)
+            }
+            (Shape::Box { origin, size }, Quadrature::Gauss) => {
+                gauss_bar(origin[0], size[0], grid.spacing, grid.section)
+                    .map(GradedCloud::of_one_grid)
+            }
+            _ if lattice.periodic => grid
+                .points()
+                .and_then(PointCloud::with_periodic_faces)
+                .map(GradedCloud::of_one_grid),
+            _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
+            _ => graded.points(),
+        };
+        points.map_err(|error| {
+            let place: Keys = match &error {
+                PericlesError::NotWholeCells { length, .. } => self.side(lattice, *length),
+                PericlesError::TooManyPoints { .. } => "body.spacing".into(),
+                PericlesError::Unresolved { .. } => self.corner(lattice).into(),
+                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
+                    KeyPath::from("body.refine").index(*part).into()
+                }
+                PericlesError::FinerParts { .. } => "body.refine".into(),
+                _ => "body".into(),
+            };
+            at_path(place, error.into())
+        })
+    }
+
+    /// The entry that says where the body is.
+    fn corner(&self, lattice: &Lattice) -> &'static str {
+        match lattice.grid.shape {
+            Shape::Box { .. } => "body.origin",
+            Shape::Disc { .. } | Shape::Ball { .. } => "body.centre",
+            Shape::Cylinder { .. } => "body.base",
+        }
+    }
+
+    /// The entries that may give a side of this length.
+    fn side(&self, lattice: &Lattice, length: f64) -> Keys {
+        let size = KeyPath::from("body.size");
+        match &lattice.grid.shape {
+            Shape::Box { size: sides, .. } => match sides.iter().position(|side| *side == length) {
+                Some(0) if sides.len() == 1 => ["body.length".into(), size.index(0)].into(),
+                Some(axis) => size.index(axis).into(),
+                None => size.into(),
+            },
+            Shape::Cylinder { height, .. } if *height == length => "body.height".into(),
+            _ => size.into(),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Refusals of a model, at the keys that are to blame.
+
+use pericles::PericlesError;
+use pericles_deck::{BuildError, Fault, Keys, Remark};
+use pericles_waves::linear::NoConvolution;
+
+/// The keys of the horizon, of which a deck gives one.
+pub(super) const HORIZON: [&str; 2] = ["material.horizon", "material.horizon_ratio"];
+
+/// The refusal of a value.
+pub(super) fn at_path(keys: impl Into<Keys>, fault: Fault) -> BuildError {
+    Remark::new(keys, fault).into()
+}
+
+/// What the library refuses, at a value.
+pub(super) fn at(keys: impl Into<Keys>, error: PericlesError) -> BuildError {
+    at_path(keys, error.into())
+}
+
+/// What the library refuses of a material.
+pub(super) fn at_material(error: PericlesError) -> BuildError {
+    match &error {
+        PericlesError::BadInfluence { .. } => at("material.influence", error),
+        PericlesError::FormNotUsable { .. } | PericlesError::OneStencil => {
+            at("material.bonds", error)
+        }
+        _ if error.extension::<NoConvolution>().is_some() => at("material.bonds", error),
+        PericlesError::HorizonTooSmall { .. } | PericlesError::HorizonTooLarge { .. } => {
+            at(HORIZON, error)
+        }
+        _ => at("material", error),
+    }
+}

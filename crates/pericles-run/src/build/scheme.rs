@@ -1,0 +1,202 @@
+//! The integrator of a model.
+
+use pericles::time::{
+    AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
+    MultiTimeStepOptions, Newmark, Predictor, Relaxation, Respa, RungeKutta, Tableau,
+    VelocityVerlet,
+};
+use pericles::{PericlesError, System};
+use pericles_deck::{
+    BuildError, Caution, Fault, FineRegion, FineStep, Interface, KeyPath, ModelWarning, Remark,
+    Scheme,
+};
+use pericles_waves::Trigonometric;
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+use super::step::Steps;
+
+impl Assembler<'_> {
+    pub(super) fn integrator(
+        &self,
+        system: &System,
+        sets: &Sets,
+    ) -> Result<Box<dyn Integrator>, BuildError> {
+        Ok(match &self.model.time.scheme {
+            Scheme::VelocityVerlet => Box::new(VelocityVerlet),
+            Scheme::RungeKutta3 { alpha } => {
+                let tableau = Tableau::rk3(*alpha).map_err(|error| at("time.alpha", error))?;
+                Box::new(RungeKutta::new(&tableau, system))
+            }
+            Scheme::RungeKutta4 => Box::new(RungeKutta::new(&Tableau::rk4(), system)),
+            Scheme::DormandPrince { tolerance } => Box::new(
+                AdaptiveRungeKutta::new(*tolerance, system)
+                    .map_err(|error| self.at_scheme(error))?,
+            ),
+            Scheme::MultiTimeStep3 {
+                alpha,
+                fine,
+                interface,
+            } => {
+                let tableau = Tableau::rk3(*alpha).map_err(|error| at("time.alpha", error))?;
+                self.two_steps(&tableau, fine, *interface, system, sets)?
+            }
+            Scheme::MultiTimeStep4 { fine, interface } => {
+                self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
+            }
+            Scheme::Implicit { rule, solver } => Box::new(
+                Implicit::with_solver(*rule, *solver, system)
+                    .map_err(|error| self.at_scheme(error))?,
+            ),
+            Scheme::Trigonometric(options) => Box::new(
+                Trigonometric::new(*options, system).map_err(|error| self.at_scheme(error))?,
+            ),
+            Scheme::Newmark(options) => {
+                Box::new(Newmark::new(*options, system).map_err(|error| self.at_scheme(error))?)
+            }
+            Scheme::DiscreteGradient { tolerance } => Box::new(
+                DiscreteGradient::new(*tolerance, system).map_err(|error| self.at_scheme(error))?,
+            ),
+            Scheme::Relaxation(options) => {
+                Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
+            }
+            Scheme::Respa { fine } => {
+                let region = self.fine_points(fine, system, sets)?;
+                Box::new(
+                    Respa::new(fine.ratio, region, system)
+                        .map_err(|error| self.at_scheme(error))?,
+                )
+            }
+        })
+    }
+
+    fn two_steps(
+        &self,
+        tableau: &Tableau,
+        fine: &FineStep,
+        interface: Interface,
+        system: &System,
+        sets: &Sets,
+    ) -> Result<Box<dyn Integrator>, BuildError> {
+        let options = MultiTimeStepOptions {
+            ratio: fine.ratio,
+            fine: self.fine_points(fine, system, sets)?,
+            predictor: interface.predictor,
+            interpolant: interface.interpolant,
+        };
+        let scheme =
+            MultiTimeStep::new(tableau, options, system).map_err(|error| self.at_scheme(error))?;
+        Ok(Box::new(scheme))
+    }
+
+    fn fine_points(
+        &self,
+        fine: &FineStep,
+        system: &System,
+        sets: &Sets,
+    ) -> Result<Fine, BuildError> {
+        match &fine.region {
+            FineRegion::Sets(names) => {
+                let regions: Result<Vec<_>, _> = names
+                    .iter()
+                    .map(|name| self.members(sets, name, "time.fine").cloned())
+                    .collect();
+                Ok(Fine::Fixed(regions?))
+            }
+            FineRegion::Adaptive(_) if !system.operator().can_break() => {
+                let error = PericlesError::SchemeNotUsable {
+                    scheme: "a fine region that follows damage",
+                    reason: "its bonds never break; give `fine` with names of sets, or a fracture energy",
+                };
+                Err(at("time.adaptive", error))
+            }
+            FineRegion::Adaptive(follow) => Ok(Fine::Adaptive(*follow)),
+        }
+    }
+
+    fn at_scheme(&self, error: PericlesError) -> BuildError {
+        let error = match self.named_fine_sets(error) {
+            Ok(fault) => return at_path("time.fine", fault),
+            Err(error) => error,
+        };
+        let path: KeyPath = match &error {
+            PericlesError::StepRatio { .. } => "time.ratio".into(),
+            PericlesError::FineRegionEmpty { .. } => "time.fine".into(),
+            _ => "time.scheme".into(),
+        };
+        at_path(&path, error.into())
+    }
+
+    /// What is wrong with fine regions, with the names of their sets; other errors are handed back.
+    fn named_fine_sets(&self, error: PericlesError) -> Result<Fault, PericlesError> {
+        let fine = match &self.model.time.scheme {
+            Scheme::MultiTimeStep3 { fine, .. }
+            | Scheme::MultiTimeStep4 { fine, .. }
+            | Scheme::Respa { fine } => fine,
+            _ => return Err(error),
+        };
+        let FineRegion::Sets(names) = &fine.region else {
+            return Err(error);
+        };
+        let name = |region: usize| names[region].clone();
+        Ok(match error {
+            PericlesError::FineRegionThin {
+                region,
+                extent,
+                axis,
+                reach,
+            } => Fault::ThinFineSet {
+                set: name(region),
+                extent,
+                axis,
+                reach,
+            },
+            PericlesError::FineRegionsOverlap {
+                first,
+                second,
+                point,
+            } => Fault::FineSetsOverlap {
+                first: name(first),
+                second: name(second),
+                point,
+            },
+            other => return Err(other),
+        })
+    }
+
+    /// Adds warnings about a multirate scheme.
+    pub(super) fn judge_two_steps(
+        &self,
+        integrator: &dyn Integrator,
+        steps: &Steps,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
+        let Some(report) = integrator.refinement() else {
+            return;
+        };
+        if report.ratio == 1 {
+            warnings.push(Remark::new("time.ratio", Caution::EqualSteps));
+        }
+        let interface = match &self.model.time.scheme {
+            Scheme::MultiTimeStep3 { interface, .. } | Scheme::MultiTimeStep4 { interface, .. } => {
+                interface
+            }
+            _ => return,
+        };
+        let Some(frequency) = steps.frequency else {
+            return;
+        };
+        /// Below it the growth is less than 1e-6 a step.
+        const QUIET: f64 = 0.5;
+        let omega_dt = frequency.estimate * steps.dt;
+        // Equality within round-off is meant to be allowed.
+        if interface.predictor == Predictor::BackwardDifference && omega_dt > QUIET * (1.0 + 1e-9) {
+            let caution = Caution::GrowingPredictor {
+                omega_dt,
+                quiet: QUIET,
+            };
+            warnings.push(Remark::new("time.predictor", caution));
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The time step of a run.
+
+use pericles::PericlesError;
+use pericles::System;
+use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
+use pericles::units::quantity;
+use pericles_deck::{BuildError, Caution, Fault, ModelWarning, Remark, Scheme, TimeStep};
+
+use super::assembler::Assembler;
+use super::refusal::{at, at_path};
+
+/// A number of steps that differs from a whole one by so small a part is that number.
+const WHOLE: f64 = 1e-9;
+
+/// The steps of a run.
+pub(super) struct Steps {
+    pub(super) dt: f64,
+    pub(super) count: u64,
+    /// The frequency that limits the step.
+    pub(super) frequency: Option<HighestFrequency>,
+    /// The body's highest, whatever the scheme.
+    pub(super) body_frequency: Option<HighestFrequency>,
+}
+
+impl Assembler<'_> {
+    /// Finds the step, or judges the one that is given; `exterior` is the highest frequency of what lies beyond the body, `damped` the strongest damping of its layers, 1/s.
+    pub(super) fn steps(
+        &self,
+        system: &System,
+        state: &State,
+        integrator: &dyn Integrator,
+        exterior: f64,
+        damped: f64,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<Steps, BuildError> {
+        let end = self.model.time.end;
+        if let TimeStep::Equal(count) = self.model.time.step {
+            return Ok(Steps {
+                dt: end / count as f64,
+                count,
+                frequency: None,
+                body_frequency: None,
+            });
+        }
+        let body = highest_frequency(system, &state.u).map(|body| body.at_least(exterior));
+        let body_frequency = body.as_ref().ok().copied();
+        let frequency = body
+            .and_then(|body| integrator.limiting_frequency(system, &state.u, body))
+            .map(|frequency| frequency.at_least(exterior));
+        let limit = integrator.stability_limit();
+        match self.model.time.step {
+            TimeStep::Equal(_) | TimeStep::Auto { .. } => {
+                let safety = match self.model.time.step {
+                    TimeStep::Auto { safety } => safety,
+                    _ => 1.0,
+                };
+                let refuse = |error| at("time.dt", error);
+                let frequency = frequency.map_err(refuse)?;
+                // A scheme without a limit has no step of its own: accuracy alone must set it.
+                let limit = limit
+                    .ok_or(PericlesError::SchemeNotUsable {
+                        scheme: integrator.name(),
+                        reason: "it has no stable step of its own; give dt",
+                    })
+                    .map_err(refuse)?;
+                let stable = safety * damped_step(frequency.stable_step(limit, 1.0), damped);
+                let count = self.count(end, stable)?;
+                Ok(Steps {
+                    dt: end / count as f64,
+                    count,
+                    frequency: Some(frequency),
+                    body_frequency,
+                })
+            }
+            TimeStep::Fixed(given) => {
+                let count = self.count(end, given)?;
+                let dt = self.dividing(given, end, count, warnings);
+                if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
+                    let stable = frequency.stable_step(limit, 1.0);
+                    // What is refused is what the deck says.
+                    let judged = if dt <= stable { dt } else { given };
+                    self.judge(judged, limit, frequency, integrator.name(), warnings)?;
+                    self.check_damped(dt, stable, damped)?;
+                }
+                if let (Scheme::Trigonometric(options), Ok(frequency)) =
+                    (&self.model.time.scheme, &frequency)
+                {
+                    self.check_angle(dt, frequency.bound.hypot(options.regularisation.sqrt()))?;
+                }
+                Ok(Steps {
+                    dt,
+                    count,
+                    frequency: frequency.ok(),
+                    body_frequency,
+                })
+            }
+        }
+    }
+
+    /// The given step if a whole number of them ends at `end`, else the next shorter one of which a whole number does.
+    fn dividing(&self, given: f64, end: f64, count: u64, warnings: &mut Vec<ModelWarning>) -> f64 {
+        let ratio = end / given;
+        if (ratio - count as f64).abs() <= WHOLE * ratio {
+            return given;
+        }
+        let used = end / count as f64;
+        let caution = Caution::ShortenedStep { given, used, count };
+        warnings.push(Remark::new("time.dt", caution));
+        used
+    }
+
+    /// Refuses a step that turns the fastest wave so often that its angle keeps few digits; a series would have as many terms.
+    fn check_angle(&self, dt: f64, fastest: f64) -> Result<(), BuildError> {
+        const MOST: f64 = 1e6;
+        let longest = MOST / fastest;
+        if dt <= longest {
+            return Ok(());
+        }
+        let fault = Fault::OutOfRange {
+            value: quantity(dt, "s"),
+            allowed: format!(
+                "allowed: at most {}, in which the phase of the fastest wave advances by a million radians",
+                quantity(longest, "s")
+            ),
+        };
+        Err(at_path("time.dt", fault))
+    }
+
+    /// Refuses a given step that is unstable for certain; warns of one that may be.
+    fn judge(
+        &self,
+        dt: f64,
+        limit: f64,
+        frequency: &HighestFrequency,
+        scheme: &'static str,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<(), BuildError> {
+        let stable = frequency.stable_step(limit, 1.0);
+        if dt <= stable {
+            return Ok(());
+        }
+        let unstable = dt > frequency.unstable_step(limit);
+        if unstable && !self.model.time.allow_unstable {
+            let error = PericlesError::UnstableStep {
+                dt,
+                omega: frequency.estimate,
+                limit: stable,
+                scheme,
+            };
+            return Err(at("time.dt", error));
+        }
+        let caution = if unstable {
+            Caution::UnstableStep { dt, limit: stable }
+        } else {
+            Caution::UncertainStep { dt, limit: stable }
+        };
+        warnings.push(Remark::new("time.dt", caution));
+        Ok(())
+    }
+
+    /// Refuses a given step that is stable without damping layers only.
+    fn check_damped(&self, dt: f64, undamped: f64, damping: f64) -> Result<(), BuildError> {
+        let stable = damped_step(undamped, damping);
+        if dt <= stable || dt > undamped {
+            return Ok(());
+        }
+        let reason = format!(
+            "with damping of up to {damping:.4e} 1/s the step {dt:e} s is unstable, with less than {stable:.4e} s it is stable; make dt smaller or \"auto\", the layers thicker, or what they \
+             reflect larger"
+        );
+        Err(at("boundary", PericlesError::BadDampingLayer { reason }))
+    }
+
+    /// The number of steps of length `dt` to `end`.
+    fn count(&self, end: f64, dt: f64) -> Result<u64, BuildError> {
+        /// Numbers of steps beyond it are no longer exact in a double.
+        const MOST: f64 = 9e15;
+        let ratio = end / dt;
+        if ratio > MOST {
+            let fault = Fault::OutOfRange {
+                value: format!("{dt:e} s"),
+                allowed: format!("allowed: at most {MOST:e} steps; this step needs {ratio:e}"),
+            };
+            return Err(at_path("time.dt", fault));
+        }
+        // A whole number up to round-off is that number.
+        Ok((ratio * (1.0 - WHOLE)).ceil().max(1.0) as u64)
+    }
+}
+
+/// The largest stable step of velocity Verlet with a damping σ (1/s) of the step before, from the one without, 2/ω: (ω dt)² = 4 − 2 σ dt.
+pub(super) fn damped_step(undamped: f64, damping: f64) -> f64 {
+    let damped = 0.25 * damping * undamped;
+    undamped / (damped + damped.hypot(1.0))
+}

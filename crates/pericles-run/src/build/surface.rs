@@ -1,0 +1,119 @@
+//! Points and operator of a surface.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use pericles::PericlesError;
+use pericles::cache::Cache;
+use pericles::operator::ForceOperator;
+use pericles::space::PointCloud;
+use pericles_deck::{
+    BuildError, Fault, KeyPath, LoadAmplitude, SurfaceBody, SurfaceShape, VertexAreas,
+};
+use pericles_manifold::force;
+use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceError};
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+use super::resources::{FileError, Resources};
+
+impl Assembler<'_> {
+    pub(super) fn surface_points(
+        &self,
+        deck: &SurfaceBody,
+        resources: &Resources<'_>,
+    ) -> Result<(Surface, PointCloud), BuildError> {
+        let surface = match &deck.shape {
+            SurfaceShape::File { path, checks } => {
+                self.surface_of_file(path, *checks, resources)?
+            }
+            SurfaceShape::Formula(shape) => {
+                self.check_vertices(shape.vertices(), resources)?;
+                let made = shape.surface();
+                made.map_err(|error| at("body", error.into()))?
+            }
+        };
+        let horizon = deck.material.horizon;
+        self.check_surface(surface.len(), surface.area(), horizon, resources)?;
+        let areas = match deck.areas {
+            VertexAreas::Rule(rule) => surface.vertex_areas(rule),
+            VertexAreas::Same(area) => vec![area; surface.len()],
+        };
+        let cloud = surface
+            .points(areas)
+            .map_err(|error| at("body.areas", error))?;
+        Ok((surface, cloud))
+    }
+
+    /// The surface of a file, checked, its vertices numbered along a space-filling curve.
+    fn surface_of_file(
+        &self,
+        path: &Path,
+        checks: SurfaceChecks,
+        resources: &Resources<'_>,
+    ) -> Result<Surface, BuildError> {
+        let file = resources.beside(path);
+        let refused = |error: FileError| {
+            let file = file.display().to_string();
+            let fault = error.fault(|reason| Fault::BadSurfaceFile { file, reason });
+            at_path("body.file", fault)
+        };
+        let (surface, _) = (resources.read_surface)(&file, resources.memory)
+            .and_then(|surface| Ok(surface.checked(checks).map_err(|error| error.to_string())?))
+            .map_err(refused)?;
+        Ok(surface.renumbered())
+    }
+
+    pub(super) fn surface_operator(
+        &self,
+        deck: &SurfaceBody,
+        surface: &Surface,
+        cloud: &Arc<PointCloud>,
+        sets: &Sets,
+        cache: &dyn Cache,
+    ) -> Result<Box<dyn ForceOperator>, BuildError> {
+        let pairs = deck
+            .ball
+            .pairs(surface, deck.material.horizon, deck.method, cache)
+            .map_err(|error| match error {
+                PericlesError::HorizonTooSmall { .. } => at("material.horizon", error),
+                _ => match error.extension() {
+                    Some(SurfaceError::Folded { .. }) => at("geodesics.ball", error),
+                    _ => at("geodesics", error),
+                },
+            })?;
+        let no_fail = self.union_of(sets, &deck.no_fail)?;
+        let stiffness = self.stiffness_of(&deck.inclusions, cloud, sets)?;
+        force::SurfaceBody {
+            surface,
+            cloud,
+            pairs: &pairs,
+            material: &deck.material,
+            stiffness: &stiffness,
+            no_fail: &no_fail,
+        }
+        .operator()
+        .map_err(|error| at("material", error))
+    }
+
+    /// Refuses what only bodies with a volume have.
+    pub(super) fn refuse_body_forces(&self) -> Result<(), BuildError> {
+        for (k, load) in self.model.loads.iter().enumerate() {
+            let key = match load.amplitude {
+                LoadAmplitude::BodyForce(_) => "body_force",
+                LoadAmplitude::Traction { area: Some(_), .. } => "area",
+                LoadAmplitude::Traction { area: None, .. } => continue,
+            };
+            let fault = Fault::Misplaced {
+                key: key.into(),
+                table: "a [[load]] of a surface".into(),
+                allowed:
+                    "a surface is loaded by a `traction`, which acts on the area of each vertex"
+                        .into(),
+            };
+            return Err(at_path(&KeyPath::from("load").index(k).key(key), fault));
+        }
+        Ok(())
+    }
+}

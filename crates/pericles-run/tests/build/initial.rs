@@ -1,0 +1,171 @@
+//! Initial states from files.
+
+use std::path::Path;
+
+use pericles::Control;
+use pericles_deck::Deck;
+use pericles_run::{FileError, Resources};
+
+use super::common::{Build, Built};
+use super::refusal;
+
+const SPHERE: &str = r#"
+[body]
+shape = "icosphere"
+level = 2
+radius = 1
+[material]
+density = "1 kg/m2"
+alpha = 0.5
+p = 3
+horizon = 0.8
+[sets]
+cap = { where = "z > 0.5" }
+[[initial]]
+velocity = [0, { expression = "z" }, 0.1]
+[time]
+end = 2
+dt = 0.05
+"#;
+
+/// The model of a deck whose initial state is read from a file of these rows.
+fn with_rows(text: &str, rows: &[f64]) -> Built {
+    let deck = Deck::parse(text, "decks/sphere.toml", &[]).unwrap();
+    assert_eq!(deck.model.files(), [Path::new("state.txt")]);
+    let model = deck.build_with(Resources {
+        read_table: &|path, points, columns, _| {
+            assert_eq!(path, Path::new("decks/state.txt"));
+            assert_eq!(columns, ["u_x", "u_y", "u_z", "v_x", "v_y", "v_z"]);
+            assert_eq!(6 * points, rows.len());
+            Ok(rows.to_vec())
+        },
+        ..Resources::default()
+    });
+    model.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Displacement and velocity of each point after so many steps, in the user's order.
+fn rows_after(model: Built, steps: u64) -> Vec<f64> {
+    let cloud = model.cloud.clone();
+    let mut run = model.simulation();
+    run.run(|run| match run.state().step {
+        step if step == steps => Control::Stop,
+        _ => Control::Continue,
+    })
+    .unwrap();
+    assert_eq!(run.state().step, steps);
+    let n = cloud.len();
+    let mut rows = vec![0.0; 6 * n];
+    for i in 0..n {
+        let row = 6 * cloud.user_number(i);
+        for c in 0..3 {
+            rows[row + c] = run.state().u[c * n + i];
+            rows[row + 3 + c] = run.state().v[c * n + i];
+        }
+    }
+    rows
+}
+
+#[test]
+fn a_run_from_the_state_of_another_continues_it() {
+    let text =
+        |initial: &str| SPHERE.replace("velocity = [0, { expression = \"z\" }, 0.1]", initial);
+    let model = || super::build(SPHERE);
+    let cloud = model().assembly.cloud;
+    // The vertices of a surface are renumbered: the order of the rows matters.
+    assert!((0..cloud.len()).any(|i| cloud.user_number(i) != i));
+    let middle = rows_after(model(), 10);
+    let whole = rows_after(model(), 20);
+    let continued = rows_after(with_rows(&text("file = \"state.txt\""), &middle), 10);
+    let largest = whole.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    for (one, other) in whole.iter().zip(&continued) {
+        assert!((one - other).abs() < 1e-13 * largest, "{one} {other}");
+    }
+}
+
+#[test]
+fn only_the_points_of_the_set_take_their_rows() {
+    let initial = "velocity = [0, 0, 7]\n[[initial]]\nset = \"cap\"\nfile = \"state.txt\"";
+    let text = SPHERE.replace("velocity = [0, { expression = \"z\" }, 0.1]", initial);
+    let rows: Vec<f64> = (0..6 * 162).map(|k| 1e-6 * f64::from(k)).collect();
+    let model = with_rows(&text, &rows);
+    let n = model.cloud.len();
+    let mut taken = 0;
+    for i in 0..n {
+        let row = 6 * model.cloud.user_number(i);
+        let (u, v) = (model.state.u[i], model.state.v[2 * n + i]);
+        if model.cloud.point(i)[2] > 0.5 {
+            assert_eq!((u, v), (rows[row], rows[row + 5]));
+            taken += 1;
+        } else {
+            assert_eq!((u, v), (0.0, 7.0));
+        }
+    }
+    assert!(taken > 0 && taken < n);
+}
+
+#[test]
+fn a_file_that_gives_no_state_is_refused_at_its_entry() {
+    let text = SPHERE.replace(
+        "velocity = [0, { expression = \"z\" }, 0.1]",
+        "file = \"state.txt\"",
+    );
+    let message = |error: FileError| {
+        let deck = Deck::parse(&text, "sphere.toml", &[]).unwrap();
+        let built = deck.build_with(Resources {
+            read_table: &|_, _, _, _| Err(error.clone()),
+            ..Resources::default()
+        });
+        match built {
+            Ok(_) => panic!("refused"),
+            Err(error) => error,
+        }
+    };
+    let wrong = message(FileError::Wrong("state.txt:7: 5 numbers".into()));
+    let says = wrong.to_string();
+    assert!(
+        says.starts_with("sphere.toml:14:8: state.txt:7: 5 numbers"),
+        "{says}"
+    );
+    assert!(says.contains("a line for each of the 162 points"), "{says}");
+    assert!(!wrong.is_too_large());
+    let large = message(FileError::TooLarge("state.txt needs about 4 TB".into()));
+    assert!(large.is_too_large(), "{large}");
+}
+
+#[test]
+fn an_exterior_has_no_values_in_a_file() {
+    let text = r#"
+[body]
+shape = "bar"
+length = "100 mm"
+spacing = "1 mm"
+[material]
+model = "linear"
+density = 1000
+youngs_modulus = "1 GPa"
+horizon_ratio = 3
+[[initial]]
+file = "state.txt"
+[[boundary]]
+kind = "absorbing"
+side = "+x"
+exterior_data = "70 mm"
+[time]
+end = "10 us"
+"#;
+    let deck = Deck::parse(text, "bar.toml", &[]).unwrap();
+    let built = deck.build_with(Resources {
+        read_table: &|_, points, columns, _| Ok(vec![0.0; points * columns.len()]),
+        ..Resources::default()
+    });
+    let says = match built {
+        Ok(_) => panic!("refused"),
+        Err(error) => error.to_string(),
+    };
+    assert!(
+        says.starts_with("bar.toml:12:8:") && says.contains("exterior_data"),
+        "{says}"
+    );
+    assert!(refusal(text).to_string().contains("handed in"));
+}

@@ -1,0 +1,192 @@
+//! Constants of materials in decks: what goes together, and what is warned of.
+
+use super::common::{Build, Built};
+use super::decks::solid;
+use pericles::material::{Calibration, Fracture, FractureCalibration};
+use pericles_deck::Deck;
+
+/// A body and the keys of [material] other than density and modulus.
+fn text(body: &str, material: &str) -> String {
+    // A body on which nothing acts would be warned of.
+    format!(
+        "[body]\n{body}\n[material]\ndensity = 2440\nyoungs_modulus = \"72 GPa\"\n{material}\n\
+         [time]\nend = 1e-6\ndt = 1e-7\nallow_unstable = true\n\
+         [[initial]]\nrandom_velocity = {{ radius = 1e-3 }}\n"
+    )
+}
+
+const BAR: &str = "shape = \"bar\"\nlength = 0.02\nspacing = 0.001";
+const PLATE: &str = "shape = \"plate\"\nsize = [0.012, 0.012]\nspacing = 0.001\nplane = \"strain\"";
+const LISTED: &str = "shape = \"points\"\nfile = \"points.txt\"\nspacing = 0.001";
+const CLASSES: &str = "horizon_ratio = 1\nvolume_correction = \"none\"\n\
+                       influence = { function = \"classes\", table = [[[1], 1]] }";
+
+fn deck(body: &str, material: &str) -> Deck {
+    Deck::parse(&text(body, material), "deck.toml", &[]).unwrap()
+}
+
+fn model(body: &str, material: &str) -> Built {
+    deck(body, material).build().unwrap()
+}
+
+/// The only problem of a deck, as one line.
+fn refusal(body: &str, material: &str) -> String {
+    let error = Deck::parse(&text(body, material), "deck.toml", &[]).unwrap_err();
+    let lines: Vec<String> = error.problems().iter().map(|p| p.line()).collect();
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    lines[0].clone()
+}
+
+fn warnings(body: &str, material: &str) -> Vec<String> {
+    let model = model(body, material);
+    model
+        .warnings
+        .iter()
+        .map(|warning| warning.line())
+        .collect()
+}
+
+#[test]
+fn coefficients_per_class_take_the_lattice_s_modulus() {
+    let calibration = |deck: Deck| solid(&deck).material.bonds.modulus.calibration;
+    assert_eq!(calibration(deck(BAR, CLASSES)), Calibration::Lattice);
+    let given = format!("modulus = \"lattice\"\n{CLASSES}");
+    assert_eq!(calibration(deck(BAR, &given)), Calibration::Lattice);
+    assert_eq!(
+        deck(BAR, CLASSES).to_json()["material"]["modulus"],
+        "lattice"
+    );
+    for word in ["continuum", "unmodified"] {
+        let message = refusal(BAR, &format!("modulus = \"{word}\"\n{CLASSES}"));
+        assert!(
+            message.contains(&format!("deck.toml:8:11: `{word}` is out of range")),
+            "{message}"
+        );
+        assert!(
+            message.contains("allowed: \"lattice\": coefficients per class"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn integrals_have_no_lattice() {
+    let spectral = "model = \"linear\"\nhorizon_ratio = 3\nbonds = \"spectral\"";
+    let ring = format!("{BAR}\nperiodic = true");
+    let message = refusal(&ring, &format!("modulus = \"lattice\"\n{spectral}"));
+    assert!(
+        message.contains("bonds = \"spectral\" takes integrals"),
+        "{message}"
+    );
+    let message = refusal(&ring, &format!("volume_correction = \"none\"\n{spectral}"));
+    assert!(
+        message.contains("`volume_correction` has no place"),
+        "{message}"
+    );
+    assert!(
+        message.contains("no cells are cut; leave it out"),
+        "{message}"
+    );
+    let gauss = format!("{BAR}\nquadrature = \"gauss\"");
+    let linear = "model = \"linear\"\nhorizon_ratio = 3";
+    let message = refusal(&gauss, &format!("modulus = \"lattice\"\n{linear}"));
+    assert!(
+        message.contains("the Gauss nodes of a bar are no lattice"),
+        "{message}"
+    );
+    // They have the modulus of the integral, whatever sums over a lattice would be.
+    for (body, material) in [(&ring, spectral), (&gauss, linear)] {
+        assert_eq!(model(body, material).constants().stiffness_error, 0.0);
+    }
+    let conical =
+        format!("modulus = \"unmodified\"\ninfluence = {{ function = \"conical\" }}\n{spectral}");
+    // ∫(1 − r/δ) r dr is a third of ∫ r dr.
+    let error = model(&ring, &conical).constants().stiffness_error;
+    assert!((error + 2.0 / 3.0).abs() < 1e-12, "{error}");
+}
+
+#[test]
+fn bars_have_no_poisson_s_ratio() {
+    let message = refusal(BAR, "horizon_ratio = 3\npoisson_ratio = 0.3");
+    assert!(
+        message.contains("`poisson_ratio` has no place in [material]"),
+        "{message}"
+    );
+    assert!(message.contains("leave it out"), "{message}");
+    let part = "horizon_ratio = 3\npart = [{ name = \"a\", block = 1, density = 1, youngs_modulus = 1, nu = 0.3 }]";
+    let message = refusal(BAR, part);
+    assert!(
+        message.contains("`nu` has no place in [material.part.0]"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_pair_of_materials_is_given_once() {
+    let interface = |second: &str| {
+        let part = "{ name = \"b\", block = 1, density = 1, youngs_modulus = 1 }";
+        format!(
+            "name = \"a\"\nhorizon_ratio = 3\npart = [{part}]\n[material.interface]\n\
+             pair = [{{ between = [\"a\", \"b\"], critical_stretch = 0.1 }}, {{ between = {second}, critical_stretch = 0.2 }}]"
+        )
+    };
+    for second in ["[\"a\", \"b\"]", "[\"b\", \"a\"]"] {
+        let message = refusal(BAR, &interface(second));
+        assert!(message.contains("each pair of materials once"), "{message}");
+    }
+}
+
+#[test]
+fn listed_points_have_the_continuum_s_critical_stretch() {
+    let energy = |deck: Deck| match solid(&deck).material.bonds.fracture {
+        Fracture::Energy { calibration, .. } => calibration,
+        other => panic!("{other:?}"),
+    };
+    let breaks = "horizon_ratio = 3\nfracture_energy = 135";
+    assert_eq!(energy(deck(LISTED, breaks)), FractureCalibration::Continuum);
+    assert_eq!(energy(deck(PLATE, breaks)), FractureCalibration::Lattice);
+    let given = format!("{breaks}\nfracture_calibration = \"lattice\"");
+    let message = refusal(LISTED, &given);
+    assert!(
+        message.contains("points listed in a file have no lattice planes"),
+        "{message}"
+    );
+    let deck = deck(PLATE, &given);
+    assert!(deck.gives("material.fracture_calibration"));
+    assert!(!deck.gives("material.modulus"));
+}
+
+#[test]
+fn wrong_stiffnesses_are_warned_of() {
+    // A conical function with the constant c of the constant one: a third of the stiffness in a bar.
+    let conical = "horizon_ratio = 3\ninfluence = { function = \"conical\" }";
+    let found = warnings(BAR, &format!("modulus = \"unmodified\"\n{conical}"));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains("deck.toml:8:11"), "{found:?}");
+    assert!(
+        found[0].contains("% of the bulk stiffness asked for"),
+        "{found:?}"
+    );
+    assert!(found[0].contains("modulus = \"lattice\""), "{found:?}");
+    // The constant function that acts on displacements is no longer 500 times too soft.
+    let constant = "modulus = \"unmodified\"\nhorizon_ratio = 3\n\
+                    influence = { function = \"constant\", acts_on = \"displacement\" }";
+    let bar = model(BAR, constant);
+    let exact = 3.0 * 72e9 / 3e-3f64.powi(3);
+    assert!((bar.constants().micromodulus / exact - 1.0).abs() < 1e-12);
+    assert!(bar.warnings.is_empty());
+    // Usual bodies are not warned of.
+    for material in ["horizon_ratio = 3", "horizon_ratio = 2", conical] {
+        assert!(warnings(PLATE, material).is_empty(), "{material}");
+    }
+    // One spacing: neighbours along the axes only.
+    let short = "modulus = \"lattice\"\nhorizon_ratio = 1\nvolume_correction = \"none\"";
+    let found = warnings(PLATE, short);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains("deck.toml:10:17"), "{found:?}");
+    assert!(
+        found[0].contains("have 0 % of the material's shear stiffness"),
+        "{found:?}"
+    );
+    assert!(warnings(BAR, short).is_empty());
+}

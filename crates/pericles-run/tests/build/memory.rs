@@ -1,0 +1,211 @@
+//! Bodies and histories that do not fit are refused before anything of their size is allocated.
+
+use std::path::Path;
+
+use super::common::Build;
+use pericles::space::ListedPoints;
+use pericles_deck::{Deck, DeckError};
+use pericles_run::Resources;
+
+/// A deck with some of it replaced, built in so many bytes.
+fn built(text: &str, [old, new]: [&str; 2], memory: u64) -> Result<(), DeckError> {
+    assert!(text.contains(old), "{old}");
+    let deck = Deck::parse(&text.replace(old, new), "a.toml", &[])?;
+    let read_points = |_: &Path, _: usize, _: u64| {
+        // A line of points.
+        let places = (0..20_000).map(|k| [f64::from(k), 0.0, 0.0]);
+        let mut points = ListedPoints::default();
+        points.positions.extend(places);
+        points.blocks.resize(20_000, 1);
+        points.volumes.resize(20_000, 1.0);
+        Ok(points)
+    };
+    let resources = Resources {
+        memory,
+        read_points: &read_points,
+        ..Resources::default()
+    };
+    deck.build_with(resources).map(|_| ())
+}
+
+fn refusal(text: &str, change: [&str; 2], memory: u64, at: &str, says: &str) {
+    match built(text, change, memory) {
+        Err(error) => {
+            assert!(error.is_too_large(), "{error}");
+            let message = error.to_string();
+            assert!(message.starts_with(at), "{message}");
+            assert!(message.contains(says), "{message}");
+        }
+        Ok(()) => panic!("{change:?} fits into {memory} bytes?"),
+    }
+}
+
+const BLOCK: &str = r#"[body]
+shape = "block"
+size = [1, 1, 1]
+spacing = 0.1
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+bonds = "list"
+[time]
+end = 1
+dt = 0.01
+"#;
+
+#[test]
+fn a_body_is_refused_by_the_number_of_its_cells() {
+    assert!(built(BLOCK, ["0.1", "0.1"], 10_000_000).is_ok());
+    let fine = ["spacing = 0.1", "spacing = 0.001"];
+    refusal(BLOCK, fine, 8_000_000_000, "a.toml:4:11: ", "1.0e9 points");
+    refusal(
+        BLOCK,
+        fine,
+        8_000_000_000,
+        "a.toml:4:11: ",
+        "TB of memory; 8.0 GB may be taken; a larger spacing",
+    );
+    // A ball of the same cells has about half as many, a thin tube fewer still.
+    let whole = 4_000_000;
+    refusal(
+        BLOCK,
+        ["spacing = 0.1", "spacing = 0.05"],
+        whole,
+        "a.toml:4",
+        "8 000 points",
+    );
+    let hole = [
+        "spacing = 0.1",
+        "spacing = 0.05\nhole = [{ box = { min = [0, 0, 0.1] } }]",
+    ];
+    assert!(built(BLOCK, hole, whole).is_ok());
+    // Parts with smaller cells count as such.
+    let finer = [
+        "spacing = 0.1",
+        "spacing = 0.1\nrefine = [{ all = true, ratio = 16 }]",
+    ];
+    refusal(
+        &BLOCK.replace("bonds = \"list\"\n", ""),
+        finer,
+        100_000_000,
+        "a.toml:4",
+        "4 096 000 points",
+    );
+    // More than can be numbered is no matter of memory.
+    let numberless = built(BLOCK, ["spacing = 0.1", "spacing = 1e-4"], u64::MAX).unwrap_err();
+    assert!(!numberless.is_too_large(), "{numberless}");
+    assert!(numberless.to_string().contains("at most"), "{numberless}");
+}
+
+#[test]
+fn listed_points_are_refused_by_their_bonds() {
+    let text = r#"[body]
+shape = "points"
+file = "line.txt"
+dimension = 1
+spacing = 1
+[material]
+density = 1
+youngs_modulus = 1
+horizon = 3
+[time]
+end = 1
+dt = 0.01
+"#;
+    assert!(built(text, ["horizon = 3", "horizon = 3"], 20_000_000).is_ok());
+    let wide = ["horizon = 3", "horizon = 9000"];
+    refusal(text, wide, 1_000_000_000, "a.toml:9:11: ", "GB of memory");
+}
+
+#[test]
+fn a_surface_is_refused_by_its_vertices_and_by_its_bonds() {
+    let text = r#"[body]
+shape = "icosphere"
+level = 2
+radius = 1
+[material]
+density = 1
+alpha = 0.5
+p = 2
+horizon = 0.6
+[time]
+end = 1
+dt = 0.01
+"#;
+    assert!(built(text, ["level = 2", "level = 2"], 3_000_000).is_ok());
+    // It is not made to know how far apart its vertices are either: this would take seconds, and more memory than allowed.
+    let began = std::time::Instant::now();
+    refusal(
+        text,
+        ["level = 2", "level = 10"],
+        1_000_000_000,
+        "a.toml:2:9: ",
+        "10 485 762 points",
+    );
+    assert!(began.elapsed().as_secs_f64() < 1.0);
+    refusal(
+        text,
+        ["level = 2", "level = 5"],
+        60_000_000,
+        "a.toml:9:11: ",
+        "shorter horizon",
+    );
+}
+
+#[test]
+fn a_history_is_refused_by_its_steps() {
+    let text = r#"[body]
+shape = "bar"
+length = 10
+spacing = 1
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+[[boundary]]
+kind = "absorbing"
+side = "+x"
+history = "blocked"
+[time]
+end = 100
+dt = 0.1
+"#;
+    assert!(built(text, ["end = 100", "end = 100"], 1_000_000).is_ok());
+    let long = ["end = 100", "end = 1e9"];
+    refusal(text, long, 8_000_000_000, "a.toml:10", "1.0e10 steps");
+    // Exponentials forget: their memory does not grow with the steps.
+    let same = ["end = 100", "end = 100"];
+    refusal(text, same, 100_000, "a.toml:10", "1 000 steps");
+    let forgetful = text.replace("\"blocked\"", "\"exponentials\"\ntolerance = 1e-4");
+    assert!(built(&forgetful, same, 100_000).is_ok());
+}
+
+#[test]
+fn a_fit_of_more_steps_than_can_be_told_apart_is_refused() {
+    let text = r#"[body]
+shape = "bar"
+length = 10
+spacing = 1
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon_ratio = 3
+[[boundary]]
+kind = "absorbing"
+side = "+x"
+history = "exponentials"
+tolerance = 1e-4
+[time]
+end = 1e9
+dt = 0.1
+"#;
+    let error = built(text, ["1e9", "1e9"], u64::MAX).unwrap_err();
+    let message = error.to_string();
+    assert!(message.starts_with("a.toml:10:"), "{message}");
+    assert!(message.contains("at most 1e9 steps, not 9.99"), "{message}");
+    // As many steps as can be counted.
+    assert!(built(text, ["1e9", "8e14"], u64::MAX).is_err());
+}

@@ -1,0 +1,250 @@
+//! Values that are implausible or have no effect are warned of; messages of schemes and outputs name what the deck says.
+
+use super::common::Build;
+use pericles_deck::Deck;
+
+const BAR: &str = r#"
+[body]
+shape = "bar"
+length = 10
+spacing = 1
+[material]
+density = 1
+youngs_modulus = 1
+horizon = 3
+[sets.left]
+layer = { side = "-x", cells = 1 }
+[[load]]
+set = "left"
+body_force = 1
+[time]
+end = 1
+"#;
+
+const PLATE: &str = r#"
+[body]
+shape = "plate"
+size = [1, 0.5]
+spacing = 0.02
+plane = "stress"
+[material]
+density = 1
+youngs_modulus = 1
+horizon_ratio = 4.025
+[sets.tip]
+box = { min = [0.45, 0.2], max = [0.5, 0.3] }
+[[load]]
+set = "tip"
+body_force = [1, 0]
+[time]
+end = 1
+"#;
+
+fn warnings(text: &str) -> Vec<String> {
+    let deck = Deck::parse(text, "deck.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let model = deck.build().unwrap_or_else(|error| panic!("{error}"));
+    model
+        .warnings
+        .iter()
+        .map(|warning| warning.line())
+        .collect()
+}
+
+fn refusal(text: &str) -> String {
+    let deck = Deck::parse(text, "deck.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
+    deck.build().map(|_| ()).unwrap_err().to_string()
+}
+
+#[test]
+fn implausible_and_idle_values_are_warned_of() {
+    assert_eq!(warnings(BAR), [""; 0]);
+    for (replace, by, says) in [
+        (
+            "density = 1\n",
+            "density = 1e18\n",
+            "deck.toml:7:11: the density is 1.000e18 kg/m³",
+        ),
+        (
+            "density = 1\nyoungs_modulus = 1",
+            "density = 2700\nyoungs_modulus = 70",
+            "Young's modulus is 70.0 Pa",
+        ),
+        (
+            "length = 10\nspacing = 1\n",
+            "length = 1e-13\nspacing = 1e-14\n",
+            "the spacing is 0.0100 pm",
+        ),
+        (
+            "body_force = 1",
+            "body_force = 0",
+            "nothing acts on the body",
+        ),
+        (
+            "horizon = 3",
+            "horizon = 3\nno_fail = \"left\"",
+            "`material.no_fail` has no effect",
+        ),
+        (
+            "horizon = 3",
+            "horizon = 3\ndamage = { measure = \"count\" }",
+            "`material.damage` has no effect",
+        ),
+        (
+            "[time]",
+            "[output]\nfragments = { count = 2 }\n[time]",
+            "`output.fragments` has no effect",
+        ),
+        (
+            "spacing = 1\n",
+            "spacing = 1\nhole = [{ ball = { centre = 50, radius = 1 } }]\n",
+            "deck.toml:6:9: this hole contains no cell centre",
+        ),
+    ] {
+        assert_eq!(BAR.matches(replace).count(), 1, "{replace}");
+        let deck = BAR.replace(replace, by).replace(
+            "horizon = 3",
+            if by.contains("1e-14") {
+                "horizon = 3e-14"
+            } else {
+                "horizon = 3"
+            },
+        );
+        let found = warnings(&deck);
+        assert!(
+            found.iter().any(|warning| warning.contains(says)),
+            "{says}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn holes_that_take_something_are_not_warned_of() {
+    let hole = |ball: &str| {
+        PLATE.replace(
+            "spacing = 0.02\n",
+            &format!("spacing = 0.02\nhole = [{{ ball = {{ centre = {ball} }} }}]\n"),
+        )
+    };
+    let found = warnings(&hole("[0.2, 0.2], radius = 0.05"));
+    assert!(
+        found
+            .iter()
+            .all(|warning| !warning.contains("no cell centre")),
+        "{found:?}"
+    );
+    let found = warnings(&hole("[0.2, 0.2], radius = 1e-3"));
+    assert!(
+        found
+            .iter()
+            .any(|warning| warning.contains("no cell centre")),
+        "{found:?}"
+    );
+    let sides = hole("[0.2, 0.2], radius = 1e-3")
+        .replace("spacing = 0.02", "spacing = [0.02, 0.025]")
+        .replace("horizon_ratio = 4.025", "horizon = 0.1");
+    let found = warnings(&sides);
+    assert!(
+        found
+            .iter()
+            .any(|warning| warning.contains("no cell centre")),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_thin_fine_set_is_named() {
+    let deck = PLATE.replace(
+        "end = 1",
+        "end = 1\nscheme = \"rk4-mts\"\nratio = 4\nfine = \"tip\"",
+    );
+    let message = refusal(&deck);
+    assert!(
+        message.contains("the fine set `tip` is 60.0 mm thick along x; it must be at least as thick as its longest bond, 89.4 mm"),
+        "{message}"
+    );
+    assert!(message.starts_with("deck.toml:20:8:"), "{message}");
+}
+
+#[test]
+fn stress_goes_with_two_time_steps() {
+    let deck = PLATE
+        .replace("0.45", "0.3")
+        .replace("end = 1", "end = 1\nscheme = \"rk4-mts\"\nratio = 4\nfine = \"tip\"\n[output]\nfields = { names = [\"Stress\"] }");
+    // It is built at all.
+    warnings(&deck);
+    let periodic = BAR
+        .replace("spacing = 1\n", "spacing = 1\nperiodic = true\n")
+        .replace("density", "model = \"linear\"\ndensity")
+        .replace(
+            "[time]",
+            "[output]\nfields = { names = [\"Strain\"] }\n[time]",
+        );
+    let message = refusal(&periodic);
+    assert_eq!(
+        message,
+        "deck.toml:18:20: the fields Stress and Strain are not available here: periodic bodies keep no list of bonds; leave these fields out"
+    );
+}
+
+#[test]
+fn the_trigonometric_scheme_names_what_a_surface_lacks() {
+    let deck = r#"
+[body]
+shape = "icosphere"
+level = 1
+radius = 1
+[material]
+density = 1
+alpha = 0.5
+p = 3
+horizon = 0.9
+[[initial]]
+random_velocity = { radius = 0.1, seed = 3 }
+[time]
+end = 1
+dt = 0.1
+scheme = "trigonometric"
+"#;
+    let message = refusal(deck);
+    assert!(
+        message.contains(
+            "trigonometric cannot step this body: its forces have no linear part at rest"
+        ),
+        "{message}"
+    );
+    assert!(message.starts_with("deck.toml:16:10:"), "{message}");
+}
+
+#[test]
+fn far_bodies_and_odd_sides_are_refused_with_what_fits() {
+    let far = BAR.replace(
+        "spacing = 1\n",
+        "spacing = 1\norigin = -9223372036854775808\n",
+    );
+    for quadrature in ["", "quadrature = \"gauss\"\n"] {
+        let deck = far.replace(
+            "[material]",
+            &format!("{quadrature}[material]\nmodel = \"linear\""),
+        );
+        let message = refusal(&deck);
+        assert!(message.starts_with("deck.toml:6:10: the body reaches 9.22e18 m from the origin, where double precision resolves"), "{message}");
+    }
+    let message = refusal(&PLATE.replace("spacing = 0.02", "spacing = 0.018"));
+    assert!(message.contains("the nearest sides that are: 990 mm and 1.008 m; with these sides spacings of 17.85714 mm and 18.51852 mm fit"), "{message}");
+}
+
+#[test]
+fn periodic_bars_have_no_absorbing_ends() {
+    let deck = BAR
+        .replace("spacing = 1\n", "spacing = 1\nperiodic = true\n")
+        .replace("density", "model = \"linear\"\ndensity")
+        .replace(
+            "[time]",
+            "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\n[time]",
+        );
+    let message = refusal(&deck);
+    assert_eq!(
+        message,
+        "deck.toml:17:1: absorbing end: a periodic bar has no end that could absorb waves; leave out `periodic` or the absorbing boundary"
+    );
+}

@@ -1,0 +1,65 @@
+//! Decks assembled, with their warnings in their texts.
+#![allow(dead_code)] // each test uses its part
+
+use std::ops::Deref;
+
+use pericles::Simulation;
+use pericles::material::BondConstants;
+use pericles_deck::{Deck, DeckError, Warning};
+use pericles_run::{Assembly, Resources, build};
+
+/// The assembly of a deck.
+pub struct Built {
+    pub assembly: Assembly,
+    pub warnings: Vec<Warning>,
+}
+
+impl Deref for Built {
+    type Target = Assembly;
+
+    fn deref(&self) -> &Assembly {
+        &self.assembly
+    }
+}
+
+impl Built {
+    /// The constants of the bonds.
+    pub fn constants(&self) -> &BondConstants {
+        self.assembly.constants.as_ref().unwrap()
+    }
+
+    /// The run; observers are still to be added.
+    pub fn simulation(self) -> Simulation {
+        self.assembly.simulation()
+    }
+}
+
+/// What tests ask of a deck.
+pub trait Build {
+    /// Assembles the deck without cache and files.
+    fn build(&self) -> Result<Built, DeckError> {
+        self.build_with(Resources::default())
+    }
+
+    /// Assembles the deck.
+    fn build_with(&self, resources: Resources<'_>) -> Result<Built, DeckError>;
+
+    /// What is odd about its waves.
+    fn judge_waves(&self, assembly: &Assembly) -> Vec<Warning>;
+}
+
+impl Build for Deck {
+    fn build_with(&self, resources: Resources<'_>) -> Result<Built, DeckError> {
+        let assembly = build(self, &resources)?;
+        let located = |warning: &_| self.located(Clone::clone(warning));
+        Ok(Built {
+            warnings: assembly.warnings.iter().map(located).collect(),
+            assembly,
+        })
+    }
+
+    fn judge_waves(&self, assembly: &Assembly) -> Vec<Warning> {
+        let warnings = assembly.judge_waves(&self.model).into_iter();
+        warnings.map(|warning| self.located(warning)).collect()
+    }
+}
