@@ -44,6 +44,7 @@ mod audit;
 mod build;
 mod cancel;
 mod checkpoint;
+pub mod composition;
 pub mod convergence;
 mod deadline;
 mod deck_text;

@@ -18,7 +18,7 @@ pub enum LatticeScheme {
 
 impl LatticeScheme {
     /// The kinds of steps that have a symbol known here.
-    pub const KINDS: &[StepKind] = &[StepKind::EndOfStep, StepKind::Middle];
+    pub const KINDS: &'static [StepKind] = &[StepKind::EndOfStep, StepKind::Middle];
 
     /// That of a kind of step; none for those that ends cannot follow.
     pub fn of(kind: StepKind) -> Option<Self> {

@@ -1,0 +1,296 @@
+//! What works together: the schemes and what they need, the forms of forces and what they offer. Refusals follow from the same lists, and the tables of the book are written by [`tables`].
+
+use std::fmt::Write;
+
+use pericles::time::{
+    AdaptiveRungeKutta, DiscreteGradient, Implicit, InnerSolver, MultiTimeStep, Relaxation, Respa,
+};
+use pericles::{Need, Requirement, StepKind};
+use pericles_waves::Trigonometric;
+use pericles_waves::absorbing::LatticeScheme;
+
+/// A scheme, or several with the same needs.
+#[derive(Debug, Clone, Copy)]
+pub struct Scheme {
+    /// In words.
+    pub words: &'static str,
+    /// Names in decks.
+    pub names: &'static [&'static str],
+    /// Where within a step it takes the forces.
+    pub kind: StepKind,
+    /// What it needs of a system.
+    pub requirements: &'static [Requirement],
+}
+
+/// A form in which forces are computed.
+#[derive(Debug, Clone, Copy)]
+pub struct Form {
+    /// In words.
+    pub words: &'static str,
+    /// The word in decks.
+    pub name: &'static str,
+    /// The needs of schemes that its forces meet.
+    pub offers: &'static [Need],
+}
+
+/// Needs that concern the form of forces.
+const OF_FORMS: [Need; 3] = [Need::DoublePrecision, Need::FiniteReach, Need::SumOverBonds];
+
+/// All schemes.
+pub const SCHEMES: [Scheme; 12] = [
+    Scheme {
+        words: "velocity Verlet",
+        names: &["velocity-verlet"],
+        kind: StepKind::EndOfStep,
+        requirements: &[],
+    },
+    Scheme {
+        words: "relaxation (static states)",
+        names: &["relaxation"],
+        kind: StepKind::Stages,
+        requirements: Relaxation::REQUIREMENTS,
+    },
+    Scheme {
+        words: "Runge–Kutta of order 3 and 4",
+        names: &["rk3", "rk4"],
+        kind: StepKind::Stages,
+        requirements: &[],
+    },
+    Scheme {
+        words: "Dormand–Prince",
+        names: &["dormand-prince"],
+        kind: StepKind::Stages,
+        requirements: AdaptiveRungeKutta::REQUIREMENTS,
+    },
+    Scheme {
+        words: "Runge–Kutta with two time steps",
+        names: &["rk3-mts", "rk4-mts"],
+        kind: StepKind::Stages,
+        requirements: MultiTimeStep::REQUIREMENTS,
+    },
+    Scheme {
+        words: "r-RESPA",
+        names: &["respa"],
+        kind: StepKind::Stages,
+        requirements: Respa::REQUIREMENTS,
+    },
+    Scheme {
+        words: "Newmark: P(EC)ᵏ, Anderson",
+        names: &["newmark"],
+        kind: StepKind::Stages,
+        requirements: InnerSolver::FixedPoint.requirements(),
+    },
+    Scheme {
+        words: "Newmark: Newton–Krylov",
+        names: &["newmark"],
+        kind: StepKind::Stages,
+        requirements: InnerSolver::NewtonKrylov.requirements(),
+    },
+    Scheme {
+        words: "discrete gradient",
+        names: &["discrete-gradient"],
+        kind: StepKind::Stages,
+        requirements: DiscreteGradient::REQUIREMENTS,
+    },
+    Scheme {
+        words: "implicit midpoint",
+        names: &["implicit-midpoint"],
+        kind: StepKind::Middle,
+        requirements: Implicit::REQUIREMENTS,
+    },
+    Scheme {
+        words: "trapezoidal rule",
+        names: &["trapezoidal"],
+        kind: StepKind::Middle,
+        requirements: Implicit::REQUIREMENTS,
+    },
+    Scheme {
+        words: "trigonometric",
+        names: &["trigonometric"],
+        kind: StepKind::Flow,
+        requirements: Trigonometric::REQUIREMENTS,
+    },
+];
+
+/// All forms.
+pub const FORMS: [Form; 6] = [
+    Form {
+        words: "list of bonds (any body)",
+        name: "list",
+        offers: &OF_FORMS,
+    },
+    Form {
+        words: "stencil (grids)",
+        name: "grid",
+        offers: &OF_FORMS,
+    },
+    Form {
+        words: "stencil, single precision",
+        name: "grid-f32",
+        offers: &[],
+    },
+    Form {
+        words: "bonds of surfaces",
+        name: "surface",
+        offers: &OF_FORMS,
+    },
+    Form {
+        words: "convolution (grids, linear)",
+        name: "convolution",
+        offers: &[Need::DoublePrecision],
+    },
+    Form {
+        words: "plane waves (periodic, linear)",
+        name: "spectral",
+        offers: &[Need::DoublePrecision],
+    },
+];
+
+impl Scheme {
+    /// Why the scheme cannot step forces of a form; none if it can.
+    pub fn refusal_of_form(&self, form: &Form) -> Option<&'static str> {
+        self.refusal(|need| !OF_FORMS.contains(&need) || form.offers.contains(&need))
+    }
+
+    /// Why the scheme cannot step a system with a certain condition; none if it can.
+    pub fn refusal_of_condition(&self, condition: Condition) -> Option<&'static str> {
+        let unmet = self.refusal(|need| !condition.breaks(need));
+        let kinds = condition.kinds();
+        let kind_fits = kinds.is_empty() || kinds.contains(&self.kind);
+        match unmet {
+            None if !kind_fits => Some(condition.wants_a_kind()),
+            unmet => unmet,
+        }
+    }
+
+    fn refusal(&self, meets: impl Fn(Need) -> bool) -> Option<&'static str> {
+        let unmet = self.requirements.iter().find(|one| !meets(one.need));
+        unmet.map(|one| one.reason)
+    }
+}
+
+/// What a system may have beside its forces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Condition {
+    /// Prescribed motion.
+    Supports,
+    /// Prescribed motion that ends before the run.
+    ReleasedPoints,
+    /// Bonds that break.
+    Breaking,
+    /// Exact absorbing ends.
+    AbsorbingEnds,
+    /// Damping layers.
+    DampingLayers,
+}
+
+impl Condition {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Supports,
+        Self::ReleasedPoints,
+        Self::Breaking,
+        Self::AbsorbingEnds,
+        Self::DampingLayers,
+    ];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Supports => "prescribed motion",
+            Self::ReleasedPoints => "points that are let go",
+            Self::Breaking => "breaking",
+            Self::AbsorbingEnds => "absorbing ends",
+            Self::DampingLayers => "damping layers",
+        }
+    }
+
+    /// Whether a system with it does not meet a need.
+    fn breaks(self, need: Need) -> bool {
+        match self {
+            Self::Supports => need == Need::NoSupports,
+            Self::ReleasedPoints => matches!(need, Need::NoSupports | Need::NoReleasedPoints),
+            Self::Breaking => need == Need::NothingBreaks,
+            Self::AbsorbingEnds => need == Need::NoBoundaries,
+            Self::DampingLayers => matches!(need, Need::NoBoundaries | Need::BoundariesWithinStep),
+        }
+    }
+
+    /// The kinds of steps that it is made for; empty if any.
+    fn kinds(self) -> &'static [StepKind] {
+        match self {
+            Self::AbsorbingEnds => LatticeScheme::KINDS,
+            Self::DampingLayers => &[StepKind::EndOfStep],
+            Self::Supports | Self::ReleasedPoints | Self::Breaking => &[],
+        }
+    }
+
+    fn wants_a_kind(self) -> &'static str {
+        match self {
+            Self::AbsorbingEnds => {
+                "the kernels of an absorbing end are made for a scheme: velocity-verlet, implicit-midpoint or trapezoidal"
+            }
+            _ => "a damping layer damps the velocities of velocity-verlet",
+        }
+    }
+}
+
+/// The tables of schemes with forms and with conditions, in Markdown, with the reasons of what is refused.
+pub fn tables() -> String {
+    let mut reasons = Reasons::default();
+    let forms = FORMS.map(|form| form.words);
+    let conditions = Condition::ALL.map(Condition::words);
+    let mut text = head("scheme", &forms);
+    for scheme in &SCHEMES {
+        let cells = FORMS.each_ref().map(|form| scheme.refusal_of_form(form));
+        row(&mut text, scheme.words, &cells, &mut reasons);
+    }
+    text.push('\n');
+    text.push_str(&head("scheme", &conditions));
+    for scheme in &SCHEMES {
+        let cells = Condition::ALL.map(|condition| scheme.refusal_of_condition(condition));
+        row(&mut text, scheme.words, &cells, &mut reasons);
+    }
+    text.push('\n');
+    for (k, reason) in reasons.0.iter().enumerate() {
+        let mut sentence = reason.chars();
+        let first: String = sentence
+            .next()
+            .into_iter()
+            .flat_map(char::to_uppercase)
+            .collect();
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{}. {first}{}.", k + 1, sentence.as_str());
+    }
+    text
+}
+
+/// Reasons in the order in which they are met first.
+#[derive(Default)]
+struct Reasons(Vec<&'static str>);
+
+impl Reasons {
+    fn number(&mut self, reason: &'static str) -> usize {
+        let known = self.0.iter().position(|known| *known == reason);
+        known.unwrap_or_else(|| {
+            self.0.push(reason);
+            self.0.len() - 1
+        }) + 1
+    }
+}
+
+fn head(first: &str, columns: &[&str]) -> String {
+    let rule = "|---".repeat(columns.len() + 1);
+    format!("| {first} | {} |\n{rule}|\n", columns.join(" | "))
+}
+
+fn row(text: &mut String, words: &str, cells: &[Option<&'static str>], reasons: &mut Reasons) {
+    let _ = write!(text, "| {words} |");
+    for cell in cells {
+        let _ = match cell {
+            None => write!(text, " ✓ |"),
+            Some(reason) => write!(text, " ✗ {} |", reasons.number(reason)),
+        };
+    }
+    text.push('\n');
+}
