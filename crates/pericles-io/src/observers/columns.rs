@@ -175,10 +175,12 @@ impl HistoryColumns for EnergyBoundColumns {
 
 impl Saved for EnergyBoundColumns {
     fn save(&self, archive: &mut Archive) {
-        self.0.save(archive);
+        let Self(inequality) = self;
+        inequality.save(archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.0.restore(archive)
+        let Self(inequality) = self;
+        inequality.restore(archive)
     }
 }

@@ -25,7 +25,7 @@ pub enum Values {
     U8(Vec<u8>),
 }
 
-/// Named arrays; the file format is not this library's business.
+/// Named arrays. Their format in files is that of `pericles-io`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Archive {
     arrays: BTreeMap<String, Values>,
