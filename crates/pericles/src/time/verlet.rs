@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::{Integrator, State};
-use crate::archive::Saved;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::operator::Accepted;
@@ -92,5 +91,6 @@ fn kick(v: &mut [f64], a: &[f64], dt: f64) {
         });
 }
 
-/// The scheme carries nothing from step to step but the state.
-impl Saved for VelocityVerlet {}
+crate::saved! {
+    impl Saved for VelocityVerlet {}
+}
