@@ -43,7 +43,14 @@ impl HistoryColumns for InnerColumns {
     }
 }
 
-impl Saved for InnerColumns {}
+/// A choice of columns has no state.
+impl Saved for InnerColumns {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> Result<()> {
+        Ok(())
+    }
+}
 
 /// The distance from a known solution of a bar: the largest error over the points that count (m), the largest of that so far, and the root mean square error over that of the
 /// solution.
@@ -175,10 +182,12 @@ impl HistoryColumns for EnergyBoundColumns {
 
 impl Saved for EnergyBoundColumns {
     fn save(&self, archive: &mut Archive) {
-        self.0.save(archive);
+        let Self(inequality) = self;
+        inequality.save(archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
-        self.0.restore(archive)
+        let Self(inequality) = self;
+        inequality.restore(archive)
     }
 }

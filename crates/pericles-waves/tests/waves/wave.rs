@@ -751,18 +751,22 @@ fn the_factor_is_taken_where_it_is_cheaper() {
 
 #[test]
 fn runs_go_on_where_they_stopped() {
-    let direct = |body: &System| -> Box<dyn Integrator> {
+    let direct: Make = |body| {
         let rule = ImplicitRule::Midpoint;
         Box::new(Implicit::with_solver(rule, LinearSolver::Direct, body).unwrap())
     };
-    let series = |body: &System| trigonometric(FunctionMethod::Chebyshev, body);
-    let krylov = |body: &System| trigonometric(FunctionMethod::Lanczos, body);
-    let schemes: [&dyn Fn(&System) -> Box<dyn Integrator>; 3] = [&direct, &series, &krylov];
-    for (scheme, form) in
-        schemes
-            .into_iter()
-            .zip([ForceForm::Grid, ForceForm::List, ForceForm::Convolution])
-    {
+    let schemes: [(Make, ForceForm); 3] = [
+        (direct, ForceForm::Grid),
+        (
+            |body| trigonometric(FunctionMethod::Chebyshev, body),
+            ForceForm::List,
+        ),
+        (
+            |body| trigonometric(FunctionMethod::Lanczos, body),
+            ForceForm::Convolution,
+        ),
+    ];
+    for (scheme, form) in schemes {
         let make = || {
             let body = driven_bar(form);
             let (scheme, state) = (scheme(&body), start(&body, 0.1));

@@ -25,7 +25,7 @@ pub enum Values {
     U8(Vec<u8>),
 }
 
-/// Named arrays; the file format is not this library's business.
+/// Named arrays. Their format in files is that of `pericles-io`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Archive {
     arrays: BTreeMap<String, Values>,
@@ -33,21 +33,16 @@ pub struct Archive {
 
 /// A type that may carry state from step to step: operators (damage), boundaries, integrators, observers.
 ///
-/// Types with fields list them in [`saved!`](crate::saved). The default implementation saves nothing.
+/// Types list their fields in [`saved!`](crate::saved), those without state too. There are no default methods, so that no type is taken for one without state by mistake.
 pub trait Saved {
     /// Adds the state to the archive.
-    fn save(&self, archive: &mut Archive) {
-        let _ = archive;
-    }
+    fn save(&self, archive: &mut Archive);
 
     /// Takes the state back.
     ///
     /// # Errors
     /// [`PericlesError::BadArchive`] if an array is missing or has another size; the object is then unchanged or to be thrown away.
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let _ = archive;
-        Ok(())
-    }
+    fn restore(&mut self, archive: &Archive) -> Result<()>;
 }
 
 /// A type with state of which a run may have several: each is saved under a name of its own.

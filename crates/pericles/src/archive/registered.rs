@@ -15,7 +15,7 @@
 /// | `rebuilt` | follows from the others: when it is next needed, or by the function after `then` |
 /// | `set(value)` | has this value after a checkpoint is restored |
 ///
-/// `then |object| …` after the list is called when all fields are restored; it may refuse.
+/// A type without fields has an empty list. `then |object| …` after the list is called when all fields are restored; it may refuse.
 ///
 /// ```
 /// use pericles::{Archive, Saved, saved};

@@ -1,7 +1,6 @@
 //! Velocity Verlet.
 
 use super::{Integrator, State};
-use crate::archive::Saved;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::parallel::for_each_chunk;
@@ -76,5 +75,6 @@ fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     });
 }
 
-/// The scheme carries nothing from step to step but the state.
-impl Saved for VelocityVerlet {}
+crate::saved! {
+    impl Saved for VelocityVerlet {}
+}
