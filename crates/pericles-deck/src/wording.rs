@@ -1,19 +1,14 @@
 //! Numbers, places and lists as messages write them.
 
+use pericles::units;
+
 /// A number of things, in groups of three digits; rounded where it is an estimate that nobody would count.
 pub(crate) fn count(number: f64) -> String {
-    if number >= 1e9 {
-        return format!("{number:.1e}");
+    if (0.0..1e9).contains(&number) {
+        units::count(number.round_ties_even() as u64)
+    } else {
+        format!("{number:.1e}")
     }
-    let digits = format!("{number:.0}");
-    let mut grouped = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            grouped.push(' ');
-        }
-        grouped.push(digit);
-    }
-    grouped
 }
 
 /// A text as messages quote it: the beginning of a long one.

@@ -28,19 +28,6 @@ pub fn bytes(count: u64) -> String {
     format!("{} {unit}", significant(size / factor, 3))
 }
 
-/// A large count in groups of three digits: `1 234 567`.
-pub fn count(number: u64) -> String {
-    let digits = number.to_string();
-    let mut grouped = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            grouped.push(' ');
-        }
-        grouped.push(digit);
-    }
-    grouped
-}
-
 /// `1 thread`, `2 threads`.
 pub fn threads(number: usize) -> String {
     let ending = if number == 1 { "" } else { "s" };
@@ -55,7 +42,7 @@ pub fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio, 2))
 }
 
-pub use pericles::units::{quantity, significant};
+pub use pericles::units::{count, quantity, significant};
 
 #[cfg(test)]
 mod tests {
@@ -77,10 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_and_ratios() {
-        assert_eq!(count(0), "0");
-        assert_eq!(count(999), "999");
-        assert_eq!(count(1_234_567), "1 234 567");
+    fn ratios_and_sizes() {
         assert_eq!(percent(0.000_234_5), "0.023 %");
         assert_eq!(percent(-0.5), "-50 %");
         assert_eq!(bytes(999), "999 B");

@@ -114,6 +114,19 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// A large count in groups of three digits: `1 234 567`.
+pub fn count(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            grouped.push(' ');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
 /// 10ⁿ, the nearest number to it.
 pub fn power_of_ten(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::NAN)
@@ -202,6 +215,13 @@ mod tests {
         assert_eq!(significant(7.2e10, 3), "7.20e10");
         assert_eq!(significant(-3.0e-9, 2), "-3.0e-9");
         assert_eq!(significant(f64::NAN, 2), "NaN");
+    }
+
+    #[test]
+    fn counts_are_grouped() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(1_234_567), "1 234 567");
     }
 
     #[test]

@@ -22,14 +22,15 @@ use super::resources::Resources;
 /// from the cache of the resources if it is there, and is stored there if it is not.
 ///
 /// # Errors
-/// What the engine refuses, at the key of the model that caused it; a step that is not stable; points, grids and sets that do not belong
+/// Numbers out of their ranges; what the engine refuses, at the key of the model that caused it; a step that is not stable; points, grids and sets that do not belong
 /// together.
 pub fn assemble(
     model: &Model,
     discretisation: Discretisation,
     resources: &Resources<'_>,
 ) -> Result<Assembly, BuildError> {
-    discretisation.check()?;
+    model.check()?;
+    discretisation.check(&model.body)?;
     let assembler = Assembler { model };
     let mut warnings = discretisation.warnings.clone();
     let Discretisation {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pericles::space::{PointCloud, PointSet};
-use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning};
+use pericles_deck::{Body, BuildError, Fault, KeyPath, ModelWarning};
 use pericles_manifold::surface::Surface;
 
 use super::refusal::at_path;
@@ -59,11 +59,16 @@ impl Discretisation {
         found.map(|(_, points)| points)
     }
 
-    /// Refuses points, grids and sets that do not belong together. What [`discretise`] makes does; what a program has changed may not.
-    pub(super) fn check(&self) -> Result<(), BuildError> {
+    /// Refuses points, grids and sets that do not belong together, or not to the body. What [`discretise`] makes does; what a program has changed may not.
+    pub(super) fn check(&self, body: &Body) -> Result<(), BuildError> {
         let points = self.cloud.len();
         let refuse =
             |keys: KeyPath, reason: String| Err(at_path(keys, Fault::BadDiscretisation { reason }));
+        let (found, needed) = (self.cloud.dimension(), body.dimension());
+        if found != needed {
+            let reason = format!("the points have {found} dimensions, the body has {needed}");
+            return refuse("body".into(), reason);
+        }
         let grids = &self.grids;
         let known = |&grid: &u8| usize::from(grid) < grids.ratios.len();
         if grids.of_point.len() != points || !grids.of_point.iter().all(known) {
@@ -82,7 +87,7 @@ impl Discretisation {
             if !rising || set.last().is_some_and(|&last| last as usize >= points) {
                 let reason = format!(
                     "the set `{name}` does not hold points 0 to {} in rising order",
-                    points - 1
+                    points.saturating_sub(1)
                 );
                 return refuse(KeyPath::from("sets").key(name), reason);
             }
