@@ -83,14 +83,6 @@ impl Scheme {
             Self::MultiTimeStep3 { .. } | Self::MultiTimeStep4 { .. } | Self::Respa { .. }
         )
     }
-
-    /// Whether it does with forces of six digits: it solves nothing, judges no small differences and takes no force apart.
-    pub fn bears_rounding(&self) -> bool {
-        matches!(
-            self,
-            Self::VelocityVerlet | Self::RungeKutta3 { .. } | Self::RungeKutta4
-        )
-    }
 }
 
 /// The smaller of two time steps.

@@ -6,6 +6,7 @@ use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Implicit, InnerSolver, MultiTimeStep, Relaxation, Respa,
 };
 use pericles::{Need, Requirement, StepKind};
+use pericles_deck::Scheme as DeckScheme;
 use pericles_waves::Trigonometric;
 use pericles_waves::absorbing::LatticeScheme;
 
@@ -166,6 +167,25 @@ impl Scheme {
     fn refusal(&self, meets: impl Fn(Need) -> bool) -> Option<&'static str> {
         let unmet = self.requirements.iter().find(|one| !meets(one.need));
         unmet.map(|one| one.reason)
+    }
+}
+
+/// What the scheme of a model needs of a system.
+pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
+    match scheme {
+        DeckScheme::VelocityVerlet | DeckScheme::RungeKutta3 { .. } | DeckScheme::RungeKutta4 => {
+            &[]
+        }
+        DeckScheme::DormandPrince { .. } => AdaptiveRungeKutta::REQUIREMENTS,
+        DeckScheme::MultiTimeStep3 { .. } | DeckScheme::MultiTimeStep4 { .. } => {
+            MultiTimeStep::REQUIREMENTS
+        }
+        DeckScheme::Respa { .. } => Respa::REQUIREMENTS,
+        DeckScheme::Newmark(options) => options.solver.requirements(),
+        DeckScheme::DiscreteGradient { .. } => DiscreteGradient::REQUIREMENTS,
+        DeckScheme::Implicit { .. } => Implicit::REQUIREMENTS,
+        DeckScheme::Trigonometric(_) => Trigonometric::REQUIREMENTS,
+        DeckScheme::Relaxation(_) => Relaxation::REQUIREMENTS,
     }
 }
 

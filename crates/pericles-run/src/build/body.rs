@@ -4,9 +4,10 @@ use pericles::material::BondConstants;
 use pericles::observe::TrackedCrack;
 use pericles::operator::{BondBody, CompositeBody};
 use pericles::space::{PointCloud, PointSet};
-use pericles::{PericlesError, PointScalar};
+use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, Fault, Inclusion, KeyPath, ModelWarning, Remark, Solid, SurfaceBody,
+    BuildError, Caution, Fault, Inclusion, KeyPath, ModelWarning, Remark, Scheme, Solid,
+    SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
@@ -16,6 +17,7 @@ use super::discretisation::{Discretisation, Grids, Sets};
 use super::parts::Composition;
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;
+use crate::composition::requirements;
 
 /// Force and material of a body.
 pub(super) struct BodyParts {
@@ -214,7 +216,7 @@ impl Assembler<'_> {
                 {
                     composite.fastest_form().into()
                 }
-                ForceForm::FloatGrid if !self.model.time.scheme.bears_rounding() => {
+                ForceForm::FloatGrid if needs_doubles(&self.model.time.scheme) => {
                     return Err(at_material(PericlesError::FormNotUsable {
                         form: ForceForm::FloatGrid.name(),
                         reason: "this scheme needs forces in double precision; use \"grid\", or a Verlet or Runge–Kutta scheme with one step",
@@ -237,4 +239,10 @@ impl Assembler<'_> {
         }
         Ok((assembled, tracked))
     }
+}
+
+/// Whether a scheme needs forces in double precision.
+fn needs_doubles(scheme: &Scheme) -> bool {
+    let mut needs = requirements(scheme).iter();
+    needs.any(|one| one.need == Need::DoublePrecision)
 }

@@ -35,7 +35,7 @@ time = { end = 10, SCHEME }
 
 /// An operator: its word in decks, and the body it is tried on.
 #[derive(Clone, Copy, PartialEq)]
-enum Operator {
+pub enum Operator {
     List,
     Grid,
     FloatGrid,
@@ -48,7 +48,9 @@ use super::common::Build;
 use Operator::{Convolution, FloatGrid, Grid, List, Spectral, Surface};
 
 impl Operator {
-    fn word(self) -> &'static str {
+    pub const ALL: [Self; 6] = [List, Grid, FloatGrid, Surface, Convolution, Spectral];
+
+    pub fn word(self) -> &'static str {
         match self {
             List => "list",
             Grid => "grid",
@@ -59,7 +61,7 @@ impl Operator {
         }
     }
 
-    fn deck(self, scheme: &str) -> String {
+    pub fn deck(self, scheme: &str) -> String {
         let text = if self == Surface { SURFACE } else { PLATE };
         let periodic = if self == Spectral { "true" } else { "false" };
         text.replace("PERIODIC", periodic)
@@ -78,8 +80,8 @@ impl Operator {
 }
 
 /// A scheme: what a deck says of it, how far it may be from the reference relative to the largest displacement, and its momentum from the impulse.
-struct Scheme {
-    time: &'static str,
+pub struct Scheme {
+    pub time: &'static str,
     error: f64,
     momentum: f64,
 }
@@ -102,7 +104,7 @@ const fn two_steps(time: &'static str, error: f64) -> Scheme {
 }
 
 /// Steps of 0.05 are a twentieth of the stable one; second order leaves some 1e-4 of it.
-const ONE_STEP: [Scheme; 11] = [
+pub const ONE_STEP: [Scheme; 11] = [
     scheme("scheme = \"velocity-verlet\", dt = 0.05", 1e-3),
     scheme("scheme = \"rk3\", dt = 0.1", 1e-4),
     scheme("scheme = \"rk4\", dt = 0.1", 1e-5),
@@ -125,7 +127,7 @@ const ONE_STEP: [Scheme; 11] = [
     scheme("scheme = \"trigonometric\", dt = 0.5", 1e-6),
 ];
 
-const TWO_STEPS: [Scheme; 3] = [
+pub const TWO_STEPS: [Scheme; 3] = [
     two_steps(
         "scheme = \"rk3-mts\", ratio = 2, fine = [\"part\"], dt = 0.1",
         1e-4,
@@ -141,7 +143,7 @@ const TWO_STEPS: [Scheme; 3] = [
 ];
 
 /// The part that takes the smaller of two steps.
-const PART: &str = "sets.part = { where = \"x < 7\" }\n";
+pub const PART: &str = "sets.part = { where = \"x < 7\" }\n";
 
 fn built(text: &str) -> Result<Simulation, DeckError> {
     Ok(Deck::parse(text, "a.toml", &[])?.build()?.simulation())

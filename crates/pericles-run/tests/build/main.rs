@@ -5,6 +5,7 @@ mod common;
 #[path = "../../../pericles-deck/tests/common/mod.rs"]
 mod decks;
 
+mod compatibility;
 mod composition;
 mod conditions;
 mod ends;

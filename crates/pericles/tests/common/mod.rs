@@ -1,8 +1,6 @@
 //! Bodies that several tests share.
 #![allow(dead_code)] // each test uses its part
 
-pub mod two_pass;
-
 use std::sync::Arc;
 
 use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};

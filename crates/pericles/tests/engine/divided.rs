@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Barrier, Condvar, Mutex};
 
-use crate::common::two_pass::{Dilatational, Wall};
+use crate::state_based::{Dilatational, Wall};
 use pericles::domain::{Comm, Domain, Peer};
 use pericles::operator::TwoPassForce;
 use pericles::space::PointCloud;

@@ -13,6 +13,7 @@ mod multi_time_step;
 mod properties;
 mod round_trip;
 mod single_precision;
+mod state_based;
 mod statics;
 mod surface_correction;
 mod two_pass;

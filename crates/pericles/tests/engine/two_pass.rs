@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::boxed;
-use crate::common::two_pass::{Dilatational, Wall};
+use crate::state_based::{Dilatational, Wall};
 use pericles::boundary::{Load, TimeFunction};
 use pericles::operator::{ForceOperator, On, TwoPassForce};
 use pericles::space::PointCloud;

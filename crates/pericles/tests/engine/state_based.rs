@@ -7,7 +7,6 @@ use pericles::operator::{
     AtPoints, Capabilities, ForceOperator, InstructionSet, LocalForce, On, TwoPass,
 };
 use pericles::space::PointCloud;
-use pericles::{Archive, Saved};
 
 /// Points wanted, of n.
 fn wanted(on: &On<'_>, n: usize) -> Vec<usize> {
@@ -202,7 +201,11 @@ impl TwoPass for Dilatational {
     }
 }
 
-impl Saved for Dilatational {}
+pericles::saved! {
+    impl Saved for Dilatational {
+        points, positions, volumes, families, domain, bulk, bond: fixed,
+    }
+}
 
 /// A wall at y = 0 that pushes points below it back by k times their depth: a force beside the body's own, N/m³.
 pub struct Wall {
@@ -293,6 +296,8 @@ impl LocalForce for Wall {
     fn neighbours(&self, _i: usize, _visit: &mut dyn FnMut(usize)) {}
 }
 
-impl Saved for Wall {
-    fn save(&self, _archive: &mut Archive) {}
+pericles::saved! {
+    impl Saved for Wall {
+        heights, volumes, stiffness, domain: fixed,
+    }
 }
