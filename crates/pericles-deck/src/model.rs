@@ -118,6 +118,7 @@ pub struct Model {
 
 /// The body, with what it is made of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "a program has few models")]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Body {
     /// Points with volumes and bonds along straight lines.

@@ -1,7 +1,6 @@
 //! The serialised form of a model: that of the engine's types that it holds. Keys and words are those of decks where decks have them.
 //!
-//! [`described`](self) is the module to name in `#[serde(with = "form")]`: it serialises and deserialises every type that is [`Described`],
-//! and options, lists and boxes of such types.
+//! A field with `#[serde(with = "crate::form")]` may have any type that is [`Described`], or be an option, list, box or pair of such types.
 
 mod kernel;
 mod manifold;

@@ -74,7 +74,7 @@ impl Assembler<'_> {
             } else {
                 "they are sums over single bonds; use bonds = \"list\", \"grid\" or \"fastest\""
             };
-            return Err(at_path(&self.tensor_key(), Fault::NoTensors { reason }));
+            return Err(at_path(self.tensor_key(), Fault::NoTensors { reason }));
         }
         Ok(BodyParts {
             bonds,
@@ -186,7 +186,7 @@ impl Assembler<'_> {
             pre_crack
                 .surface
                 .cutter(pre_crack.ends, 0.0)
-                .map_err(|error| at_path(&crack(k), error.into()))?;
+                .map_err(|error| at_path(crack(k), error.into()))?;
         }
         let cloud = composite.body.cloud;
         let surfaces: Vec<_> = self
@@ -224,13 +224,13 @@ impl Assembler<'_> {
                 }
                 form => form,
             };
-            pericles_waves::assemble(&composite, form).map_err(|error| at_material(error))?
+            pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in surfaces.iter().zip(&assembled.cuts).enumerate() {
             if cut.bonds == 0 {
                 let caution = Self::useless_crack(surface, cloud);
-                warnings.push(Remark::new(&crack(k), caution));
+                warnings.push(Remark::new(crack(k), caution));
             }
             tracked.push(TrackedCrack {
                 crack: surface.clone(),

@@ -209,14 +209,14 @@ impl Assembler<'_> {
                     tolerance,
                     residual,
                 };
-                warnings.push(Remark::new(&path.key("history"), caution));
+                warnings.push(Remark::new(path.key("history"), caution));
                 end.plan.form = Some(HistoryForm::Blocked);
                 made = make(end.plan);
             }
             let (history, report) = made.map_err(refuse)?;
             if let Some(growth) = report.growth {
                 warnings.push(Remark::new(
-                    &path.key("method"),
+                    path.key("method"),
                     Caution::HistoricalKernels { growth },
                 ));
             }
@@ -231,12 +231,8 @@ impl Assembler<'_> {
                 let another = || make(end.plan).map(|(history, _)| history).map_err(refuse);
                 let histories = [another()?, another()?];
                 let wave = FreeWave::new(&stencil, steps.dt, [u, v], largest, histories);
-                let refuse = |error| {
-                    at_path(
-                        &path.key("exterior_data"),
-                        PericlesError::from(error).into(),
-                    )
-                };
+                let refuse =
+                    |error| at_path(path.key("exterior_data"), PericlesError::from(error).into());
                 made = made.with_free_wave(wave.map_err(refuse)?);
             }
             system.add_boundary(Box::new(made));

@@ -41,7 +41,7 @@ impl Assembler<'_> {
         );
         if speed > limit {
             let caution = fast("initial velocity", speed, limit, system.dimension());
-            warnings.push(Remark::new(&first("initial"), caution));
+            warnings.push(Remark::new(first("initial"), caution));
         }
         for (k, speed) in prescribed_speeds(system, steps).into_iter().enumerate() {
             if speed > limit && system.motions()[k].points.len() < system.points() {

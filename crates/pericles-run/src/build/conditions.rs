@@ -86,7 +86,7 @@ impl Assembler<'_> {
         (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
             |error| {
                 let fault = error.fault(|reason| Fault::BadInitialFile { reason, points });
-                at_path(&path.key("file"), fault)
+                at_path(path.key("file"), fault)
             },
         )
     }
@@ -194,7 +194,7 @@ impl Assembler<'_> {
                     if distance > 0.5 * diagonal * (1.0 + 1e-9) {
                         let name = probe.name.clone();
                         let caution = Caution::ProbeOutside { name, distance };
-                        warnings.push(Remark::new(&path.key("at"), caution));
+                        warnings.push(Remark::new(path.key("at"), caution));
                     }
                     vec![nearest]
                 }

@@ -87,7 +87,7 @@ impl Assembler<'_> {
                         let fault = Fault::TwoCourses {
                             text: expression.text().into(),
                         };
-                        return Err(at_path(&path.key("function"), fault));
+                        return Err(at_path(path.key("function"), fault));
                     }
                     Some(AxisMotion::Trajectory {
                         trajectory: Arc::new(self.trajectory(path, motion.kind, expression)?),

@@ -61,7 +61,7 @@ impl Assembler<'_> {
         let error = constants.stiffness_error;
         if error.abs() > BULK {
             let caution = Caution::StiffnessError { error };
-            warnings.push(Remark::new(&path.key("modulus"), caution));
+            warnings.push(Remark::new(path.key("modulus"), caution));
         }
         // Compared with the bulk stiffness that the body has.
         let error = (1.0 + constants.shear_error) / (1.0 + error) - 1.0;

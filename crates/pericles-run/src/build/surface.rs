@@ -112,7 +112,7 @@ impl Assembler<'_> {
                     "a surface is loaded by a `traction`, which acts on the area of each vertex"
                         .into(),
             };
-            return Err(at_path(&KeyPath::from("load").index(k).key(key), fault));
+            return Err(at_path(KeyPath::from("load").index(k).key(key), fault));
         }
         Ok(())
     }

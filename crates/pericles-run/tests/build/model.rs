@@ -14,8 +14,9 @@ use pericles_run::{Grids, Resources, assemble, discretise};
 use super::decks::{SURFACE, WAVE};
 use super::{PLATE, STATIC, parse};
 
-/// The model after it was written as JSON and read again.
+/// The model after it was written as JSON and read again; its numbers are in their ranges.
 fn reread(model: &Model) -> Model {
+    model.check().unwrap_or_else(|error| panic!("{error}"));
     let json = serde_json::to_string(model).unwrap_or_else(|error| panic!("{error}"));
     serde_json::from_str(&json).unwrap_or_else(|error| panic!("{error}\n{json}"))
 }

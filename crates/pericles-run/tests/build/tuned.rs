@@ -27,7 +27,7 @@ fn deck(lines: &str) -> Result<Deck, String> {
 }
 
 fn values(deck: &Deck) -> Vec<f64> {
-    match &solid(&deck).material.bonds.influence.function {
+    match &solid(deck).material.bonds.influence.function {
         InfluenceFunction::Classes(table) => table.entries().iter().map(|entry| entry.1).collect(),
         other => panic!("{other:?}"),
     }
