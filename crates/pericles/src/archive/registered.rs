@@ -2,8 +2,8 @@
 
 /// Implements [`Saved`](crate::Saved) for a type from the list of all its fields.
 ///
-/// Saving and restoring are made of the one list, and both take the type apart without `..`: a field that the list leaves out does not compile. After each field, or several fields with commas
-/// between, the list says how it goes through a checkpoint:
+/// Saving and restoring are made of the one list. A list without one of the fields does not compile; the error names the field. After each field, or several fields with commas between, the
+/// list says how it goes through a checkpoint:
 ///
 /// | | the field |
 /// |---|---|
@@ -51,7 +51,7 @@
 ///
 /// A list without one of the fields is an error:
 ///
-/// ```compile_fail,E0027
+/// ```compile_fail,E0063
 /// struct Careful {
 ///     step: f64,
 ///     failed: u64,
@@ -118,17 +118,18 @@ macro_rules! saved {
             type Number = $number;
 
             fn count(&self) -> usize {
-                let Self { $($field),+ } = self;
+                let _every_field = |_all: Self| Self { $($field: _all.$field),+ };
+                let Self { $($field),+, .. } = self;
                 0 $(+ $crate::archive::Entry::count($field))+
             }
 
             fn append_to(&self, array: &mut ::std::vec::Vec<$number>) {
-                let Self { $($field),+ } = self;
+                let Self { $($field),+, .. } = self;
                 $($crate::archive::Entry::append_to($field, array);)+
             }
 
             fn take_from<'a>(&mut self, array: &'a [$number]) -> &'a [$number] {
-                let Self { $($field),+ } = self;
+                let Self { $($field),+, .. } = self;
                 $(let array = $crate::archive::Entry::take_from($field, array);)+
                 array
             }
@@ -149,19 +150,20 @@ macro_rules! saved {
         $crate::saved! { @impl [] $($rest)* }
     };
 
-    // Implementations.
+    // Implementations. A closure that is never called makes the type of the listed fields: it is there for its error, which names those that are missing.
     (@impl [$($generics:tt)*] Saved for $type:ty {
         $($($field:ident),+: $how:ident $(($($what:tt)*))?),* $(,)?
     } $(then $then:expr)?) => {
         impl<$($generics)*> $crate::Saved for $type {
             fn save(&self, archive: &mut $crate::Archive) {
-                let Self { $($($field),+),* } = self;
+                let _every_field = |_all: Self| Self { $($($field: _all.$field),+),* };
+                let Self { $($($field,)+)* .. } = self;
                 $($crate::saved! { @save archive [$($field),+] $how $(($($what)*))? })*
                 let _ = archive;
             }
 
             fn restore(&mut self, archive: &$crate::Archive) -> $crate::Result<()> {
-                let Self { $($($field),+),* } = self;
+                let Self { $($($field,)+)* .. } = self;
                 $($crate::saved! { @restore archive [$($field),+] $how $(($($what)*))? })*
                 $(
                     let then: fn(&mut Self) -> $crate::Result<()> = $then;
@@ -177,7 +179,8 @@ macro_rules! saved {
     } $(then $then:expr)?) => {
         impl<$($generics)*> $crate::archive::SavedUnder for $type {
             fn save_under(&self, $name: &str, archive: &mut $crate::Archive) {
-                let Self { $($($field),+),* } = self;
+                let _every_field = |_all: Self| Self { $($($field: _all.$field),+),* };
+                let Self { $($($field,)+)* .. } = self;
                 $($crate::saved! { @save archive [$($field),+] $how $(($($what)*))? })*
             }
 
@@ -186,7 +189,7 @@ macro_rules! saved {
                 $name: &str,
                 archive: &$crate::Archive,
             ) -> $crate::Result<()> {
-                let Self { $($($field),+),* } = self;
+                let Self { $($($field,)+)* .. } = self;
                 $($crate::saved! { @restore archive [$($field),+] $how $(($($what)*))? })*
                 $(
                     let then: fn(&mut Self) -> $crate::Result<()> = $then;
