@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use clock::cpu_seconds;
 use pericles::bench::read;
-use pericles::operator::{ForceOperator, InstructionSet, On};
+use pericles::operator::{Force, InstructionSet, On};
 use pericles_manifold::force::{DisplacementBond, Exponent, HalfInteger, SurfaceBody};
 use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
 use pericles_manifold::surface::{AreaRule, Surface};

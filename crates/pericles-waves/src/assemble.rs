@@ -2,7 +2,7 @@
 
 use pericles::family::Cut;
 use pericles::material::PairLaw;
-use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody, ForceOperator};
+use pericles::operator::{AssembledBonds, BondBody, BondForm, CompositeBody, Force};
 use pericles::{PericlesError, Result};
 
 use crate::linear::{
@@ -66,7 +66,7 @@ impl From<BondForm> for ForceForm {
 /// A force operator, and what each pre-crack removed from it.
 pub struct AssembledForce {
     /// The operator.
-    pub operator: Box<dyn ForceOperator>,
+    pub operator: Box<dyn Force>,
     /// One for each pre-crack.
     pub cuts: Vec<Cut>,
     /// The form taken, never [`ForceForm::Fastest`].
@@ -138,10 +138,7 @@ fn convolution_is_fastest(body: &BondBody<'_>) -> bool {
 }
 
 /// A form without bonds: plane waves, else a convolution.
-fn transform<const D: usize>(
-    body: &BondBody<'_>,
-    form: ForceForm,
-) -> Result<Box<dyn ForceOperator>> {
+fn transform<const D: usize>(body: &BondBody<'_>, form: ForceForm) -> Result<Box<dyn Force>> {
     let (name, periodic) = (form.name(), body.cloud.is_periodic());
     if !body.stiffness.is_empty() {
         return refuse(
@@ -181,7 +178,7 @@ fn transform<const D: usize>(
     })
 }
 
-fn cubic(body: &BondBody<'_>) -> Result<Box<dyn ForceOperator>> {
+fn cubic(body: &BondBody<'_>) -> Result<Box<dyn Force>> {
     if !body.stiffness.is_empty() || !body.cracks.is_empty() {
         return refuse(
             ForceForm::Spectral.name(),

@@ -1,8 +1,6 @@
 //! The bonds of a lattice on a periodic box.
 
-use pericles::operator::{
-    Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, On,
-};
+use pericles::operator::{Capabilities, Force, InstructionSet, LinearOperator, Linearity, On};
 use pericles::parallel::{BLOCK, components, components_mut, for_each_block};
 use pericles::sum::sum;
 use pericles::{PericlesError, Result};
@@ -168,7 +166,7 @@ impl PeriodicForce {
     }
 }
 
-impl ForceOperator for PeriodicForce {
+impl Force for PeriodicForce {
     fn points(&self) -> usize {
         self.points
     }

@@ -8,7 +8,7 @@ use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, LinearBond, Modulus,
     PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForce, BondForm, DamageMeasure, ForceOperator, On};
+use pericles::operator::{BondBody, BondForce, BondForm, DamageMeasure, Force, On};
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles_dispersion::spectrum::{PeriodicForce, SpectrumRun, measure};
 use pericles_dispersion::tuning::{

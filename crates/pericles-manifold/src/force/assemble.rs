@@ -11,7 +11,7 @@ use crate::geodesic::GeodesicPairs;
 use crate::surface::Surface;
 use crate::{PowerMaterial, SurfaceBond};
 use pericles::Result;
-use pericles::operator::ForceOperator;
+use pericles::operator::Force;
 use pericles::space::PointCloud;
 
 /// A surface of one material: all that its operator is made of.
@@ -36,7 +36,7 @@ impl SurfaceBody<'_> {
     ///
     /// # Errors
     /// What [`PowerMaterial::check`] refuses.
-    pub fn operator(&self) -> Result<Box<dyn ForceOperator>> {
+    pub fn operator(&self) -> Result<Box<dyn Force>> {
         self.material.check()?;
         Ok(match self.material.p {
             2.0 => self.with_exponent(HalfInteger::<0, 0>),
@@ -51,7 +51,7 @@ impl SurfaceBody<'_> {
         })
     }
 
-    fn with_exponent<E: Exponent>(&self, exponent: E) -> Box<dyn ForceOperator> {
+    fn with_exponent<E: Exponent>(&self, exponent: E) -> Box<dyn Force> {
         match self.material.bond {
             SurfaceBond::Displacement => Box::new(self.force(DisplacementBond(exponent))),
             SurfaceBond::Chord => Box::new(self.force(ChordBond(exponent))),

@@ -9,11 +9,11 @@
 //!
 //! A bond costs a load of 12 bytes and of its neighbour's row: about 1.1 ns for p = 2 and 1.2 ns for p = 3 with AVX-512 (Xeon of family 6, model 207, one thread; reading 12 bytes a bond and nothing else takes 1.1), where the
 //! memory is the limit. `cargo bench -p pericles-manifold --bench surface` measures it beside the memory's bandwidth. Surfaces can be taken apart by zones
-//! ([`ZonedForce`](pericles::operator::ZonedForce)), so schemes with two time steps serve them too.
+//! ([`LocalForce`](pericles::operator::LocalForce), [`SplitForce`](pericles::operator::SplitForce)), so schemes with two time steps serve them too.
 //!
 //! ```
 //! use std::sync::Arc;
-//! use pericles::operator::ForceOperator;
+//! use pericles::operator::Force;
 //! use pericles_manifold::force::SurfaceBody;
 //! use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
 //! use pericles_manifold::surface::{AreaRule, Surface};

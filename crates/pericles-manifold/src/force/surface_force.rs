@@ -14,8 +14,8 @@ use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;
 use pericles::operator::{
-    Breakable, Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, LocalForce,
-    On, SplitForce,
+    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce, On,
+    SplitForce,
 };
 use pericles::operator::{CoarseBreak, each_once};
 use pericles::parallel::{BLOCK, components_mut, for_each_block};
@@ -126,7 +126,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
     }
 }
 
-impl<L: SurfaceLaw> ForceOperator for SurfaceForce<L> {
+impl<L: SurfaceLaw> Force for SurfaceForce<L> {
     fn points(&self) -> usize {
         self.cloud.len()
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pericles::PericlesError;
 use pericles::cache::Cache;
-use pericles::operator::ForceOperator;
+use pericles::operator::Force;
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Fault, KeyPath, LoadAmplitude, SurfaceBody, SurfaceShape, VertexAreas,
@@ -72,7 +72,7 @@ impl Assembler<'_> {
         cloud: &Arc<PointCloud>,
         sets: &Sets,
         cache: &dyn Cache,
-    ) -> Result<Box<dyn ForceOperator>, BuildError> {
+    ) -> Result<Box<dyn Force>, BuildError> {
         let pairs = deck
             .ball
             .pairs(surface, deck.material.horizon, deck.method, cache)

@@ -15,7 +15,7 @@ use pericles::family::{Crack, VolumeCorrection};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
-    Capabilities, ForceOperator, InstructionSet, LatticeSprings, LinearOperator, Linearity, On,
+    Capabilities, Force, InstructionSet, LatticeSprings, LinearOperator, Linearity, On,
 };
 use pericles::parallel::{components, components_mut};
 use pericles::space::{Lattice, PointCloud};
@@ -264,7 +264,7 @@ impl<const D: usize> LinearOperator for ConvolutionForce<D> {
     }
 }
 
-impl<const D: usize> ForceOperator for ConvolutionForce<D> {
+impl<const D: usize> Force for ConvolutionForce<D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }

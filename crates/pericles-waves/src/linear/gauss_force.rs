@@ -9,9 +9,7 @@ use super::{refuse, require_convolution};
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
-use pericles::operator::{
-    Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, On,
-};
+use pericles::operator::{Capabilities, Force, InstructionSet, LinearOperator, Linearity, On};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
 
@@ -201,7 +199,7 @@ impl LinearOperator for GaussForce {
     }
 }
 
-impl ForceOperator for GaussForce {
+impl Force for GaussForce {
     fn points(&self) -> usize {
         self.cloud.len()
     }

@@ -9,7 +9,7 @@ use pericles::material::{
     BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, LinearBond, Modulus,
     PairForce, PairLaw, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, ForceOperator, LinearOperator, On};
+use pericles::operator::{BondForce, DamageMeasure, Force, LinearOperator, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles_waves::linear::NoConvolution;
 use pericles_waves::linear::{ConvolutionForce, Ends, Route, Toeplitz};

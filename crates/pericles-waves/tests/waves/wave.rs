@@ -9,7 +9,7 @@ use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, ForceOperator, LinearOperator, Linearisation};
+use pericles::operator::{BondBody, Force, LinearOperator, Linearisation};
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{Implicit, ImplicitRule, Integrator, LinearSolver, State, VelocityVerlet};
@@ -81,11 +81,7 @@ fn state_of(cloud: &PointCloud) -> StressState {
     ][cloud.dimension() - 1]
 }
 
-fn bonds(
-    cloud: &Arc<PointCloud>,
-    material: &BondMaterial,
-    form: ForceForm,
-) -> Box<dyn ForceOperator> {
+fn bonds(cloud: &Arc<PointCloud>, material: &BondMaterial, form: ForceForm) -> Box<dyn Force> {
     let constants = material.constants(cloud, state_of(cloud)).unwrap();
     let body = BondBody::new(cloud, material, &constants);
     pericles_waves::assemble(&body.into(), form)
@@ -93,7 +89,7 @@ fn bonds(
         .operator
 }
 
-fn system(cloud: &Arc<PointCloud>, operator: Box<dyn ForceOperator>) -> System {
+fn system(cloud: &Arc<PointCloud>, operator: Box<dyn Force>) -> System {
     System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap()
 }
 

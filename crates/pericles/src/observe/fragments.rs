@@ -1,6 +1,6 @@
 //! Fragments: what the bonds that are left hold together.
 
-use crate::operator::ForceOperator;
+use crate::operator::Force;
 
 /// The pieces of a body: two points belong to one piece if a chain of bonds that are left joins them. One bond is enough, so that pieces which hang together by a thread count
 /// as one. Cost: a pass over all bonds (10 ns each on one core) and 4 bytes a point.
@@ -29,7 +29,7 @@ pub struct FragmentCount {
 
 impl Fragments {
     /// The pieces of a body whose bonds can break.
-    pub fn of(operator: &dyn ForceOperator) -> Self {
+    pub fn of(operator: &dyn Force) -> Self {
         let mut first: Vec<u32> = (0..operator.points() as u32).collect();
         if let Some(breaking) = operator.capabilities().breaking {
             breaking.for_each_intact(&mut |i, j| {

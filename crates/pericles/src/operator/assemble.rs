@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{BondForce, BondForm, Breaking, DamageMeasure, FastLaw, ForceOperator, GridForce};
+use super::{BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force, GridForce};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule};
 use crate::lanes::LANES;
@@ -34,7 +34,7 @@ pub struct BondBody<'a> {
 /// An operator, and what each pre-crack removed from it.
 pub struct AssembledBonds {
     /// The operator.
-    pub operator: Box<dyn ForceOperator>,
+    pub operator: Box<dyn Force>,
     /// One for each pre-crack.
     pub cuts: Vec<Cut>,
     /// The form taken, never [`BondForm::Fastest`].
@@ -171,7 +171,7 @@ impl BondBody<'_> {
             BondForm::Fastest => self.fastest_form(),
             chosen => chosen,
         };
-        let (operator, cuts): (Box<dyn ForceOperator>, _) = match form {
+        let (operator, cuts): (Box<dyn Force>, _) = match form {
             _ if self.cloud.is_periodic() => {
                 return Err(PericlesError::FormNotUsable {
                     form: form.name(),

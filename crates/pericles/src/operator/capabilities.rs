@@ -1,6 +1,6 @@
 //! What a force can do beside computing forces, each a trait of its own.
 
-use super::{BondView, Breakable, ForceOperator, LinearOperator, LocalForce, SplitForce};
+use super::{BondView, Breakable, Force, LinearOperator, LocalForce, SplitForce};
 
 /// The capabilities of a force; schemes, boundaries and observers ask for those that they need, and are refused where one is missing.
 #[derive(Default, Clone, Copy)]
@@ -31,7 +31,7 @@ pub enum Linearity<'a> {
     Exact(&'a dyn LinearOperator),
 }
 
-impl dyn ForceOperator + '_ {
+impl dyn Force + '_ {
     /// Whether the force is linear in the displacement as long as no bond breaks, computed in whatever precision.
     pub fn is_linear(&self) -> bool {
         !matches!(self.capabilities().linear, Linearity::Nonlinear)

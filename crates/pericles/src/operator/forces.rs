@@ -1,8 +1,8 @@
 //! Several forces on one body.
 
 use super::{
-    BondAt, BondView, Breakable, Capabilities, CoarseBreak, ForceOperator, InstructionSet,
-    LinearOperator, Linearity, LocalForce, On, SplitForce,
+    BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, LinearOperator,
+    Linearity, LocalForce, On, SplitForce,
 };
 use crate::archive::{Archive, Saved};
 use crate::error::{PericlesError, Result};
@@ -12,12 +12,12 @@ use crate::step_end::StepEnd;
 ///
 /// It can do what all of them can; it can break where one of them can.
 pub struct Forces {
-    list: Vec<Box<dyn ForceOperator>>,
+    list: Vec<Box<dyn Force>>,
 }
 
 impl Forces {
     /// One force.
-    pub fn new(force: Box<dyn ForceOperator>) -> Self {
+    pub fn new(force: Box<dyn Force>) -> Self {
         Self { list: vec![force] }
     }
 
@@ -25,7 +25,7 @@ impl Forces {
     ///
     /// # Errors
     /// A force on another number of points, or in another dimension.
-    pub fn add(&mut self, force: Box<dyn ForceOperator>) -> Result<()> {
+    pub fn add(&mut self, force: Box<dyn Force>) -> Result<()> {
         let (points, dimension) = (force.points(), force.dimension());
         if points != self.points() || dimension != self.dimension() {
             return Err(PericlesError::ForceOfAnotherBody {
@@ -40,7 +40,7 @@ impl Forces {
     }
 
     /// The sum of all forces; a force that is alone stands for itself.
-    pub fn sum(&self) -> &dyn ForceOperator {
+    pub fn sum(&self) -> &dyn Force {
         match &self.list[..] {
             [one] => &**one,
             _ => self,
@@ -48,7 +48,7 @@ impl Forces {
     }
 
     /// The same, to be changed.
-    pub fn sum_mut(&mut self) -> &mut dyn ForceOperator {
+    pub fn sum_mut(&mut self) -> &mut dyn Force {
         if self.list.len() == 1 {
             return &mut *self.list[0];
         }
@@ -56,7 +56,7 @@ impl Forces {
     }
 
     /// The forces one by one.
-    pub fn iter(&self) -> impl Iterator<Item = &dyn ForceOperator> {
+    pub fn iter(&self) -> impl Iterator<Item = &dyn Force> {
         self.list.iter().map(|force| &**force)
     }
 
@@ -79,7 +79,7 @@ impl Forces {
     }
 }
 
-impl ForceOperator for Forces {
+impl Force for Forces {
     fn points(&self) -> usize {
         self.list[0].points()
     }
@@ -106,7 +106,7 @@ impl ForceOperator for Forces {
 
     /// ω² of a sum of stiffnesses is at most the sum of their ω².
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
-        let square = |force: &Box<dyn ForceOperator>| force.frequency_bound(density).powi(2);
+        let square = |force: &Box<dyn Force>| force.frequency_bound(density).powi(2);
         self.list.iter().map(square).sum::<f64>().sqrt()
     }
 
@@ -291,7 +291,7 @@ impl LinearOperator for Forces {
     }
 
     fn half_bandwidth(&self) -> Option<usize> {
-        let width = |force: &dyn ForceOperator| match force.capabilities().linear {
+        let width = |force: &dyn Force| match force.capabilities().linear {
             Linearity::Exact(linear) => linear.half_bandwidth(),
             _ => None,
         };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, ForceOperator};
+use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
@@ -147,7 +147,7 @@ impl GradedBody<'_> {
             },
             self.damage,
         );
-        let operator: Box<dyn ForceOperator> = Box::new(force);
+        let operator: Box<dyn Force> = Box::new(force);
         Ok(AssembledBonds {
             operator,
             cuts,

@@ -1,20 +1,20 @@
 //! The linearisation of a force about a displacement.
 
-use super::{ForceOperator, LinearOperator, On};
+use super::{Force, LinearOperator, On};
 use crate::sum::sum;
 
 /// d ↦ f′(u₀) d, the force density's derivative at u₀; about the reference state of any bond-based law it is the linear law's operator.
 ///
 /// The force itself is f(u₀) + f′(u₀)(u − u₀) but for an error of second order in the relative displacements, which [`Linearisation::model_error`] measures.
 pub struct Linearisation<'a> {
-    operator: &'a dyn ForceOperator,
+    operator: &'a dyn Force,
     about: Vec<f64>,
     force: Vec<f64>,
 }
 
 impl<'a> Linearisation<'a> {
     /// Of a force about the displacement `about`, m.
-    pub fn new(operator: &'a dyn ForceOperator, about: Vec<f64>) -> Self {
+    pub fn new(operator: &'a dyn Force, about: Vec<f64>) -> Self {
         let mut force = vec![0.0; about.len()];
         operator.add_force(0.0, &about, On::All, &mut force);
         Self {

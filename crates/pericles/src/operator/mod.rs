@@ -58,7 +58,7 @@ use crate::step_end::StepEnd;
 /// A force density on the points of a body as a function of their displacements.
 ///
 /// What a force must do is small; what it can do beside that it says by its [`Capabilities`]. A point's force does not depend on which points are evaluated together.
-pub trait ForceOperator: Saved + Send + Sync {
+pub trait Force: Saved + Send + Sync {
     /// Number of points.
     fn points(&self) -> usize;
 

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
-    Breakable, Capabilities, ForceOperator, InstructionSet, LinearOperator, Linearity, LocalForce,
-    On,
+    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce, On,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -25,7 +24,7 @@ pub struct AtPoints<'a> {
 /// A force density whose bonds depend on what other bonds of their ends do, such as those of state-based materials: the dilatation of a point, or a tensor, comes from all of its bonds, and the force of a bond
 /// from the values at both of its ends.
 ///
-/// [`TwoPassForce`] makes a [`ForceOperator`] of it: it runs the passes in turn, on the points that are needed, and exchanges what they leave where a body is divided among processes.
+/// [`TwoPassForce`] makes a [`Force`] of it: it runs the passes in turn, on the points that are needed, and exchanges what they leave where a body is divided among processes.
 pub trait TwoPass: Saved + Send + Sync {
     /// How many values the pass over points leaves at each point.
     fn values_per_point(&self) -> usize;
@@ -45,7 +44,7 @@ pub trait TwoPass: Saved + Send + Sync {
     /// Adds the elastic energy density, J/m³.
     fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]);
 
-    /// As [`ForceOperator::frequency_bound`].
+    /// As [`Force::frequency_bound`].
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64;
 
     /// Whether the force is linear in the displacement as long as no bond breaks.
@@ -78,7 +77,7 @@ pub trait TwoPass: Saved + Send + Sync {
     fn bytes(&self) -> usize;
 }
 
-/// The [`ForceOperator`] of a force in two passes.
+/// The [`Force`] of a force in two passes.
 pub struct TwoPassForce<F: TwoPass> {
     force: F,
     cloud: Arc<PointCloud>,
@@ -132,7 +131,7 @@ impl<F: TwoPass> TwoPassForce<F> {
     }
 }
 
-impl<F: TwoPass> ForceOperator for TwoPassForce<F> {
+impl<F: TwoPass> Force for TwoPassForce<F> {
     fn points(&self) -> usize {
         self.cloud.len()
     }

@@ -14,10 +14,10 @@ pub trait LocalForce {
 ///
 /// Every method is the same for both ends of a bond, so that zones cut a body without changing the force between its parts.
 pub trait SplitForce {
-    /// [`ForceOperator::add_force`](super::ForceOperator::add_force) of the bonds whose other end is marked in `partners` (one mark per point).
+    /// [`Force::add_force`](super::Force::add_force) of the bonds whose other end is marked in `partners` (one mark per point).
     fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]);
 
-    /// [`ForceOperator::end_step`](super::ForceOperator::end_step) of the bonds whose other end is marked in `partners`; the others are neither
+    /// [`Force::end_step`](super::Force::end_step) of the bonds whose other end is marked in `partners`; the others are neither
     /// decided nor summed.
     fn end_step_from(&mut self, step: &StepEnd<'_>, on: On<'_>, partners: &[bool], out: &mut [f64]);
 }

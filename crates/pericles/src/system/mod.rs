@@ -10,7 +10,7 @@ use crate::archive::Counter;
 use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
-use crate::operator::{ForceOperator, Forces, On};
+use crate::operator::{Force, Forces, On};
 use crate::parallel::{for_each_chunk, for_each_entry};
 use crate::scalar::PointScalar;
 use crate::space::PointCloud;
@@ -39,7 +39,7 @@ impl System {
     /// Densities that are not positive.
     pub fn new(
         cloud: Arc<PointCloud>,
-        operator: Box<dyn ForceOperator>,
+        operator: Box<dyn Force>,
         density: PointScalar,
     ) -> Result<Self> {
         match &density {
@@ -115,22 +115,22 @@ impl System {
     ///
     /// # Errors
     /// A force on another number of points, or in another dimension.
-    pub fn add_force(&mut self, force: Box<dyn ForceOperator>) -> Result<()> {
+    pub fn add_force(&mut self, force: Box<dyn Force>) -> Result<()> {
         self.forces.add(force)
     }
 
     /// The sum of the internal forces.
-    pub fn operator(&self) -> &dyn ForceOperator {
+    pub fn operator(&self) -> &dyn Force {
         self.forces.sum()
     }
 
     /// The internal forces one by one.
-    pub fn forces(&self) -> impl Iterator<Item = &dyn ForceOperator> {
+    pub fn forces(&self) -> impl Iterator<Item = &dyn Force> {
         self.forces.iter()
     }
 
     /// The sum of the internal forces, to be changed.
-    pub(crate) fn operator_mut(&mut self) -> &mut dyn ForceOperator {
+    pub(crate) fn operator_mut(&mut self) -> &mut dyn Force {
         self.forces.sum_mut()
     }
 

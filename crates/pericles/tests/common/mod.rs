@@ -8,7 +8,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, FastLaw, ForceOperator};
+use pericles::operator::{BondForce, DamageMeasure, FastLaw, Force};
 use pericles::space::{Grid, PointCloud, PointSet, Shape};
 use pericles::{PointScalar, System};
 
@@ -72,11 +72,7 @@ pub fn listed<L: FastLaw, const D: usize>(
 }
 
 /// A free body of uniform density.
-pub fn system(
-    cloud: &Arc<PointCloud>,
-    operator: impl ForceOperator + 'static,
-    density: f64,
-) -> System {
+pub fn system(cloud: &Arc<PointCloud>, operator: impl Force + 'static, density: f64) -> System {
     let density = PointScalar::Uniform(density);
     System::new(cloud.clone(), Box::new(operator), density).unwrap()
 }

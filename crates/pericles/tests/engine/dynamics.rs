@@ -8,9 +8,7 @@ use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
 use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, StressState};
 use pericles::observe::Energies;
-use pericles::operator::{
-    BondBody, BondForce, Breakable, DamageMeasure, FastLaw, ForceOperator, On,
-};
+use pericles::operator::{BondBody, BondForce, Breakable, DamageMeasure, FastLaw, Force, On};
 use pericles::round_trip::check_resume;
 use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
@@ -43,7 +41,7 @@ fn operator<L: FastLaw, const D: usize>(
     common::listed(cloud, material, state, crack, &[])
 }
 
-fn system(cloud: &Arc<PointCloud>, operator: impl ForceOperator + 'static) -> System {
+fn system(cloud: &Arc<PointCloud>, operator: impl Force + 'static) -> System {
     common::system(cloud, operator, DENSITY)
 }
 

@@ -9,7 +9,7 @@ use pericles::material::{
     StressState,
 };
 use pericles::operator::{
-    BondBody, BondForce, BondForm, Breakable, DamageMeasure, FastLaw, ForceOperator, GridForce,
+    BondBody, BondForce, BondForm, Breakable, DamageMeasure, FastLaw, Force, GridForce,
     InstructionSet, On,
 };
 use pericles::round_trip::check_resume;
@@ -181,7 +181,7 @@ fn scaled_noise(cloud: &PointCloud, factor: f64) -> Vec<f64> {
         .collect()
 }
 
-fn force(operator: &dyn ForceOperator, u: &[f64]) -> Vec<f64> {
+fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
     operator.add_force(0.0, u, On::All, &mut out);
     out
@@ -224,7 +224,7 @@ fn compare<L: FastLaw, const D: usize>(
             grid = grid.with_instruction_set(set);
             assert_close(&force(&grid, &u), &expected, 1e-12, &what);
         }
-        let density = |operator: &dyn ForceOperator| {
+        let density = |operator: &dyn Force| {
             let mut out = vec![0.0; cloud.len()];
             operator.add_energy_density(0.0, &u, &mut out);
             out
@@ -232,19 +232,19 @@ fn compare<L: FastLaw, const D: usize>(
         assert_close(&density(&grid), &density(&list), 1e-12, &what);
         assert!((grid.energy(0.0, &u) / list.energy(0.0, &u) - 1.0).abs() < 1e-12);
         let direction = noise(u.len());
-        let tangent = |operator: &dyn ForceOperator| {
+        let tangent = |operator: &dyn Force| {
             let mut out = vec![1.0; u.len()];
             operator.tangent_into(0.0, &u, &direction, &mut out);
             out
         };
         assert_close(&tangent(&grid), &tangent(&list), 1e-12, &what);
     }
-    let bound = |operator: &dyn ForceOperator| operator.frequency_bound(&|i| 1000.0 + i as f64);
+    let bound = |operator: &dyn Force| operator.frequency_bound(&|i| 1000.0 + i as f64);
     assert!((bound(&grid) / bound(&list) - 1.0).abs() < 1e-14, "{name}");
     assert_eq!(damage(&grid), damage(&list), "{name}");
 }
 
-fn damage(operator: &dyn ForceOperator) -> Vec<f64> {
+fn damage(operator: &dyn Force) -> Vec<f64> {
     let mut out = vec![0.5; operator.points()];
     operator.damage_into(&mut out);
     out
@@ -294,11 +294,7 @@ fn equals_the_list_in_3d() {
 }
 
 /// A notched body pulled apart.
-fn breaking_run(
-    cloud: &Arc<PointCloud>,
-    operator: Box<dyn ForceOperator>,
-    steps: u64,
-) -> Simulation {
+fn breaking_run(cloud: &Arc<PointCloud>, operator: Box<dyn Force>, steps: u64) -> Simulation {
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1000.0)).unwrap();
     let mut start = State::at_rest(cloud.len() * cloud.dimension());
     let middle = cloud.nearest([0.3 + 0.06, -0.1 + 0.03, 0.02]);

@@ -9,7 +9,7 @@ use pericles::material::{
     BondMaterial, BondStretch, Fracture, GreenBond, LinearBond, LiteralBond, PairForce, StressState,
 };
 use pericles::operator::{
-    BondForce, Breakable, Breaking, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On,
+    BondForce, Breakable, Breaking, DamageMeasure, FastLaw, Force, InstructionSet, On,
 };
 use pericles::space::PointCloud;
 use pericles::{Path, StepEnd};
@@ -59,7 +59,7 @@ fn material(correction: VolumeCorrection, influence: Influence) -> BondMaterial 
     }
 }
 
-fn force(operator: &dyn ForceOperator, u: &[f64]) -> Vec<f64> {
+fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
     operator.add_force(0.0, u, On::All, &mut out);
     out

@@ -9,7 +9,7 @@ use pericles::material::{
     GreenBond, LinearBond, LiteralBond, Modulus, PairLaw, StressState, Trapezoidal, Treated,
     Treatment,
 };
-use pericles::operator::{BondForce, DamageMeasure, FastLaw, ForceOperator, InstructionSet, On};
+use pericles::operator::{BondForce, DamageMeasure, FastLaw, Force, InstructionSet, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 
 const YOUNG: f64 = 2e9;
@@ -111,7 +111,7 @@ fn operator<L: FastLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,
-) -> (Box<dyn ForceOperator>, BondConstants) {
+) -> (Box<dyn Force>, BondConstants) {
     let constants = material.constants(cloud, state).unwrap();
     let bonds = BondList::new(cloud, material.horizon, material.volume_correction).unwrap();
     let operator = BondForce::<L, D>::new(
@@ -132,7 +132,7 @@ fn build(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,
-) -> (Box<dyn ForceOperator>, BondConstants) {
+) -> (Box<dyn Force>, BondConstants) {
     match (material.law, state.dimension()) {
         (PairLaw::Linear, 1) => operator::<LinearBond, 1>(cloud, material, state),
         (PairLaw::Linear, 2) => operator::<LinearBond, 2>(cloud, material, state),
@@ -149,7 +149,7 @@ fn build(
     }
 }
 
-fn force(operator: &dyn ForceOperator, u: &[f64]) -> Vec<f64> {
+fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
     operator.add_force(0.0, u, On::All, &mut out);
     out

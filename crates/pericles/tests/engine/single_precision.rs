@@ -7,7 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, ForceOperator, InstructionSet, On};
+use pericles::operator::{BondBody, BondForm, Force, InstructionSet, On};
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
@@ -53,7 +53,7 @@ fn operator(
     law: PairLaw,
     critical_stretch: f64,
     form: BondForm,
-) -> Box<dyn ForceOperator> {
+) -> Box<dyn Force> {
     let material = BondMaterial {
         law,
         density: 1000.0,
@@ -84,7 +84,7 @@ fn operator(
     body.operator(form).unwrap().operator
 }
 
-fn force(operator: &dyn ForceOperator, u: &[f64]) -> Vec<f64> {
+fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
     operator.add_force(0.0, u, On::All, &mut out);
     out

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use pericles::domain::{Domain, Field};
-use pericles::operator::{
-    AtPoints, Capabilities, ForceOperator, InstructionSet, LocalForce, On, TwoPass,
-};
+use pericles::operator::{AtPoints, Capabilities, Force, InstructionSet, LocalForce, On, TwoPass};
 use pericles::space::PointCloud;
 
 /// Points wanted, of n.
@@ -231,7 +229,7 @@ impl Wall {
     }
 }
 
-impl ForceOperator for Wall {
+impl Force for Wall {
     fn points(&self) -> usize {
         self.heights.len()
     }

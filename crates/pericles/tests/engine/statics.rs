@@ -9,7 +9,7 @@ use pericles::material::{
     BondConstants, BondMaterial, ElasticModulus, Fracture, InterfaceRule, Modulus, PairClasses,
     StressState, SurfaceCorrection, SurfaceFactors,
 };
-use pericles::operator::{BondBody, BondForm, CompositeBody, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, Force, On};
 use pericles::space::PointCloud;
 use pericles::time::{Damping, Relaxation, RelaxationOptions, State, VelocityVerlet};
 use pericles::{
@@ -47,7 +47,7 @@ fn operator(
     material: &BondMaterial,
     classes: Option<&PairClasses>,
     correction: SurfaceCorrection,
-) -> Box<dyn ForceOperator> {
+) -> Box<dyn Force> {
     let constants = constants(material, cloud);
     let body = BondBody::new(cloud, material, &constants);
     let composite = CompositeBody {
@@ -64,7 +64,7 @@ enum Pull {
     Move(f64),
 }
 
-fn held(cloud: &Arc<PointCloud>, operator: Box<dyn ForceOperator>, pull: &Pull) -> System {
+fn held(cloud: &Arc<PointCloud>, operator: Box<dyn Force>, pull: &Pull) -> System {
     let mut system = System::new(cloud.clone(), operator, PointScalar::Uniform(7850.0)).unwrap();
     let ramp = || TimeFunction::Ramp {
         start: 0.0,

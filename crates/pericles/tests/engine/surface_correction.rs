@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::{boxed, material};
 use pericles::family::VolumeCorrection;
 use pericles::material::{Calibration, Fracture, PairLaw, StressState, SurfaceCorrection};
-use pericles::operator::{BondBody, BondForm, CompositeBody, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, Force, On};
 use pericles::space::PointCloud;
 
 const DX: f64 = 1e-3;
@@ -16,7 +16,7 @@ fn corrected(
     cloud: &Arc<PointCloud>,
     state: StressState,
     correction: SurfaceCorrection,
-) -> Box<dyn ForceOperator> {
+) -> Box<dyn Force> {
     let mut material = material(
         2440.0,
         YOUNG,

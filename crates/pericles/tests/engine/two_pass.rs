@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::boxed;
 use crate::state_based::{Dilatational, Wall};
 use pericles::boundary::{Load, TimeFunction};
-use pericles::operator::{ForceOperator, On, TwoPassForce};
+use pericles::operator::{Force, On, TwoPassForce};
 use pericles::space::PointCloud;
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, ImplicitRule, InnerSolver, Integrator,
@@ -23,7 +23,7 @@ fn block() -> Arc<PointCloud> {
     boxed([0.0, -0.2, 0.0], &[12.0, 6.0], 1.0, 1.0)
 }
 
-fn force(cloud: &Arc<PointCloud>) -> Box<dyn ForceOperator> {
+fn force(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let force = Dilatational::whole(cloud, HORIZON);
     Box::new(TwoPassForce::new(cloud.clone(), force))
 }

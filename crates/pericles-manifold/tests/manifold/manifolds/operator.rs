@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use pericles::cache::NoCache;
-use pericles::operator::{ForceOperator, InstructionSet, On};
+use pericles::operator::{Force, InstructionSet, On};
 use pericles::time::highest_frequency;
 use pericles_manifold::force::{DisplacementBond, HalfInteger};
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pericles::noise::{SplitMix64, uniform_in_ball};
-use pericles::operator::{ForceOperator, On};
+use pericles::operator::{Force, On};
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::space::PointCloud;
 use pericles::time::{InnerSolver, Integrator, NewmarkOptions, State};
@@ -47,7 +47,7 @@ impl Sphere {
         }
     }
 
-    pub fn operator(&self, material: &PowerMaterial) -> Box<dyn ForceOperator> {
+    pub fn operator(&self, material: &PowerMaterial) -> Box<dyn Force> {
         self.body(material).operator().unwrap()
     }
 
@@ -114,7 +114,7 @@ pub fn noise(len: usize, seed: u64) -> Vec<f64> {
     (0..len).map(|_| generator.signed()).collect()
 }
 
-pub fn force(operator: &dyn ForceOperator, u: &[f64]) -> Vec<f64> {
+pub fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
     operator.add_force(0.0, u, On::All, &mut out);
     out

@@ -14,7 +14,7 @@ use pericles::Result;
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
-use pericles::operator::{Capabilities, ForceOperator, InstructionSet, On};
+use pericles::operator::{Capabilities, Force, InstructionSet, On};
 use pericles::space::PointCloud;
 use pericles::sum::sum;
 
@@ -283,7 +283,7 @@ impl SpectralCubicForce {
 /// Weights of the parts of an energy.
 const ENERGY: [f64; 3] = [1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0];
 
-impl ForceOperator for SpectralCubicForce {
+impl Force for SpectralCubicForce {
     fn points(&self) -> usize {
         self.cloud.len()
     }

@@ -16,8 +16,7 @@ use super::symbol::Symbol;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
-    Capabilities, Diagonal, ForceOperator, FunctionOf, InstructionSet, LinearOperator, Linearity,
-    On,
+    Capabilities, Diagonal, Force, FunctionOf, InstructionSet, LinearOperator, Linearity, On,
 };
 use pericles::parallel::{components, components_mut};
 use pericles::space::PointCloud;
@@ -290,7 +289,7 @@ impl<const D: usize> Diagonal for SpectralForce<D> {
     }
 }
 
-impl<const D: usize> ForceOperator for SpectralForce<D> {
+impl<const D: usize> Force for SpectralForce<D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }

@@ -4,7 +4,7 @@
 //! M(k) = ∫ c α(|ξ|) ξ⊗ξ/|ξ|³ (1 − cos k·ξ) dξ = M_p k̂⊗k̂ + M_s (1 − k̂⊗k̂), an integral over the horizon and no sum over points ([`Symbol`]). Fields that are smooth on the
 //! scale of the spacing are therefore exact to round-off: the error falls faster than any power of the spacing, where the grid's falls with its square.
 //!
-//! [`SpectralForce`] is a [`ForceOperator`](pericles::operator::ForceOperator) for every scheme; functions of it cost two transforms
+//! [`SpectralForce`] is a [`Force`](pericles::operator::Force) for every scheme; functions of it cost two transforms
 //! ([`Diagonal`](crate::function::Diagonal)), so that one step of [`Trigonometric`](pericles_waves::Trigonometric) reaches any time.
 //! [`SpectralCubicForce`] adds the quadratic and cubic terms of the Green-strain law on a ring.
 //! Cost of a product: 2 D real transforms of the box. Memory: two numbers for each wave number and D + 1 complex fields.

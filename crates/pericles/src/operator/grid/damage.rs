@@ -7,7 +7,7 @@ use super::layout::Chunk;
 use crate::lanes::LANES;
 use crate::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{Breakable, CoarseBreak, ForceOperator, On, damage};
+use crate::operator::{Breakable, CoarseBreak, Force, On, damage};
 
 impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     fn dissipated(&self) -> f64 {

@@ -18,7 +18,7 @@ use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{BondForm, DamageMeasure, ForceOperator, InstructionSet, On};
+use crate::operator::{BondForm, DamageMeasure, Force, InstructionSet, On};
 use crate::parallel::{components_mut, for_each_part};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
@@ -36,7 +36,7 @@ use crate::step_end::StepEnd;
 /// use pericles::family::VolumeCorrection;
 /// use pericles::kernel::Influence;
 /// use pericles::material::*;
-/// use pericles::operator::{DamageMeasure, ForceOperator, GridForce, On};
+/// use pericles::operator::{DamageMeasure, Force, GridForce, On};
 /// use pericles::space::{Grid, Shape};
 ///
 /// # fn main() -> pericles::Result<()> {
@@ -178,7 +178,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     }
 
     /// Computes forces and breaking in floats: half the memory of the work array and about twice the speed, at an error of 1e-6 to 1e-4 of the largest force
-    /// (see [`ForceOperator::rounding`]). Displacements are rounded as differences from one point's in units of the spacing; states, energies and tangents stay
+    /// (see [`Force::rounding`]). Displacements are rounded as differences from one point's in units of the spacing; states, energies and tangents stay
     /// in doubles. Breaking is decided from the rounded displacements, by both ends of a bond alike.
     pub fn in_floats(mut self) -> Self {
         let spacing = self.cloud.spacing();

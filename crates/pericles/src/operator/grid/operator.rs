@@ -1,4 +1,4 @@
-//! [`ForceOperator`] for lattice bodies.
+//! [`Force`] for lattice bodies.
 
 use std::sync::PoisonError;
 
@@ -7,13 +7,13 @@ use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangen
 use super::padded::Frame;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    Breakable, Capabilities, ForceOperator, InstructionSet, LatticeSpring, LatticeSprings,
-    LinearOperator, Linearity, On, SplitForce,
+    Breakable, Capabilities, Force, InstructionSet, LatticeSpring, LatticeSprings, LinearOperator,
+    Linearity, On, SplitForce,
 };
 use crate::parallel::{components_mut, for_each_part};
 use crate::step_end::StepEnd;
 
-impl<L: FastLaw, const D: usize> ForceOperator for GridForce<L, D> {
+impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }

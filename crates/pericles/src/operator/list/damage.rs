@@ -3,7 +3,7 @@
 use super::force::BondForce;
 use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{Breakable, CoarseBreak, ForceOperator, damage};
+use crate::operator::{Breakable, CoarseBreak, Force, damage};
 use crate::parallel::{components, for_each_chunk};
 
 impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {

@@ -16,7 +16,7 @@ use crate::operator::fast_law::FastLaw;
 use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
-use crate::operator::{ForceOperator, InstructionSet, On};
+use crate::operator::{Force, InstructionSet, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;

@@ -1,16 +1,16 @@
-//! [`ForceOperator`] for bond lists.
+//! [`Force`] for bond lists.
 
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
-    BondAt, BondView, Breakable, Capabilities, ForceOperator, InstructionSet, LatticeSprings,
+    BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
     LinearOperator, Linearity, On, SplitForce,
 };
 use crate::parallel::components;
 use crate::step_end::StepEnd;
 
-impl<L: FastLaw, const D: usize> ForceOperator for BondForce<L, D> {
+impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }

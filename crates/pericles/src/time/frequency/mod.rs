@@ -2,7 +2,7 @@
 //!
 //! | body | bound | certainty |
 //! |---|---|---|
-//! | any, at rest | Gershgorin's discs ([`ForceOperator::frequency_bound`](crate::operator::ForceOperator::frequency_bound)) | rigorous |
+//! | any, at rest | Gershgorin's discs ([`Force::frequency_bound`](crate::operator::Force::frequency_bound)) | rigorous |
 //! | on a lattice, at rest, more than [`SMALL`] unknowns | the plane waves of the infinite lattice (`zone`) | rigorous |
 //! | any other | the Lanczos polynomial (`lanczos`) | fails with probability [`FAILURE`] at most |
 //!

@@ -2,7 +2,7 @@
 
 use super::{add_and_weigh, ends};
 use crate::error::Result;
-use crate::operator::{ForceOperator, LinearOperator};
+use crate::operator::{Force, LinearOperator};
 use crate::solve::{BandedCholesky, SolveLimits, Work, conjugate_gradient};
 use crate::system::System;
 
@@ -53,7 +53,7 @@ impl Shape {
     fn of(system: &System, linear: &dyn LinearOperator) -> Self {
         /// Multiplications per point beyond which operators use transforms.
         const TRANSFORM: f64 = 100.0;
-        let operator: &dyn ForceOperator = system.operator();
+        let operator: &dyn Force = system.operator();
         let points = system.points() as f64;
         let unknowns = system.dimension() as f64 * points;
         let reach = linear.half_bandwidth();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondMaterial, Fracture, StressState};
-use pericles::operator::{BondBody, BondForm, DamageMeasure, ForceOperator, GradedBody, On};
+use pericles::operator::{BondBody, BondForm, DamageMeasure, Force, GradedBody, On};
 use pericles::space::{Finer, GradedCloud, GradedGrid, Grid, PointCloud, Region, Shape};
 use pericles::time::{Fine, Integrator, Respa, State, highest_frequency};
 use pericles::{Control, PointScalar, Simulation, System};
@@ -42,7 +42,7 @@ fn bonds(
     points: GradedCloud,
     material: &BondMaterial,
     state: StressState,
-) -> (Arc<PointCloud>, Box<dyn ForceOperator>) {
+) -> (Arc<PointCloud>, Box<dyn Force>) {
     let cloud = Arc::new(points.cloud);
     let body = GradedBody {
         cloud: &cloud,
@@ -103,7 +103,7 @@ fn divided_everywhere_it_is_the_body_of_small_cells() {
         let same: Vec<usize> = (0..cloud.len())
             .map(|i| plain.nearest(cloud.point(i)))
             .collect();
-        let evaluate = |force: &dyn ForceOperator, cloud: &PointCloud| {
+        let evaluate = |force: &dyn Force, cloud: &PointCloud| {
             let mut out = vec![0.0; 2 * cloud.len()];
             force.add_force(0.0, &bumpy(cloud), On::All, &mut out);
             out

@@ -7,7 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, ForceOperator, On};
+use pericles::operator::{BondBody, BondForm, Force, On};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{
     Fine, Follow, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
@@ -85,7 +85,7 @@ fn bodies() -> Vec<Body> {
 }
 
 impl Body {
-    fn operator(&self, form: BondForm) -> Box<dyn ForceOperator> {
+    fn operator(&self, form: BondForm) -> Box<dyn Force> {
         let constants = self.material.constants(&self.cloud, self.state).unwrap();
         let body = BondBody {
             cracks: &self.cracks,
