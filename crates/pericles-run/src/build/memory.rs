@@ -9,7 +9,7 @@
 //! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
 //! | a site beyond an absorbing end | [`EXTERIOR`] numbers where initial fields continue there |
-//! | an absorbing end | [`LAG`] numbers for each step and site of the outer layer; three times as many with fields beyond it |
+//! | an absorbing end | [`LAG`] numbers for each site of the outer layer and each step, whose number blocks of Fourier transforms round up to a power of two; three times as many with fields beyond it |
 //!
 //! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
 
@@ -31,7 +31,7 @@ const KEPT: f64 = 4.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
-const LAG: f64 = 24.0;
+const LAG: f64 = 22.0;
 /// Numbers for a site of the exterior: its initial fields, and the state and work arrays of their motion.
 const EXTERIOR: f64 = 8.0;
 
@@ -119,7 +119,8 @@ impl Assembler<'_> {
         steps: f64,
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
-        let needed = LAG * NUMBER * sites as f64 * steps;
+        let blocks = steps.max(1.0).log2().ceil().exp2();
+        let needed = LAG * NUMBER * sites as f64 * blocks;
         if needed <= resources.memory as f64 {
             return Ok(());
         }
