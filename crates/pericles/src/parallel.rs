@@ -63,6 +63,9 @@ impl On<'_> {
     }
 }
 
+/// What is done with a part of the points: its number or first point, its entries of each component, and the part's own state.
+pub type PartWork<'a, const D: usize, S> = dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync + 'a;
+
 /// Points in a block.
 pub const BLOCK: usize = 512;
 
@@ -70,7 +73,7 @@ pub const BLOCK: usize = 512;
 pub fn for_each_block<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
-    work: &(dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+    work: &PartWork<'_, D, S>,
 ) {
     for_each_part(out, states, &|block| block * BLOCK, &|block, out, state| {
         work(block * BLOCK, out, state);
@@ -83,7 +86,7 @@ pub(crate) fn for_each_part<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
     first: &(dyn Fn(usize) -> usize + Sync),
-    work: &(dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+    work: &PartWork<'_, D, S>,
 ) {
     split(0, out, states, first, work);
 }
@@ -93,7 +96,7 @@ fn split<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
     first: &(dyn Fn(usize) -> usize + Sync),
-    work: &(dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync),
+    work: &PartWork<'_, D, S>,
 ) {
     match states {
         [] => {}

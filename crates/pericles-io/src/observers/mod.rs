@@ -34,7 +34,7 @@
 //! let cloud = Arc::new(bar.points()?);
 //! let bonds = BondList::new(&cloud, 0.3, VolumeCorrection::Extended)?;
 //! let never = Breaking { critical_stretch: f64::INFINITY, no_fail: &[] };
-//! let force = BondForce::<BondStretch, 1>::with_stiffness(cloud.clone(), bonds, |_| 20.0, never, DamageMeasure::default());
+//! let force = BondForce::<BondStretch, 1>::with_stiffness(cloud.clone(), bonds, &|_| 20.0, never, DamageMeasure::default());
 //! let system = System::new(cloud, Box::new(force), PointScalar::Uniform(1.0))?;
 //! let mut state = State::at_rest(10);
 //! state.v[0] = 0.01;

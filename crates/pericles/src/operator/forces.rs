@@ -106,8 +106,8 @@ impl Force for Forces {
 
     /// ω² of a sum of stiffnesses is at most the sum of their ω².
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
-        let square = |force: &Box<dyn Force>| force.frequency_bound(density).powi(2);
-        self.list.iter().map(square).sum::<f64>().sqrt()
+        let square = |force: &dyn Force| force.frequency_bound(density).powi(2);
+        self.iter().map(square).sum::<f64>().sqrt()
     }
 
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {

@@ -192,7 +192,7 @@ pub trait Integrator: Saved + Send {
     /// work arrays, unless [`changes_within_step`](Integrator::changes_within_step) says that the caller must restore them.
     ///
     /// # Errors
-    /// Schemes that iterate report when they do not converge; [`PericlesError::Interrupted`] if asked to stop.
+    /// Schemes that iterate report when they do not converge; [`PericlesError::Interrupted`](crate::PericlesError::Interrupted) if asked to stop.
     fn step(
         &mut self,
         system: &mut System,

@@ -177,10 +177,12 @@ fn nodes_at(k: usize, c: usize) -> f64 {
     nodes()[k][c]
 }
 
+type Make = fn(&System) -> Box<dyn Integrator>;
+
 /// What a run ends with: displacements and velocities by the numbers of points, energies and momentum, and the evaluations of points.
 type End = (Vec<[u64; 4]>, [u64; 3]);
 
-fn run(comm: Arc<dyn Comm>, make: fn(&System) -> Box<dyn Integrator>) -> (Vec<usize>, End) {
+fn run(comm: Arc<dyn Comm>, make: Make) -> (Vec<usize>, End) {
     let (system, own) = part(comm);
     let n = own.len();
     let mut state = State::at_rest(2 * n);
@@ -202,7 +204,7 @@ fn run(comm: Arc<dyn Comm>, make: fn(&System) -> Box<dyn Integrator>) -> (Vec<us
 }
 
 /// The same by several threads, put together in the order of numbers.
-fn divided(size: usize, make: fn(&System) -> Box<dyn Integrator>) -> End {
+fn divided(size: usize, make: Make) -> End {
     let office = Arc::new(Office {
         barrier: Barrier::new(size),
         numbers: Mutex::default(),
@@ -230,7 +232,7 @@ fn divided(size: usize, make: fn(&System) -> Box<dyn Integrator>) -> End {
 
 #[test]
 fn a_divided_body_moves_by_the_same_bits() {
-    let schemes: [(&str, fn(&System) -> Box<dyn Integrator>); 4] = [
+    let schemes: [(&str, Make); 4] = [
         ("velocity Verlet", |_| Box::new(VelocityVerlet)),
         ("Dormand–Prince", |system| {
             Box::new(AdaptiveRungeKutta::new(1e-8, system).unwrap())
