@@ -119,7 +119,7 @@ impl LineChart {
     pub(super) fn draw(&self, path: &Path) -> Result<Drawing, IoError> {
         self.check(path)?;
         let sizes = Sizes::of_width(self.width as usize);
-        let usable = |&(x, y): &(f64, f64)| self.x.allows(x) && self.y.allows(y);
+        let usable = |point: &(f64, f64)| self.allows(*point);
         let all = || {
             self.curves
                 .iter()
@@ -179,39 +179,16 @@ impl LineChart {
             backdrop.draw(&mut drawing, &frame, bar, factors);
             bar.draw(&mut drawing, area, ticks, &sizes);
         }
-        let mut drawn = Vec::new();
-        for (number, curve) in self.curves.iter().enumerate() {
-            let pen = Pen::of(number, curve, &sizes);
-            // In pixels, with gaps where there is no number.
-            let mut pieces = vec![Vec::new()];
-            for point in &curve.points {
-                if usable(point) {
-                    let place = frame.place(point.0 / x_shown.factor, point.1 / y_shown.factor);
-                    if let Some(piece) = pieces.last_mut() {
-                        piece.push(place);
-                    }
-                } else {
-                    pieces.push(Vec::new());
-                }
-            }
-            if curve.line {
-                let lines = pieces
-                    .iter()
-                    .flat_map(|piece| clipped(piece, area))
-                    .collect();
-                pen.stroke(&mut drawing, lines);
-            }
-            if curve.markers {
-                for &place in pieces
-                    .iter()
-                    .flatten()
-                    .filter(|place| inside(**place, area))
-                {
-                    pen.mark(&mut drawing, place);
-                }
-            }
-            drawn.push(pieces);
-        }
+        let factors = [x_shown.factor, y_shown.factor];
+        let curves = self.curves.iter().enumerate();
+        let drawn: Vec<_> = curves
+            .map(|(number, curve)| {
+                let pieces = self.pieces(curve, &frame, factors);
+                let pen = Pen::of(number, curve, &sizes);
+                draw_curve(&mut drawing, curve, &pieces, (&pen, area));
+                pieces
+            })
+            .collect();
         frame.draw_axes(&mut drawing, &x_text, &y_text, &sizes);
         match beside {
             true => {
@@ -224,6 +201,27 @@ impl LineChart {
         let end = if bar.is_some() || beside { end } else { right };
         self.header.draw(&mut drawing, left, end, &sizes);
         Ok(drawing)
+    }
+
+    /// Whether both axes can show a point.
+    fn allows(&self, (x, y): (f64, f64)) -> bool {
+        self.x.allows(x) && self.y.allows(y)
+    }
+
+    /// A curve in pixels, in pieces with gaps where there is no number.
+    fn pieces(&self, curve: &Curve, frame: &Frame, factors: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
+        let mut pieces = vec![Vec::new()];
+        for point in &curve.points {
+            if self.allows(*point) {
+                let place = frame.place(point.0 / factors[0], point.1 / factors[1]);
+                if let Some(piece) = pieces.last_mut() {
+                    piece.push(place);
+                }
+            } else {
+                pieces.push(Vec::new());
+            }
+        }
+        pieces
     }
 
     fn check(&self, path: &Path) -> Result<(), IoError> {
@@ -340,6 +338,28 @@ impl LineChart {
             }
             let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, key.room);
             drawing.text(&curve.name, (to + gap, y), style.colour(INK));
+        }
+    }
+}
+
+/// The line and the markers of a curve, as far as they lie in an area.
+fn draw_curve(
+    drawing: &mut Drawing,
+    curve: &Curve,
+    pieces: &[Vec<(f64, f64)>],
+    (pen, area): (&Pen, Area),
+) {
+    if curve.line {
+        let lines = pieces
+            .iter()
+            .flat_map(|piece| clipped(piece, area))
+            .collect();
+        pen.stroke(drawing, lines);
+    }
+    if curve.markers {
+        let places = pieces.iter().flatten();
+        for &place in places.filter(|place| inside(**place, area)) {
+            pen.mark(drawing, place);
         }
     }
 }

@@ -86,35 +86,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let width = scene.width as f64;
     let view = View::new(scene.view);
 
-    // What the box of the body fills on the screen
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for corner in 0..8 {
-        let p = std::array::from_fn(|c| {
-            if corner >> c & 1 == 0 {
-                scene.low[c]
-            } else {
-                scene.high[c]
-            }
-        });
-        for (c, value) in view.project(p).into_iter().take(2).enumerate() {
-            low[c] = low[c].min(value);
-            high[c] = high[c].max(value);
-        }
-    }
-    // A surface need not fill its box.
-    if !scene.facets.is_empty() && !scene.window {
-        let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in scene.facets.iter().flat_map(|facet| facet.corners) {
-            for (c, value) in view.project(corner).into_iter().take(2).enumerate() {
-                least[c] = least[c].min(value);
-                most[c] = most[c].max(value);
-            }
-        }
-        for c in 0..2 {
-            low[c] = low[c].max(least[c]);
-            high[c] = high[c].min(most[c]).max(low[c]);
-        }
-    }
+    let (low, high) = extent(scene, &view);
     let largest = (high[0] - low[0])
         .max(high[1] - low[1])
         .max(f64::MIN_POSITIVE);
@@ -148,54 +120,14 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
     let fine = if scene.cells.len() > MANY { 1 } else { 2 };
     let mut raster = Raster::new(area.width() as usize, height as usize, fine);
-    let light = view.light();
-    // Nearer ones first, so that what they hide can be left out.
-    let mut order: Vec<(usize, f64)> = (scene.cells.iter())
-        .map(|cell| -dot(cell.middle, view.eye))
-        .enumerate()
-        .collect();
-    order.sort_by(|(_, a), (_, b)| a.total_cmp(b));
-    for (k, _) in order {
-        let cell = &scene.cells[k];
-        let place = |p: [f64; 3], of: [f64; 2]| -> [f64; 3] {
-            let [x, y, near] = view.project(p);
-            [(x - of[0]) * per_metre, (of[1] - y) * per_metre, -near]
-        };
-        for (c, light) in light.into_iter().enumerate() {
-            let (c1, c2) = ((c + 1) % 3, (c + 2) % 3);
-            let along = |c: usize, sign: f64| {
-                let mut edge = [0.0; 3];
-                edge[c] = sign * cell.half[c];
-                edge
-            };
-            let outward = along(c, view.eye[c].signum());
-            let mut face = Face {
-                middle: place(std::array::from_fn(|k| cell.middle[k] + outward[k]), middle),
-                a: place(along(c1, 1.0), [0.0; 2]),
-                b: place(along(c2, 1.0), [0.0; 2]),
-                seam: 2.0 * cell.half[0].max(cell.half[1]).max(cell.half[2]),
-            };
-            face.middle[0] += 0.5 * area.width();
-            face.middle[1] += 0.5 * height;
-            raster.face(&face, (3 * k + c) as u32, shaded(cell.colour, light));
-        }
-    }
-
-    for facet in &scene.facets {
-        let place = |p: [f64; 3]| -> [f64; 3] {
-            let [x, y, near] = view.project(p);
-            [
-                (x - middle[0]) * per_metre + 0.5 * area.width(),
-                (middle[1] - y) * per_metre + 0.5 * height,
-                -near,
-            ]
-        };
-        raster.triangle(facet.corners.map(place), |shares| {
-            let mix = |values: [f64; 3]| (0..3).map(|k| shares[k] * values[k]).sum::<f64>();
-            let normal = std::array::from_fn(|c| mix(facet.normals.map(|normal| normal[c])));
-            shaded(scene.bar.colour(mix(facet.values)), view.light_on(normal))
-        });
-    }
+    let placing = Placing {
+        view,
+        middle,
+        per_metre,
+        half: [0.5 * area.width(), 0.5 * height],
+    };
+    draw_cells(&mut raster, scene, &placing);
+    draw_facets(&mut raster, scene, &placing);
 
     let arm = 3.0 * sizes.tick_text;
     let below = 2.0 * arm + sizes.tick_text + 2.0 * sizes.gap;
@@ -208,6 +140,114 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
         .header
         .draw(&mut drawing, 2.0 * left, width - sizes.gap, &sizes);
     drawing
+}
+
+/// What the body fills on the screen: lowest and highest coordinates to the right and upwards, m.
+fn extent(scene: &Scene, view: &View) -> ([f64; 2], [f64; 2]) {
+    // Its box.
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for corner in 0..8 {
+        let p = std::array::from_fn(|c| {
+            if corner >> c & 1 == 0 {
+                scene.low[c]
+            } else {
+                scene.high[c]
+            }
+        });
+        for (c, value) in view.project(p).into_iter().take(2).enumerate() {
+            low[c] = low[c].min(value);
+            high[c] = high[c].max(value);
+        }
+    }
+    // A surface need not fill its box.
+    if !scene.facets.is_empty() && !scene.window {
+        let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in scene.facets.iter().flat_map(|facet| facet.corners) {
+            for (c, value) in view.project(corner).into_iter().take(2).enumerate() {
+                least[c] = least[c].min(value);
+                most[c] = most[c].max(value);
+            }
+        }
+        for c in 0..2 {
+            low[c] = low[c].max(least[c]);
+            high[c] = high[c].min(most[c]).max(low[c]);
+        }
+    }
+    (low, high)
+}
+
+/// From places in space to pixels of the plot.
+struct Placing {
+    view: View,
+    /// The middle of the plot on the screen, m.
+    middle: [f64; 2],
+    per_metre: f64,
+    /// Half of the plot, in pixels.
+    half: [f64; 2],
+}
+
+impl Placing {
+    /// To the right, downwards and away from the eye, relative to a place on the screen.
+    fn relative(&self, p: [f64; 3], of: [f64; 2]) -> [f64; 3] {
+        let [x, y, near] = self.view.project(p);
+        [
+            (x - of[0]) * self.per_metre,
+            (of[1] - y) * self.per_metre,
+            -near,
+        ]
+    }
+
+    /// In the plot.
+    fn place(&self, p: [f64; 3]) -> [f64; 3] {
+        let [x, y, far] = self.relative(p, self.middle);
+        [x + self.half[0], y + self.half[1], far]
+    }
+}
+
+/// Cells as boxes of which three faces are seen.
+fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
+    let view = &placing.view;
+    let light = view.light();
+    // Nearer ones first, so that what they hide can be left out.
+    let mut order: Vec<(usize, f64)> = (scene.cells.iter())
+        .map(|cell| -dot(cell.middle, view.eye))
+        .enumerate()
+        .collect();
+    order.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    for (k, _) in order {
+        let cell = &scene.cells[k];
+        for (c, light) in light.into_iter().enumerate() {
+            let (c1, c2) = ((c + 1) % 3, (c + 2) % 3);
+            let along = |c: usize, sign: f64| {
+                let mut edge = [0.0; 3];
+                edge[c] = sign * cell.half[c];
+                edge
+            };
+            let outward = along(c, view.eye[c].signum());
+            let face = Face {
+                middle: placing.place(std::array::from_fn(|k| cell.middle[k] + outward[k])),
+                a: placing.relative(along(c1, 1.0), [0.0; 2]),
+                b: placing.relative(along(c2, 1.0), [0.0; 2]),
+                seam: 2.0 * cell.half[0].max(cell.half[1]).max(cell.half[2]),
+            };
+            raster.face(&face, (3 * k + c) as u32, shaded(cell.colour, light));
+        }
+    }
+}
+
+/// Triangles of a surface, lit by their normals.
+fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
+    for facet in &scene.facets {
+        let corners = facet.corners.map(|corner| placing.place(corner));
+        raster.triangle(corners, |shares| {
+            let mix = |values: [f64; 3]| (0..3).map(|k| shares[k] * values[k]).sum::<f64>();
+            let normal = std::array::from_fn(|c| mix(facet.normals.map(|normal| normal[c])));
+            shaded(
+                scene.bar.colour(mix(facet.values)),
+                placing.view.light_on(normal),
+            )
+        });
+    }
 }
 
 /// The directions of the axes, in the lower left corner.
