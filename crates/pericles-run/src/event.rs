@@ -31,7 +31,7 @@ pub enum Event<'a> {
         /// The time reached, s.
         t: f64,
     },
-    /// Something is odd about the run.
+    /// A warning about the run.
     Warning(&'a str),
     /// The time loop has ended, for whatever reason.
     LoopEnds,

@@ -89,7 +89,7 @@ impl Breakage {
     }
 }
 
-/// What is odd.
+/// Warnings about a finished run.
 pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     let found = [
         simulation.instability().map(ToString::to_string),

@@ -59,7 +59,7 @@ pub struct Assembly {
     pub loads: Vec<LoadReport>,
     /// Conditions that end the run before its last step.
     pub stops: Vec<StopWhen>,
-    /// What is odd.
+    /// Warnings of the assembly.
     pub warnings: Vec<ModelWarning>,
     /// The strongest damping of layers, 1/s.
     pub(super) damping: f64,

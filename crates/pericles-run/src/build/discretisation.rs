@@ -23,7 +23,7 @@ pub struct Discretisation {
     pub surface: Option<Arc<Surface>>,
     /// The sets of points by name, "all" first.
     pub sets: Sets,
-    /// What is odd about the points.
+    /// Warnings about the points.
     pub warnings: Vec<ModelWarning>,
 }
 

@@ -44,7 +44,7 @@ pub trait Build {
     /// Assembles the deck.
     fn build_with(&self, resources: Resources<'_>) -> Result<Built, DeckError>;
 
-    /// What is odd about its waves.
+    /// Warnings about its waves.
     fn judge_waves(&self, assembly: &Assembly) -> Vec<Warning>;
 }
 
