@@ -240,7 +240,10 @@ fn largest_body(terms: &[f64; BLOCK], largest: &mut Largest) {
 #[inline(always)]
 fn cut_body(terms: &[f64; BLOCK], units: &[f64; KEPT], sums: &mut [[f64; LANES]; KEPT]) {
     // x + 1.5 · 2^52 units is rounded to a multiple of the unit, halves to even.
-    let round = units.map(|unit| 1.5 * power_of_two(52) * unit);
+    let mut round = [0.0; KEPT];
+    for k in 0..KEPT {
+        round[k] = 1.5 * power_of_two(52) * units[k];
+    }
     let mut cut = [[0.0; LANES]; KEPT];
     for group in terms.chunks_exact(LANES) {
         for lane in 0..LANES {
