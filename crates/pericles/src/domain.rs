@@ -5,8 +5,9 @@
 //! its passes. Sums, maxima and counts over points go through the domain too, so that nothing else knows how many processes there are. One process that owns everything ([`Alone`]) is the normal case.
 //!
 //! The number of a point in the whole body is its place in the order of [`PointCloud`](crate::space::PointCloud), whatever the division: rows of bonds and groups of eight follow these numbers, so that a
-//! point's force has the same bits for every division.
+//! point's force has the same bits for every division. Each process keeps its own points in ascending order of these numbers.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -62,11 +63,29 @@ pub struct Peer {
     pub received: Range<usize>,
 }
 
+/// What a point tells another one across the border between two processes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Letter {
+    /// The own point that writes; on arrival the ghost that it is, counted from 0.
+    pub from: usize,
+    /// The ghost that it writes to, counted from 0; on arrival the own point.
+    pub to: usize,
+    /// What it says.
+    pub numbers: [f64; Letter::NUMBERS],
+}
+
+impl Letter {
+    /// Numbers in a letter.
+    pub const NUMBERS: usize = 4;
+}
+
 /// The points of a process.
 #[derive(Clone)]
 pub struct Domain {
     owned: usize,
     ghosts: usize,
+    /// Numbers in the whole body, own points first; empty if all points are owned.
+    numbers: Vec<u32>,
     peers: Vec<Peer>,
     comm: Arc<dyn Comm>,
 }
@@ -78,6 +97,7 @@ impl fmt::Debug for Domain {
             ghosts,
             peers,
             comm,
+            ..
         } = self;
         let size = comm.size();
         let rank = comm.rank();
@@ -103,6 +123,20 @@ impl<'a> Field<'a> {
     pub fn new(owned: &'a [f64], ghosts: &'a [f64]) -> Self {
         Self { owned, ghosts }
     }
+
+    /// Component c of D at a point; ghosts are counted behind own points.
+    pub fn at<const D: usize>(&self, c: usize, point: usize) -> f64 {
+        let (n, m) = (self.owned.len() / D, self.ghosts.len() / D);
+        match point.checked_sub(n) {
+            None => self.owned[c * n + point],
+            Some(ghost) => self.ghosts[c * m + ghost],
+        }
+    }
+
+    /// The value at point j less that at point i.
+    pub fn difference<const D: usize>(&self, [i, j]: [usize; 2]) -> [f64; D] {
+        std::array::from_fn(|c| self.at::<D>(c, j) - self.at::<D>(c, i))
+    }
 }
 
 impl Domain {
@@ -111,20 +145,87 @@ impl Domain {
         Self {
             owned: points,
             ghosts: 0,
+            numbers: Vec::new(),
             peers: Vec::new(),
             comm: Arc::new(Alone),
         }
     }
 
-    /// The points of one of several processes.
-    pub fn new(owned: usize, peers: Vec<Peer>, comm: Arc<dyn Comm>) -> Self {
+    /// The points of one of several processes: their numbers in the whole body, the first `owned` ones its own in ascending order, the others ghosts.
+    ///
+    /// # Panics
+    /// If the peers' ghosts are not the points behind the own ones, or the own numbers do not ascend.
+    pub fn new(numbers: Vec<u32>, owned: usize, peers: Vec<Peer>, comm: Arc<dyn Comm>) -> Self {
         let ghosts = peers.iter().map(|peer| peer.received.len()).sum();
+        assert_eq!(numbers.len(), owned + ghosts, "a number for every point");
+        assert!(
+            numbers[..owned].is_sorted_by(|a, b| a < b),
+            "own points in ascending order"
+        );
         Self {
             owned,
             ghosts,
+            numbers,
             peers,
             comm,
         }
+    }
+
+    /// The number in the whole body of own point k, or of ghost k − n if k is not below the number n of own points.
+    pub fn number(&self, k: usize) -> usize {
+        match &self.numbers[..] {
+            [] => k,
+            numbers => numbers[k] as usize,
+        }
+    }
+
+    /// One value a point, with those of ghosts behind them. Every process must ask at the same time.
+    pub fn with_ghosts<'a>(&self, owned: &'a [f64]) -> Cow<'a, [f64]> {
+        if self.peers.is_empty() {
+            return Cow::Borrowed(owned);
+        }
+        Cow::Owned([owned, &self.ghosts(owned)].concat())
+    }
+
+    /// Delivers letters to the owners of ghosts: each says what own point `from` tells the ghost `to`, counted from 0, and comes in at its owner from the ghost that `from` is there. Every process must ask at the same time.
+    ///
+    /// # Panics
+    /// If `from` is no ghost of the owner of `to`.
+    pub fn deliver(&self, letters: &[Letter]) -> Vec<Letter> {
+        const LENGTH: usize = 2 + Letter::NUMBERS;
+        if self.peers.is_empty() {
+            return Vec::new();
+        }
+        let message = |peer: &Peer| -> Vec<f64> {
+            let own = letters.iter().filter(|one| peer.received.contains(&one.to));
+            own.flat_map(|one| {
+                let from = peer.sent.iter().position(|&k| k as usize == one.from);
+                let from = from.expect("a bond is known to the owners of both of its ends");
+                let place = [one.to - peer.received.start, from].map(|k| k as f64);
+                place.into_iter().chain(one.numbers)
+            })
+            .collect()
+        };
+        let ranks: Vec<usize> = self.peers.iter().map(|peer| peer.rank).collect();
+        let sent: Vec<Vec<f64>> = self.peers.iter().map(message).collect();
+        let mut received = vec![Vec::new(); self.peers.len()];
+        self.comm.exchange(&ranks, &sent, &mut received);
+        let arrived = |(peer, numbers): (&Peer, &Vec<f64>)| -> Vec<Letter> {
+            let letter = |one: &[f64]| Letter {
+                from: peer.received.start + one[1] as usize,
+                to: peer.sent[one[0] as usize] as usize,
+                numbers: std::array::from_fn(|k| one[2 + k]),
+            };
+            numbers.chunks_exact(LENGTH).map(letter).collect()
+        };
+        (self.peers.iter().zip(&received))
+            .flat_map(arrived)
+            .collect()
+    }
+
+    /// Whether a condition holds on all processes.
+    pub fn all(&self, holds: bool) -> bool {
+        self.max(f64::from(u8::from(!holds))) == 0.0
     }
 
     /// Number of own points.
@@ -167,7 +268,11 @@ impl Domain {
 
     /// Σ term(k) for k < n and over all processes, the same for every order and division; see [`sum`](crate::sum).
     pub fn sum(&self, n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-        let own = BinnedSum::of(n, term);
+        self.total(BinnedSum::of(n, term))
+    }
+
+    /// The sum of the sums of all processes.
+    pub fn total(&self, own: BinnedSum) -> f64 {
         if self.comm.size() == 1 {
             return own.value();
         }
@@ -202,6 +307,11 @@ impl Domain {
         } else {
             numbers[0]
         }
+    }
+
+    /// Replaces each number by the largest of all processes. None of them may be NaN.
+    pub fn max_each(&self, numbers: &mut [f64]) {
+        self.comm.max(numbers);
     }
 
     /// The sum of a count over all processes.

@@ -1,5 +1,7 @@
 //! Pseudo-random numbers that are the same on every machine.
 
+use crate::domain::Domain;
+
 /// SplitMix64 (Steele, Lea & Flood 2014): a generator of 64 bits of state, seeded by any number.
 #[derive(Debug, Clone)]
 pub struct SplitMix64 {
@@ -7,14 +9,21 @@ pub struct SplitMix64 {
 }
 
 impl SplitMix64 {
+    const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
+
     /// The generator of a seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
+    /// The generator of a seed after `count` numbers.
+    pub fn after(seed: u64, count: u64) -> Self {
+        Self::new(seed.wrapping_add(count.wrapping_mul(Self::STEP)))
+    }
+
     /// The next number, uniform in [−1, 1).
     pub fn signed(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        self.state = self.state.wrapping_add(Self::STEP);
         let mut z = self.state;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -44,6 +53,18 @@ pub fn uniform_in_ball(dimension: usize, radius: f64, seed: u64, count: usize) -
     (0..count).map(|_| draw()).collect()
 }
 
+/// A vector on the points of a process, component-major, of numbers in (−1, 1): those that one process alone would draw by [`noise`].
+pub fn noise_on(domain: &Domain, components: usize, seed: u64) -> Vec<f64> {
+    let all = domain.count(domain.owned_points() as u64);
+    let number = |c: u64, i: usize| {
+        let entry = c * all + domain.number(i) as u64;
+        SplitMix64::after(seed, entry).signed()
+    };
+    (0..components as u64)
+        .flat_map(|c| (0..domain.owned_points()).map(move |i| number(c, i)))
+        .collect()
+}
+
 /// Numbers in (−1, 1) (SplitMix64).
 pub fn noise(len: usize, seed: u64) -> Vec<f64> {
     let mut generator = SplitMix64::new(seed);
@@ -53,6 +74,11 @@ pub fn noise(len: usize, seed: u64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_vector_on_points_is_the_sequence() {
+        assert_eq!(noise_on(&Domain::alone(7), 3, 5), noise(21, 5));
+    }
 
     #[test]
     fn the_ball_is_filled_evenly() {

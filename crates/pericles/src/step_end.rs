@@ -46,8 +46,10 @@ pub enum Path<'a> {
 /// A bond as it is found over-stretched at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct BreakingBond<const D: usize> {
-    /// Its ends i and j.
+    /// Its ends i and j; ghosts are counted behind own points.
     pub ends: [usize; 2],
+    /// The mean velocity of j over the step less that of i, m/s; see [`StepEnd::relative_velocity`].
+    pub velocity: [f64; D],
     /// The direction of its force on i, in units of [`BreakingBond::weight`].
     pub force: [f64; D],
     /// Its elastic energy, in units of [`BreakingBond::weight`].
@@ -90,18 +92,31 @@ impl<'a> StepEnd<'a> {
         }
     }
 
+    /// The mean velocities of all own points, where breaking asks for them: on paths that forces at both ends of the step push the body along.
+    pub fn mean_velocities(&self) -> Option<&'a [f64]> {
+        match self.path {
+            Path::MeanVelocity(mean) => Some(mean),
+            _ => None,
+        }
+    }
+
+    /// The mean velocity of own point j less that of i over the step, m/s; zero where breaking does not ask for it.
+    pub fn relative_velocity<const D: usize>(&self, [i, j]: [usize; 2]) -> [f64; D] {
+        let n = self.u.len() / D;
+        match self.mean_velocities() {
+            Some(mean) => std::array::from_fn(|c| mean[c * n + j] - mean[c * n + i]),
+            None => [0.0; D],
+        }
+    }
+
     /// The energy that a bond dissipates which is found over-stretched at the end of the step and exerts no force from then on, J.
     ///
     /// It is what the bond stores at the end less the work that its force would have done within the step and did not do: none where forces acted all the way, ½ f·Δη where they act for half of the step at
     /// each end. So the energy of body, loads and dissipation together does not change when a bond breaks, whatever the scheme.
     pub fn dissipated<const D: usize>(&self, bond: &BreakingBond<D>) -> f64 {
         let mut energy = bond.energy;
-        if let Path::MeanVelocity(velocity) = self.path {
-            let [i, j] = bond.ends;
-            let n = self.u.len() / D;
-            let power: f64 = (0..D)
-                .map(|c| bond.force[c] * (velocity[c * n + j] - velocity[c * n + i]))
-                .sum();
+        if let Path::MeanVelocity(_) = self.path {
+            let power: f64 = (0..D).map(|c| bond.force[c] * bond.velocity[c]).sum();
             energy -= 0.5 * self.dt * power;
         }
         bond.weight * energy

@@ -6,6 +6,8 @@
 
 use rayon::prelude::*;
 
+use crate::archive::{Archive, SavedUnder, Values};
+use crate::error::Result;
 use crate::lanes::{InstructionSet, for_each_instruction_set};
 use crate::parallel::BLOCK;
 
@@ -122,6 +124,13 @@ impl BinnedSum {
         self
     }
 
+    /// One term more.
+    pub fn add(&mut self, term: f64) {
+        let mut terms = [0.0; BLOCK];
+        terms[0] = term;
+        *self = self.merged(Self::of_block(InstructionSet::Baseline, &mut terms));
+    }
+
     /// Number of the highest bin.
     pub(crate) fn top(&self) -> i32 {
         self.top
@@ -169,6 +178,27 @@ impl BinnedSum {
         let upper = (high << WIDTH) + middle;
         let lower = low as f64 * power_of_two(-WIDTH);
         scaled(upper as f64 + lower, WIDTH * (self.top - 1))
+    }
+}
+
+/// The integers, each in two halves, behind the number of the highest bin.
+impl SavedUnder for BinnedSum {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        let halves = |integer: i128| [integer as u64, (integer >> 64) as u64];
+        let mut numbers = vec![i64::from(self.top) as u64];
+        numbers.extend(self.integers(self.top).into_iter().flat_map(halves));
+        archive.put(name, Values::U64(numbers));
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        let numbers = archive.exactly::<u64>(name, 1 + 2 * (KEPT + 3))?;
+        let top = i32::try_from(numbers[0] as i64).unwrap_or(i32::MIN);
+        let integer = |k: usize| {
+            let [low, high] = [numbers[1 + 2 * k], numbers[2 + 2 * k]];
+            i128::from(high as i64) << 64 | i128::from(low)
+        };
+        *self = Self::of_integers(top, std::array::from_fn(integer));
+        Ok(())
     }
 }
 

@@ -315,7 +315,7 @@ fn cutting_a_plate_along_its_planes_costs_the_fracture_energy() {
 /// Energy per length of a line with this unit normal and distance from the origin, of the bonds that cross its middle: at the critical stretch, over
 /// a whole number of the lattice's periods.
 fn cut(
-    cloud: &PointCloud,
+    cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     constants: &BondConstants,
     normal: [f64; 2],
@@ -339,13 +339,13 @@ fn cut(
                 let share = low / (low - high);
                 let place = dot(along, a) + share * (dot(along, b) - dot(along, a));
                 if (from..from + length).contains(&place) {
-                    let xi = bonds.vector(cloud, i, j);
+                    let xi = bonds.vector(i, j);
                     let alpha = material.influence.alpha_of(xi, material.horizon);
-                    let kappa = bonds.volume_factor(cloud, i, j);
+                    let kappa = bonds.volume_factor(i, j);
                     let volumes = cloud.volumes()[i] * cloud.volumes()[j];
                     let stretch = constants.critical_stretch;
                     let stiffness = constants.micromodulus * alpha * kappa * volumes;
-                    energy += 0.5 * stiffness * bonds.length(cloud, i, j) * stretch * stretch;
+                    energy += 0.5 * stiffness * bonds.length(i, j) * stretch * stretch;
                 }
             }
         }

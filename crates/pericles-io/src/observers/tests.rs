@@ -40,7 +40,7 @@ fn simulation(folder: &Path) -> Simulation {
         from: [0.0, 4.0],
         to: [4.0, 4.0],
     };
-    let points = bonds.cut(&cloud, &crack, EndRule::Closed).unwrap().points;
+    let points = bonds.cut(&crack, EndRule::Closed).unwrap().points;
     let breaking = Breaking {
         critical_stretch: 0.02,
         no_fail: &[],

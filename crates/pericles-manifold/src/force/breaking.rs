@@ -113,6 +113,7 @@ impl Breaking {
             });
             let bond = BreakingBond {
                 ends: [i, j],
+                velocity: step.end.relative_velocity([i, j]),
                 force: law.force(lanes(xi), lanes(eta)).map(|force| force.0[0]),
                 energy: law.energy(lanes(xi), lanes(eta)).0[0],
                 critical,

@@ -1,5 +1,7 @@
 //! Whether a model makes physical sense: warnings about its pre-cracks and conditions.
 
+use std::sync::Arc;
+
 use pericles::System;
 use pericles::family::{BondList, Crack};
 use pericles::kernel::InfluenceFunction;
@@ -193,14 +195,14 @@ impl Assembler<'_> {
     }
 
     /// The piece of each point, named by its first point: what bonds join at the start.
-    fn pieces(&self, solid: &Solid, cloud: &PointCloud) -> Option<Vec<usize>> {
+    fn pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) -> Option<Vec<usize>> {
         let material = &solid.material.bonds;
         // What is wrong with families and cracks has been refused when the operator was made.
         let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).ok()?;
         for crack in &self.model.cracks {
-            bonds.cut(cloud, &crack.surface, crack.ends).ok()?;
+            bonds.cut(&crack.surface, crack.ends).ok()?;
         }
-        Some(pieces(cloud, &bonds))
+        Some(pieces(&bonds))
     }
 }
 
@@ -237,18 +239,21 @@ fn extent(crack: &Crack) -> (Point, Point) {
 }
 
 /// The piece of each point, named by its first point.
-fn pieces(cloud: &PointCloud, bonds: &BondList) -> Vec<usize> {
-    let mut piece = vec![usize::MAX; cloud.len()];
+fn pieces(bonds: &BondList) -> Vec<usize> {
+    let mut piece = vec![usize::MAX; bonds.len()];
     let mut waiting = Vec::new();
-    for first in 0..cloud.len() {
+    for first in 0..bonds.len() {
         if piece[first] != usize::MAX {
             continue;
         }
         piece[first] = first;
         waiting.push(first);
         while let Some(i) = waiting.pop() {
-            for (entry, j) in bonds.family(i) {
-                if piece[j] == usize::MAX && bonds.is_present(entry) {
+            let present = bonds
+                .family(i)
+                .filter(|&(entry, _)| bonds.is_present(entry));
+            for j in present.filter_map(|(_, site)| bonds.sites().own_point(site)) {
+                if piece[j] == usize::MAX {
                     piece[j] = first;
                     waiting.push(j);
                 }

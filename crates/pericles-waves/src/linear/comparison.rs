@@ -101,6 +101,8 @@ impl CostComparison {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+
     use pericles::family::BondList;
     use pericles::space::{Grid, Region, Shape};
 
@@ -125,7 +127,8 @@ mod tests {
             for horizon in [1.0, 3.0, 3.6, 8.0] {
                 for correction in [VolumeCorrection::None, VolumeCorrection::Extended] {
                     let costs = CostComparison::new(&cloud, horizon, correction).unwrap();
-                    let list = BondList::new(&cloud, horizon, correction).unwrap();
+                    let shared = Arc::new(cloud.clone());
+                    let list = BondList::new(&shared, horizon, correction).unwrap();
                     assert_eq!(costs.directed_bonds, list.directed_bonds() as f64);
                 }
             }

@@ -1,14 +1,15 @@
 //! All families of a body, in compressed rows of eight.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::search::{bond_vector, distance, pairs_where, pairs_within};
+use super::search::{bond_vector, distance, pairs_of};
 use super::{Crack, EndRule, VolumeCorrection};
 use crate::error::{PericlesError, Result};
 use crate::lanes::LANES;
-use crate::space::{PointCloud, PointSet};
+use crate::space::{PointCloud, PointSet, Sites};
 
 /// What a crack removed.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,13 +20,16 @@ pub struct Cut {
     pub points: PointSet,
 }
 
-/// The bonds of every point: compressed rows whose length is padded to whole groups of [`LANES`].
+/// The bonds of every own point: compressed rows whose length is padded to whole groups of [`LANES`].
 ///
 /// Group g holds the neighbours `base[g] + offsets[g * LANES + k]`; bit k of `present[g]` says whether its k-th bond exists. Point i owns the groups
 /// `start[i]..start[i + 1]`; one whose neighbours were too far apart for two bytes is split. Padding entries name the neighbour before them, so that computing them
 /// is harmless. Each bond is stored at both of its ends, in ascending order of the neighbour's number.
+///
+/// Neighbours are [`Sites`]: points, ghosts of other processes and images beyond periodic faces. Methods about the geometry of a bond take the sites of both of its ends; that of point i is [`BondList::site`].
 #[derive(Debug, Clone)]
 pub struct BondList {
+    sites: Arc<Sites>,
     start: Vec<usize>,
     base: Vec<u32>,
     offsets: Vec<u16>,
@@ -41,15 +45,24 @@ pub struct BondList {
 #[derive(Debug, Clone)]
 enum Horizons {
     Uniform(f64),
-    /// A bond reaches as far as the farther-reaching of its ends.
-    PerPoint(Vec<f64>),
+    /// By site. A bond reaches as far as the farther-reaching of its ends.
+    PerSite(Vec<f64>),
 }
 
 impl Horizons {
-    fn of(&self, i: usize) -> f64 {
+    fn of(&self, site: usize) -> f64 {
         match self {
             Self::Uniform(horizon) => *horizon,
-            Self::PerPoint(horizons) => horizons[i],
+            Self::PerSite(horizons) => horizons[site],
+        }
+    }
+}
+
+impl Horizons {
+    fn largest(&self) -> f64 {
+        match self {
+            Self::Uniform(horizon) => *horizon,
+            Self::PerSite(horizons) => horizons.iter().copied().fold(0.0, f64::max),
         }
     }
 }
@@ -59,22 +72,15 @@ impl BondList {
     ///
     /// # Errors
     /// A horizon that reaches no neighbour at all.
-    pub fn new(cloud: &PointCloud, horizon: f64, correction: VolumeCorrection) -> Result<Self> {
+    pub fn new(
+        cloud: &Arc<PointCloud>,
+        horizon: f64,
+        correction: VolumeCorrection,
+    ) -> Result<Self> {
         let reach = correction.reach(horizon, cloud.spacing());
-        let (row_start, pairs) = pairs_within(cloud, reach);
-        if pairs.is_empty() {
-            return Err(PericlesError::HorizonTooSmall {
-                horizon,
-                spacing: cloud.spacing(),
-            });
-        }
-        Ok(Self::of_pairs(
-            cloud.len(),
-            &row_start,
-            &pairs,
-            Horizons::Uniform(horizon),
-            correction,
-        ))
+        let sites = Sites::new(cloud, reach);
+        let horizons = Horizons::Uniform(horizon);
+        Self::of_sites(sites, reach, horizons, correction, &|_, _, r| r <= reach)
     }
 
     /// The families of a cloud whose points have different horizons: a bond exists if it is within reach of one of its ends.
@@ -85,41 +91,41 @@ impl BondList {
     /// # Panics
     /// If there is not one horizon for each point.
     pub fn with_horizons(
-        cloud: &PointCloud,
+        cloud: &Arc<PointCloud>,
         horizons: Vec<f64>,
         correction: VolumeCorrection,
     ) -> Result<Self> {
         assert_eq!(horizons.len(), cloud.len(), "one horizon for each point");
         let largest = horizons.iter().copied().fold(0.0, f64::max);
-        let wanted = |i: usize, j: usize, distance: f64| {
-            let cell = mean_cell(cloud, i, j);
-            distance <= correction.reach(horizons[i].max(horizons[j]), cell)
+        let reach = correction.reach(cloud.domain().max(largest), cloud.spacing());
+        let sites = Sites::new(cloud, reach);
+        let horizons = sites.spread(&horizons).into_owned();
+        let places = sites.places();
+        let wanted = |a: usize, b: usize, distance: f64| {
+            let cell = mean_cell(places, a, b);
+            distance <= correction.reach(horizons[a].max(horizons[b]), cell)
         };
-        let reach = correction.reach(largest, cloud.spacing());
-        let (row_start, pairs) = pairs_where(cloud, reach, &wanted);
-        if pairs.is_empty() {
-            return Err(PericlesError::HorizonTooSmall {
-                horizon: largest,
-                spacing: cloud.spacing(),
-            });
-        }
-        let horizons = Horizons::PerPoint(horizons);
-        Ok(Self::of_pairs(
-            cloud.len(),
-            &row_start,
-            &pairs,
-            horizons,
-            correction,
-        ))
+        let all = Horizons::PerSite(horizons.clone());
+        Self::of_sites(sites.clone(), reach, all, correction, &wanted)
     }
 
-    fn of_pairs(
-        n: usize,
-        row_start: &[usize],
-        pairs: &[u32],
+    fn of_sites(
+        sites: Sites,
+        reach: f64,
         horizons: Horizons,
         correction: VolumeCorrection,
-    ) -> Self {
+        wanted: &(dyn Fn(usize, usize, f64) -> bool + Sync),
+    ) -> Result<Self> {
+        let n = sites.cloud().len();
+        let place = |i: usize| sites.of_point(i);
+        let (row_start, pairs) = pairs_of(sites.places(), n, &place, reach, wanted);
+        let domain = sites.cloud().domain();
+        if domain.all(pairs.is_empty()) {
+            return Err(PericlesError::HorizonTooSmall {
+                horizon: domain.max(horizons.largest()),
+                spacing: sites.cloud().spacing(),
+            });
+        }
         let groups = pairs.len() / LANES + n;
         let mut start = Vec::with_capacity(n + 1);
         let mut base = Vec::with_capacity(groups);
@@ -129,7 +135,9 @@ impl BondList {
         for i in 0..n {
             let mut row = &pairs[row_start[i]..row_start[i + 1]];
             while let Some(&first) = row.first() {
-                let near = |&j: &u32| j - first <= u32::from(u16::MAX);
+                let number = sites.number(first as usize);
+                // By numbers in the whole body, so that groups do not depend on the division.
+                let near = |&j: &u32| sites.number(j as usize) - number <= u64::from(u16::MAX);
                 let len = row[..row.len().min(LANES)].partition_point(near);
                 let (group, rest) = row.split_at(len);
                 base.push(first);
@@ -144,7 +152,8 @@ impl BondList {
         base.shrink_to_fit();
         offsets.shrink_to_fit();
         geometric.shrink_to_fit();
-        Self {
+        Ok(Self {
+            sites: Arc::new(sites),
             start,
             base,
             offsets,
@@ -152,14 +161,16 @@ impl BondList {
             geometric,
             horizons,
             correction,
-        }
+        })
     }
 
-    /// Removes the bonds that meet a crack.
+    /// Removes the bonds that meet a crack. Those through periodic faces meet its images too.
     ///
     /// # Errors
     /// A crack of another dimension than the cloud's, or without extent.
-    pub fn cut(&mut self, cloud: &PointCloud, crack: &Crack, rule: EndRule) -> Result<Cut> {
+    pub fn cut(&mut self, crack: &Crack, rule: EndRule) -> Result<Cut> {
+        let sites = Arc::clone(&self.sites);
+        let cloud = sites.cloud();
         if crack.dimension() != cloud.dimension() {
             return Err(PericlesError::WrongDimension {
                 what: "a crack of this kind",
@@ -175,11 +186,11 @@ impl BondList {
             .with_min_len(256)
             .map(|(i, row)| {
                 let mut removed = 0;
-                let here = cloud.point(i);
+                let here = sites.of_point(i);
                 for (g, present) in row.iter_mut().enumerate() {
                     for k in 0..LANES {
                         let j = neighbour(list, (start[i] + g) * LANES + k);
-                        if *present >> k & 1 == 1 && cutter.cuts(here, cloud.point(j)) {
+                        if *present >> k & 1 == 1 && cutter.cuts_bond(&sites, here, j) {
                             *present &= !(1 << k);
                             removed += 1;
                         }
@@ -196,6 +207,22 @@ impl BondList {
         })
     }
 
+    /// The sites that the bonds lead to.
+    pub fn sites(&self) -> &Sites {
+        &self.sites
+    }
+
+    /// The same, shared.
+    pub(crate) fn shared_sites(&self) -> Arc<Sites> {
+        Arc::clone(&self.sites)
+    }
+
+    /// The site of an own point.
+    #[inline(always)]
+    pub fn site(&self, i: usize) -> usize {
+        self.sites.of_point(i)
+    }
+
     /// First group of each point, and the number of groups at the end.
     pub fn start(&self) -> &[usize] {
         &self.start
@@ -206,7 +233,7 @@ impl BondList {
         self.start[i]..self.start[i + 1]
     }
 
-    /// The neighbours of a group, all below the number of points.
+    /// The neighbours of a group, all below the number of sites.
     #[inline(always)]
     pub fn group(&self, group: usize) -> [usize; LANES] {
         let base = self.base[group] as usize;
@@ -238,7 +265,7 @@ impl BondList {
         self.present[entry / LANES] >> (entry % LANES) & 1 == 1
     }
 
-    /// Number of points.
+    /// Number of own points.
     pub fn len(&self) -> usize {
         self.start.len() - 1
     }
@@ -255,17 +282,14 @@ impl BondList {
 
     /// Horizon δ, the largest if there are several, m.
     pub fn horizon(&self) -> f64 {
-        match &self.horizons {
-            Horizons::Uniform(horizon) => *horizon,
-            Horizons::PerPoint(horizons) => horizons.iter().copied().fold(0.0, f64::max),
-        }
+        self.horizons.largest()
     }
 
     /// Horizon δ, m, if it is the same everywhere.
     pub fn uniform_horizon(&self) -> Option<f64> {
         match &self.horizons {
             Horizons::Uniform(horizon) => Some(*horizon),
-            Horizons::PerPoint(_) => None,
+            Horizons::PerSite(_) => None,
         }
     }
 
@@ -283,26 +307,23 @@ impl BondList {
         })
     }
 
-    /// The partial-volume factor κ of the bond between two points: the mean of what its ends see.
-    pub fn volume_factor(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
+    /// The partial-volume factor κ of the bond between two sites: the mean of what its ends see.
+    pub fn volume_factor(&self, a: usize, b: usize) -> f64 {
         match &self.horizons {
             Horizons::Uniform(horizon) => {
-                let cell = mean_cell(cloud, i, j);
-                self.correction
-                    .factor(distance(cloud, i, j), *horizon, cell)
+                let cell = mean_cell(self.sites.places(), a, b);
+                self.correction.factor(self.length(a, b), *horizon, cell)
             }
-            Horizons::PerPoint(_) => {
-                0.5 * (self.end_factor(cloud, i, j) + self.end_factor(cloud, j, i))
-            }
+            Horizons::PerSite(_) => 0.5 * (self.end_factor(a, b) + self.end_factor(b, a)),
         }
     }
 
-    /// The partial-volume factor κ that point i sees of its bond to j: zero beyond its own reach.
-    pub fn end_factor(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
+    /// The partial-volume factor κ that site a sees of its bond to b: zero beyond its own reach.
+    pub fn end_factor(&self, a: usize, b: usize) -> f64 {
         let (r, cell, horizon) = (
-            distance(cloud, i, j),
-            mean_cell(cloud, i, j),
-            self.horizons.of(i),
+            self.length(a, b),
+            mean_cell(self.sites.places(), a, b),
+            self.horizons.of(a),
         );
         if r <= self.correction.reach(horizon, cell) {
             self.correction.factor(r, horizon, cell)
@@ -311,19 +332,25 @@ impl BondList {
         }
     }
 
-    /// Reference length of the bond between two points, m.
-    pub fn length(&self, cloud: &PointCloud, i: usize, j: usize) -> f64 {
-        distance(cloud, i, j)
+    /// Reference length of the bond between two sites, m.
+    pub fn length(&self, a: usize, b: usize) -> f64 {
+        distance(self.sites.places(), a, b)
     }
 
-    /// Reference vector ξ from point i to point j, m.
-    pub fn vector(&self, cloud: &PointCloud, i: usize, j: usize) -> [f64; 3] {
-        bond_vector(cloud, i, j)
+    /// Reference vector ξ from site a to site b, m.
+    pub fn vector(&self, a: usize, b: usize) -> [f64; 3] {
+        bond_vector(self.sites.places(), a, b)
+    }
+
+    /// The volume of a site, m³.
+    pub fn volume(&self, site: usize) -> f64 {
+        self.sites.places().volumes()[site]
     }
 
     /// Memory of the list, bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.start[..])
+        self.sites.bytes()
+            + size_of_val(&self.start[..])
             + size_of_val(&self.base[..])
             + size_of_val(&self.offsets[..])
             + self.present.len()
@@ -356,8 +383,8 @@ mod tests {
     use super::*;
     use crate::space::{Grid, Shape};
 
-    fn plate(cells: f64) -> PointCloud {
-        Grid {
+    fn plate(cells: f64) -> Arc<PointCloud> {
+        let grid = Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],
                 size: vec![cells, cells],
@@ -365,9 +392,8 @@ mod tests {
             spacing: 1.0,
             section: 1.0,
             holes: vec![],
-        }
-        .points()
-        .unwrap()
+        };
+        Arc::new(grid.points().unwrap())
     }
 
     #[test]
@@ -391,12 +417,12 @@ mod tests {
             from: [0.0, 6.0],
             to: [6.0, 6.0],
         };
-        let cut = bonds.cut(&cloud, &crack, EndRule::Closed).unwrap();
+        let cut = bonds.cut(&crack, EndRule::Closed).unwrap();
         assert_eq!(before - bonds.directed_bonds(), 2 * cut.bonds);
-        let again = bonds.cut(&cloud, &crack, EndRule::Closed).unwrap();
+        let again = bonds.cut(&crack, EndRule::Closed).unwrap();
         assert_eq!((again.bonds, again.points.len()), (0, 0));
         let mut open = BondList::new(&cloud, 3.0, VolumeCorrection::None).unwrap();
-        let kept = cut.bonds - open.cut(&cloud, &crack, EndRule::Open).unwrap().bonds;
+        let kept = cut.bonds - open.cut(&crack, EndRule::Open).unwrap().bonds;
         // Through the closed end pass the six bonds of types (1,1), twice, and (2,2) … that lie symmetrically about it.
         assert_eq!(kept, 6);
     }

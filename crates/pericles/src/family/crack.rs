@@ -1,7 +1,7 @@
 //! Pre-cracks: surfaces that cut bonds before the run starts.
 
 use crate::error::{PericlesError, Result};
-use crate::space::Point;
+use crate::space::{Point, Sites};
 
 /// A surface no bond may cross.
 #[derive(Debug, Clone, PartialEq)]
@@ -262,6 +262,30 @@ impl Cutter {
                 ])
             }
         }
+    }
+
+    /// Whether the bond between two sites, or one of its images beyond periodic faces, meets the crack. Both ends of a bond compute it from the same numbers.
+    pub fn cuts_bond(&self, sites: &Sites, here: usize, there: usize) -> bool {
+        let places = sites.places();
+        let shift = sites.shift(there);
+        if shift == [0; 3] {
+            return self.cuts(places.point(here), places.point(there));
+        }
+        let periods = sites.periods();
+        let unmoved = sites.of_point(sites.point(there));
+        let [p, q] = [here, unmoved].map(|site| places.point(site));
+        let moved = |x: Point, by: [i16; 3]| -> Point {
+            std::array::from_fn(|c| x[c] + f64::from(by[c]) * periods[c])
+        };
+        let steps = |c: usize| shift[c].min(0)..=shift[c].max(0);
+        steps(2).any(|z| {
+            steps(1).any(|y| {
+                steps(0).any(|x| {
+                    let [p_by, q_by] = [[-x, -y, -z], [shift[0] - x, shift[1] - y, shift[2] - z]];
+                    self.cuts(moved(p, p_by), moved(q, q_by))
+                })
+            })
+        })
     }
 
     /// Distance of a point from the surface.

@@ -20,11 +20,23 @@ pub fn pairs_where(
     reach: f64,
     wanted: &(dyn Fn(usize, usize, f64) -> bool + Sync),
 ) -> (Vec<usize>, Vec<u32>) {
+    pairs_of(cloud, cloud.len(), &|k| k, reach, wanted)
+}
+
+/// The same for the places of a cloud that `place` gives for the rows 0 to `rows`.
+pub(super) fn pairs_of(
+    cloud: &PointCloud,
+    rows: usize,
+    place: &(dyn Fn(usize) -> usize + Sync),
+    reach: f64,
+    wanted: &(dyn Fn(usize, usize, f64) -> bool + Sync),
+) -> (Vec<usize>, Vec<u32>) {
     let cells = CellList::new(cloud, reach);
-    let rows: Vec<Vec<u32>> = (0..cloud.len())
+    let rows: Vec<Vec<u32>> = (0..rows)
         .into_par_iter()
         .with_min_len(256)
-        .map(|i| {
+        .map(|row| {
+            let i = place(row);
             let mut row = Vec::new();
             cells.for_each_near(i, reach, |j, distance| {
                 if j != i && wanted(i, j, distance) {

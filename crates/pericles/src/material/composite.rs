@@ -2,6 +2,7 @@
 
 use super::BondConstants;
 use crate::error::{PericlesError, Result};
+use crate::space::Sites;
 
 /// The constant c of a bond between two materials, from theirs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -93,6 +94,15 @@ impl PairClasses {
         );
         self.critical_stretch[a * self.count + b] = stretch;
         self.critical_stretch[b * self.count + a] = stretch;
+    }
+
+    /// The same by the sites that bonds lead to.
+    pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
+        let numbers: Vec<f64> = self.of_point.iter().map(|&k| f64::from(k)).collect();
+        Self {
+            of_point: sites.spread(&numbers).iter().map(|&k| k as u8).collect(),
+            ..self.clone()
+        }
     }
 
     /// The number of each point's material.

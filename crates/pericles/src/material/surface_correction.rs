@@ -78,16 +78,11 @@ fn ellipsoid([a, b]: [&Tensor; 2], xi: [f64; 3]) -> f64 {
 
 impl SurfaceCorrection {
     /// The factors of a body.
-    pub fn factors(
-        self,
-        cloud: &PointCloud,
-        bonds: &BondList,
-        material: &BondMaterial,
-    ) -> SurfaceFactors {
+    pub fn factors(self, bonds: &BondList, material: &BondMaterial) -> SurfaceFactors {
         /// Two leave 7 % of the tension of thin bars, further ones make shear softer.
         const PASSES: usize = 3;
         let body = Body {
-            cloud,
+            cloud: bonds.sites().cloud(),
             bonds,
             material,
         };
@@ -99,7 +94,7 @@ impl SurfaceCorrection {
                 for _ in 0..PASSES {
                     body.improve(&mut points);
                 }
-                SurfaceFactors::Directional(points.iter().map(Directions::tensor).collect())
+                SurfaceFactors::Directional(body.tensors(&points))
             }
         }
     }
@@ -155,13 +150,15 @@ impl Body<'_> {
         let interior = cells * volume;
         let volumes = self.cloud.volumes();
         let factor = |i: usize| {
-            let family = self.bonds.family(i);
+            let (bonds, here) = (self.bonds, self.bonds.site(i));
+            let family = bonds.family(i);
             let sum: f64 = family
-                .map(|(_, j)| self.bonds.volume_factor(self.cloud, i, j) * volumes[j])
+                .map(|(_, b)| bonds.volume_factor(here, b) * bonds.volume(b))
                 .sum();
             interior / (volumes[i] + sum)
         };
-        SurfaceFactors::Scalar(self.for_each_point(factor))
+        let factors = self.for_each_point(factor);
+        SurfaceFactors::Scalar(self.bonds.sites().spread(&factors).into_owned())
     }
 
     /// α |ξ| of a bond.
@@ -206,12 +203,12 @@ impl Body<'_> {
     fn principal_axes(&self, i: usize) -> [[f64; 3]; 3] {
         /// Rounding of the sums, far below what bends an axis.
         const NOTHING: f64 = 1e-9;
-        let (cloud, bonds) = (self.cloud, self.bonds);
+        let (bonds, here) = (self.bonds, self.bonds.site(i));
         let mut moment = [[0.0; 3]; 3];
-        for (_, j) in bonds.family(i) {
-            let (xi, r) = (bonds.vector(cloud, i, j), bonds.length(cloud, i, j));
-            let weight = self.weight(xi, r) * bonds.volume_factor(cloud, i, j);
-            let weight = weight * cloud.volumes()[j];
+        for (_, b) in bonds.family(i) {
+            let (xi, r) = (bonds.vector(here, b), bonds.length(here, b));
+            let weight = self.weight(xi, r) * bonds.volume_factor(here, b);
+            let weight = weight * bonds.volume(b);
             for (row, a) in moment.iter_mut().zip(xi) {
                 for (entry, b) in row.iter_mut().zip(xi) {
                     *entry += weight * (a / r) * (b / r);
@@ -228,20 +225,37 @@ impl Body<'_> {
         }
     }
 
+    /// The tensors of all sites.
+    fn tensors(&self, points: &[Directions]) -> Vec<Tensor> {
+        let own: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
+        let sites = self.bonds.sites();
+        if sites.are_points() {
+            return own;
+        }
+        let entry = |k: usize| {
+            let of_points: Vec<f64> = own.iter().map(|tensor| tensor[k]).collect();
+            sites.spread(&of_points).into_owned()
+        };
+        let entries: [Vec<f64>; 6] = std::array::from_fn(entry);
+        (0..sites.len())
+            .map(|site| std::array::from_fn(|k| entries[k][site]))
+            .collect()
+    }
+
     /// Takes factors under which the energies of corrected bonds are nearer those of the interior.
     fn improve(&self, points: &mut [Directions]) {
-        let (cloud, bonds, volumes) = (self.cloud, self.bonds, self.cloud.volumes());
-        let tensors: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
+        let bonds = self.bonds;
+        let tensors = self.tensors(points);
         let improved: Vec<[f64; 3]> = self.for_each_point(|i| {
-            let own = &points[i];
+            let (own, here) = (&points[i], bonds.site(i));
             let mut sums = [0.0; 3];
-            for (_, j) in bonds.family(i) {
-                let (xi, r) = (bonds.vector(cloud, i, j), bonds.length(cloud, i, j));
-                let factor = ellipsoid([&tensors[i], &tensors[j]], xi);
-                let weight = factor * self.weight(xi, r) * bonds.volume_factor(cloud, i, j);
+            for (_, b) in bonds.family(i) {
+                let (xi, r) = (bonds.vector(here, b), bonds.length(here, b));
+                let factor = ellipsoid([&tensors[here], &tensors[b]], xi);
+                let weight = factor * self.weight(xi, r) * bonds.volume_factor(here, b);
                 add(
                     &mut sums,
-                    weight * volumes[j],
+                    weight * bonds.volume(b),
                     self.energies(&own.axes, xi, r),
                 );
             }

@@ -221,7 +221,7 @@ impl BondBody<'_> {
         let cuts = self
             .cracks
             .iter()
-            .map(|(crack, rule)| bonds.cut(self.cloud, crack, *rule))
+            .map(|(crack, rule)| bonds.cut(crack, *rule))
             .collect::<Result<_>>()?;
         Ok((bonds, cuts))
     }
@@ -234,7 +234,8 @@ impl BondBody<'_> {
         let material = self.material;
         let (bonds, cuts) = self.families()?;
         let constants = self.constants;
-        let mean = |i: usize, j: usize| match self.stiffness {
+        let stiffness = self.cloud.domain().with_ghosts(self.stiffness);
+        let mean = |i: usize, j: usize| match &stiffness[..] {
             [] => 1.0,
             stiffness => 0.5 * (stiffness[i] + stiffness[j]),
         };

@@ -99,20 +99,23 @@ impl CompositeBody<'_> {
             ..
         } = self.body;
         let (bonds, cuts) = self.body.families()?;
-        let factors = self.correction.factors(cloud, &bonds, material);
-        let inclusion = |i: usize, j: usize| match stiffness {
+        let sites = bonds.shared_sites();
+        let factors = self.correction.factors(&bonds, material);
+        let stiffness = sites.spread(stiffness);
+        let inclusion = |a: usize, b: usize| match &stiffness[..] {
             [] => 1.0,
-            _ => 0.5 * (stiffness[i] + stiffness[j]),
+            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
         };
-        let stiffness_of_pair = |bonds: &BondList, i: usize, j: usize| {
-            let xi = bonds.vector(cloud, i, j);
+        let classes = self.classes.map(|classes| classes.on_sites(&sites));
+        let stiffness_of_pair = |bonds: &BondList, a: usize, b: usize| {
+            let xi = bonds.vector(a, b);
             let alpha = material.influence.alpha_of(xi, material.horizon);
-            let micromodulus = match self.classes {
-                Some(classes) => classes.micromodulus(i, j),
+            let micromodulus = match &classes {
+                Some(classes) => classes.micromodulus(a, b),
                 None => constants.micromodulus,
             };
-            let relative = inclusion(i, j) * factors.of_bond(i, j, xi);
-            relative * micromodulus * alpha * bonds.volume_factor(cloud, i, j)
+            let relative = inclusion(a, b) * factors.of_bond(a, b, xi);
+            relative * micromodulus * alpha * bonds.volume_factor(a, b)
         };
         let breaking = Breaking {
             critical_stretch: constants.critical_stretch,

@@ -1,8 +1,10 @@
 //! Damage by breaking bonds: which are left, and what those lost took with them. One account for every form of operator.
 
 use crate::archive::{Archive, Counter, SavedUnder, Values};
+use crate::domain::Domain;
 use crate::error::Result;
 use crate::step_end::{BreakingBond, StepEnd};
+use crate::sum::BinnedSum;
 
 /// How damage weighs bonds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,7 +56,7 @@ pub(super) struct Tally {
     /// Bonds broken by steps too coarse for them, once for each end that found it; not saved, as every step settles its own.
     pub coarse: Vec<CoarseBreak>,
     /// Σ over directed bonds broken of V/2 times the energy dissipated, J.
-    pub dissipated: f64,
+    pub dissipated: BinnedSum,
     /// Directed bonds broken.
     pub broken: Counter,
     /// The entries broken in the last sweep, if they were asked for.
@@ -88,7 +90,7 @@ impl Tally {
     pub fn book<const D: usize>(&mut self, step: &StepEnd<'_>, bond: &BreakingBond<D>) -> f64 {
         let dissipated = step.dissipated(bond);
         let half = 0.5 * dissipated;
-        self.dissipated += half;
+        self.dissipated.add(half);
         self.broken.add(1);
         self.coarse.extend(CoarseBreak::of(bond, dissipated));
         half
@@ -114,7 +116,7 @@ pub fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
 /// Books energy, J.
 pub(super) fn dissipate(blocks: &mut [BlockDamage], energy: f64) {
     if let Some(block) = blocks.first_mut() {
-        block.tally.dissipated += energy;
+        block.tally.dissipated.add(energy);
     }
 }
 
@@ -128,24 +130,29 @@ impl BlockDamage {
     }
 
     /// The second end of a bond whose first one broke: clears it, and books its half of the energy, unless that is done.
-    pub fn break_other_end(&mut self, group: usize, lane: usize, event: &BreakEvent) {
+    pub fn break_other_end(&mut self, group: usize, lane: usize, dissipated: f64) {
         if self.intact[group] >> lane & 1 == 1 {
             self.intact[group] &= !(1 << lane);
             self.tally.broken.add(1);
-            self.tally.dissipated += event.dissipated;
+            self.tally.dissipated.add(dissipated);
         }
     }
 }
 
-/// Energy dissipated, J.
-pub(super) fn dissipated(blocks: &[BlockDamage]) -> f64 {
-    blocks.iter().map(|block| block.tally.dissipated).sum()
+/// Energy dissipated by all processes, J.
+pub(super) fn dissipated(domain: &Domain, blocks: &[BlockDamage]) -> f64 {
+    domain.total(own_dissipation(blocks))
 }
 
-/// Bonds broken, each counted once.
-pub(super) fn broken_bonds(blocks: &[BlockDamage]) -> u64 {
+fn own_dissipation(blocks: &[BlockDamage]) -> BinnedSum {
+    let sums = blocks.iter().map(|block| block.tally.dissipated);
+    sums.fold(BinnedSum::default(), BinnedSum::merged)
+}
+
+/// Bonds broken in all processes, each counted once.
+pub(super) fn broken_bonds(domain: &Domain, blocks: &[BlockDamage]) -> u64 {
     let directed: Counter = blocks.iter().map(|block| block.tally.broken).sum();
-    directed.get() / 2
+    domain.count(directed.get()) / 2
 }
 
 /// Bonds left, each counted twice.
@@ -158,34 +165,39 @@ impl SavedUnder for Vec<BlockDamage> {
     fn save_under(&self, name: &str, archive: &mut Archive) {
         let groups = self.iter().map(|block| block.intact.len()).sum();
         let mut all = Vec::with_capacity(groups);
-        let (mut directed, mut energies) = (Vec::new(), Vec::new());
+        let mut directed = Vec::new();
         for BlockDamage { intact, tally } in self {
             let Tally {
                 broken,
-                dissipated,
+                dissipated: _,
                 coarse: _,
                 events: _,
             } = tally;
             all.extend_from_slice(intact);
             directed.push(broken.get());
-            energies.push(*dissipated);
         }
         archive.put(format!("{name}/intact"), Values::U8(all));
         archive.put(format!("{name}/broken"), Values::U64(directed));
-        archive.put(format!("{name}/dissipated"), Values::F64(energies));
+        own_dissipation(self).save_under(&format!("{name}/dissipated"), archive);
     }
 
     fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
         let groups = self.iter().map(|block| block.intact.len()).sum();
         let mut rest = archive.exactly(&format!("{name}/intact"), groups)?;
         let broken = archive.exactly::<u64>(&format!("{name}/broken"), self.len())?;
-        let dissipated = archive.exactly(&format!("{name}/dissipated"), self.len())?;
+        let mut dissipated = BinnedSum::default();
+        let energies = format!("{name}/dissipated");
+        match archive.numbers::<f64>(&energies) {
+            // As earlier versions saved it: by blocks.
+            Ok(of_blocks) => of_blocks.iter().for_each(|&energy| dissipated.add(energy)),
+            Err(_) => dissipated.restore_under(&energies, archive)?,
+        }
         for (k, block) in self.iter_mut().enumerate() {
             let (own, after) = rest.split_at(block.intact.len());
             block.intact.copy_from_slice(own);
             rest = after;
             block.tally.broken = Counter::from(broken[k]);
-            block.tally.dissipated = dissipated[k];
+            block.tally.dissipated = std::mem::take(&mut dissipated);
         }
         Ok(())
     }

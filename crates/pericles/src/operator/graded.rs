@@ -107,35 +107,38 @@ impl GradedBody<'_> {
     fn list<L: FastLaw + 'static, const D: usize>(&self) -> Result<AssembledBonds> {
         let laws = self.laws()?;
         let cloud = self.cloud;
-        let law = |i: usize| &laws[usize::from(self.grid_of_point[i])];
-        let horizons = (0..cloud.len()).map(|i| law(i).horizon).collect();
+        let law_of = |grid: u8| &laws[usize::from(grid)];
+        let grids = self.grid_of_point.iter();
+        let horizons = grids.map(|&grid| law_of(grid).horizon).collect();
         let correction: VolumeCorrection = self.material.volume_correction;
         let mut bonds = BondList::with_horizons(cloud, horizons, correction)?;
         let cuts: Vec<Cut> = self
             .cracks
             .iter()
-            .map(|(crack, rule)| bonds.cut(cloud, crack, *rule))
+            .map(|(crack, rule)| bonds.cut(crack, *rule))
             .collect::<Result<_>>()?;
         let critical_stretch = match self.material.fracture {
             Fracture::CriticalStretch(stretch) => stretch,
             _ => f64::INFINITY,
         };
         let influence: &Influence = &self.material.influence;
+        let sites = bonds.shared_sites();
+        let grids: Vec<f64> = self.grid_of_point.iter().map(|&k| f64::from(k)).collect();
+        let (grids, stiffness) = (sites.spread(&grids), sites.spread(self.stiffness));
+        let law = |site: usize| law_of(grids[site] as u8);
         let end = |bonds: &BondList, i: usize, j: usize| {
             let EndLaw {
                 horizon,
                 micromodulus,
             } = law(i);
-            match bonds.end_factor(cloud, i, j) {
+            match bonds.end_factor(i, j) {
                 0.0 => 0.0,
-                kappa => {
-                    kappa * micromodulus * influence.alpha_of(bonds.vector(cloud, i, j), *horizon)
-                }
+                kappa => kappa * micromodulus * influence.alpha_of(bonds.vector(i, j), *horizon),
             }
         };
-        let mean = |i: usize, j: usize| match self.stiffness {
+        let mean = |a: usize, b: usize| match &stiffness[..] {
             [] => 1.0,
-            stiffness => 0.5 * (stiffness[i] + stiffness[j]),
+            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
         };
         let force = BondForce::<L, D>::with_weighted_stiffness(
             Arc::clone(cloud),

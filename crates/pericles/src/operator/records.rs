@@ -2,10 +2,12 @@
 
 use rayon::prelude::*;
 
+use crate::domain::Field;
 use crate::lanes::Row;
 use crate::parallel::BLOCK;
+use crate::space::Sites;
 
-/// One row for each point; what a row holds behind the components is its owner's.
+/// One row for each point or site; what a row holds behind the components is its owner's.
 pub type Records = [Row];
 
 /// Writes a component-major field to the first numbers of the rows.
@@ -25,4 +27,18 @@ pub fn pack_part<const D: usize>(field: &[f64], n: usize, first: usize, records:
             record[c] = *number;
         }
     }
+}
+
+/// Writes a vector on points to the rows of all sites.
+pub fn pack_sites<const D: usize>(field: Field<'_>, sites: &Sites, records: &mut Records) {
+    records
+        .par_chunks_mut(BLOCK)
+        .enumerate()
+        .for_each(|(part, records)| {
+            for (site, record) in (part * BLOCK..).zip(records) {
+                for c in 0..D {
+                    record[c] = field.at::<D>(c, sites.point(site));
+                }
+            }
+        });
 }

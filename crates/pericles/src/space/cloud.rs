@@ -234,18 +234,123 @@ impl PointCloud {
         &self.domain
     }
 
-    /// The same points as those of one of several processes.
+    /// The same points as those of one of several processes, with the spacing of the whole body, m.
     ///
     /// # Panics
     /// If the domain owns another number of points.
     #[must_use]
-    pub fn with_domain(self, domain: Domain) -> Self {
+    pub fn with_domain(self, domain: Domain, spacing: f64) -> Self {
         assert_eq!(
             domain.owned_points(),
             self.len(),
             "one volume for each own point"
         );
-        Self { domain, ..self }
+        Self {
+            domain,
+            spacing,
+            ..self
+        }
+    }
+
+    /// The part of this body that a process owns, by the numbers of its points.
+    ///
+    /// # Panics
+    /// If a number is not one of this body's points.
+    #[must_use]
+    pub fn part(&self, domain: Domain) -> Self {
+        let own: Vec<usize> = (0..domain.owned_points())
+            .map(|k| domain.number(k))
+            .collect();
+        let axis = |c: usize| own.iter().map(move |&k| self.axis(c)[k]);
+        let lattice = self.lattice.as_ref().map(|lattice| Lattice {
+            node: own.iter().map(|&k| lattice.node[k]).collect(),
+            ..lattice.clone()
+        });
+        let numbers = |numbers: &Vec<u32>| match numbers.is_empty() {
+            true => Vec::new(),
+            false => own.iter().map(|&k| numbers[k]).collect(),
+        };
+        Self {
+            positions: (0..self.dimension).flat_map(axis).collect(),
+            volumes: own.iter().map(|&k| self.volumes[k]).collect(),
+            lattice,
+            user_numbers: own.iter().map(|&k| self.user_number(k) as u32).collect(),
+            blocks: numbers(&self.blocks),
+            domain,
+            ..*self
+        }
+    }
+
+    /// The own points with the ghosts behind them, as points of one process. Every process must ask at the same time.
+    pub(super) fn with_ghost_points(&self) -> Self {
+        let axis = |c: usize| self.domain.with_ghosts(self.axis(c));
+        let positions: Vec<f64> = (0..self.dimension)
+            .flat_map(|c| axis(c).into_owned())
+            .collect();
+        let lattice = self.lattice.as_ref().map(|lattice| {
+            let nodes: Vec<f64> = lattice.node.iter().map(|&node| f64::from(node)).collect();
+            let nodes = self.domain.with_ghosts(&nodes);
+            Lattice {
+                node: nodes.iter().map(|&node| node as u32).collect(),
+                ..lattice.clone()
+            }
+        });
+        let volumes = self.domain.with_ghosts(&self.volumes).into_owned();
+        Self {
+            domain: Domain::alone(volumes.len()),
+            positions,
+            volumes,
+            lattice,
+            user_numbers: Vec::new(),
+            blocks: Vec::new(),
+            ..*self
+        }
+    }
+
+    /// Points moved by whole numbers of periods, the sides of the lattice's box; several of them may stem from one point. The nodes of their lattice are in no order.
+    pub(super) fn moved_points(&self, points: &[([i16; 3], u32)]) -> Self {
+        let n = self.len();
+        let far: [i32; 3] = std::array::from_fn(|c| {
+            let along = points.iter().map(|(shift, _)| i32::from(shift[c]).abs());
+            along.max().unwrap_or(0)
+        });
+        let lattice = self.lattice.as_ref().map(|lattice| {
+            let sides = lattice.shape.map(|nodes| nodes as i32);
+            let shape: [usize; 3] = std::array::from_fn(|c| ((2 * far[c] + 1) * sides[c]) as usize);
+            let node = |&(shift, point): &([i16; 3], u32)| {
+                let at = lattice.coordinates(lattice.node[point as usize]);
+                let [x, y, z] = std::array::from_fn(|c| {
+                    (at[c] + (i32::from(shift[c]) + far[c]) * sides[c]) as usize
+                });
+                (x + shape[0] * (y + shape[1] * z)) as u32
+            };
+            Lattice {
+                spacing: lattice.spacing,
+                shape,
+                node: points.iter().map(node).collect(),
+            }
+        });
+        let side = |c: usize| match &self.lattice {
+            Some(lattice) => lattice.shape[c] as f64 * lattice.spacing,
+            None => 0.0,
+        };
+        let moved = |c: usize| {
+            let (axis, side) = (&self.positions[c * n..(c + 1) * n], side(c));
+            points
+                .iter()
+                .map(move |&(shift, point)| axis[point as usize] + f64::from(shift[c]) * side)
+        };
+        let volume = |&(_, point): &([i16; 3], u32)| self.volumes[point as usize];
+        Self {
+            positions: (0..self.dimension).flat_map(moved).collect(),
+            volumes: points.iter().map(volume).collect(),
+            lattice,
+            periodic: false,
+            user_numbers: Vec::new(),
+            blocks: Vec::new(),
+            domain: Domain::alone(points.len()),
+            ..*self
+        }
     }
 
     /// 1, 2 or 3.

@@ -1,7 +1,7 @@
 //! Points in space: clouds, regular grids, regions and named sets.
 //!
 //! A body is a set of points with volumes. [`PointCloud`] holds it as structure of arrays; [`Grid`] makes clouds of cell
-//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Region`] says which points of space belong to a hole, a set or a layer.
+//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Sites`] are the places that bonds lead to; [`Region`] says which points of space belong to a hole, a set or a layer.
 //!
 //! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates handed to regions always have three components,
 //! the missing ones zero.
@@ -14,6 +14,7 @@ mod listed;
 mod quadrature;
 mod rectangular;
 mod region;
+mod sites;
 
 pub use cloud::{Lattice, PointCloud, PointSet};
 pub use curve::hilbert_order;
@@ -23,6 +24,7 @@ pub use listed::ListedPoints;
 pub use quadrature::gauss_bar;
 pub use rectangular::{idle_holes, rectangular_cells};
 pub use region::{Face, Region};
+pub use sites::Sites;
 
 /// A point or vector in space; components beyond the body's dimension are zero.
 pub type Point = [f64; 3];

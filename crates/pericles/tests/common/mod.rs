@@ -59,7 +59,7 @@ pub fn listed<L: FastLaw, const D: usize>(
     let constants = material.constants(cloud, state).unwrap();
     let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).unwrap();
     if let Some(crack) = crack {
-        bonds.cut(cloud, &crack, EndRule::Closed).unwrap();
+        bonds.cut(&crack, EndRule::Closed).unwrap();
     }
     BondForce::new(
         cloud.clone(),

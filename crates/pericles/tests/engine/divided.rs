@@ -1,8 +1,8 @@
 //! A body divided among several processes, here threads that talk through mailboxes: every bit is that of one process.
 
-use std::collections::VecDeque;
-use std::sync::{Arc, Barrier, Condvar, Mutex};
+use std::sync::Arc;
 
+use crate::processes::on_processes;
 use crate::state_based::{Dilatational, Wall};
 use pericles::domain::{Comm, Domain, Peer};
 use pericles::operator::TwoPassForce;
@@ -15,91 +15,6 @@ use pericles::{Control, PointScalar, Simulation, System};
 
 const HORIZON: f64 = 2.1;
 const SIDES: [usize; 2] = [9, 7];
-
-/// What the threads share.
-struct Office {
-    barrier: Barrier,
-    /// Of the sums and maxima under way.
-    numbers: Mutex<(Vec<i128>, Vec<f64>)>,
-    /// Letters from one thread to another.
-    letters: Mutex<Vec<Vec<VecDeque<Vec<f64>>>>>,
-    delivered: Condvar,
-}
-
-struct Threads {
-    rank: usize,
-    size: usize,
-    office: Arc<Office>,
-}
-
-impl Threads {
-    /// Lets every thread combine its numbers with the shared ones, one after another, and read the result.
-    fn combine(
-        &self,
-        add: impl FnOnce(&mut (Vec<i128>, Vec<f64>)),
-        read: impl FnOnce(&(Vec<i128>, Vec<f64>)),
-    ) {
-        add(&mut self.office.numbers.lock().unwrap());
-        self.office.barrier.wait();
-        read(&self.office.numbers.lock().unwrap());
-        if self.office.barrier.wait().is_leader() {
-            *self.office.numbers.lock().unwrap() = Default::default();
-        }
-        self.office.barrier.wait();
-    }
-}
-
-impl Comm for Threads {
-    fn rank(&self) -> usize {
-        self.rank
-    }
-
-    fn size(&self) -> usize {
-        self.size
-    }
-
-    fn exchange(&self, peers: &[usize], sent: &[Vec<f64>], received: &mut [Vec<f64>]) {
-        let mut letters = self.office.letters.lock().unwrap();
-        for (&peer, letter) in peers.iter().zip(sent) {
-            letters[self.rank][peer].push_back(letter.clone());
-        }
-        self.office.delivered.notify_all();
-        for (&peer, place) in peers.iter().zip(received) {
-            *place = loop {
-                match letters[peer][self.rank].pop_front() {
-                    Some(letter) => break letter,
-                    None => letters = self.office.delivered.wait(letters).unwrap(),
-                }
-            };
-        }
-    }
-
-    fn sum(&self, numbers: &mut [i128]) {
-        let own = numbers.to_vec();
-        let add = |shared: &mut (Vec<i128>, Vec<f64>)| {
-            shared.0.resize(own.len(), 0);
-            shared
-                .0
-                .iter_mut()
-                .zip(&own)
-                .for_each(|(sum, own)| *sum += own);
-        };
-        self.combine(add, |shared| numbers.copy_from_slice(&shared.0));
-    }
-
-    fn max(&self, numbers: &mut [f64]) {
-        let own = numbers.to_vec();
-        let add = |shared: &mut (Vec<i128>, Vec<f64>)| {
-            shared.1.resize(own.len(), f64::NEG_INFINITY);
-            shared
-                .1
-                .iter_mut()
-                .zip(&own)
-                .for_each(|(most, own)| *most = most.max(*own));
-        };
-        self.combine(add, |shared| numbers.copy_from_slice(&shared.1));
-    }
-}
 
 /// The nodes of the body with their numbers.
 fn nodes() -> Vec<[f64; 2]> {
@@ -160,7 +75,9 @@ fn part(comm: Arc<dyn Comm>) -> (System, Vec<usize>) {
     let flat: Vec<f64> = axis(0).chain(axis(1)).collect();
     let volume = |k: &usize| 1.0 + 0.1 * (*k as f64).cos();
     let cloud = PointCloud::new(2, flat, own.iter().map(volume).collect(), 1.0).unwrap();
-    let cloud = Arc::new(cloud.with_domain(Domain::new(own.len(), peers, comm)));
+    let all = numbers.iter().map(|&k| k as u32).collect();
+    let domain = Domain::new(all, own.len(), peers, comm);
+    let cloud = Arc::new(cloud.with_domain(domain, 1.0));
     let volumes = numbers.iter().map(volume).collect();
     let domain = cloud.domain().clone();
     let force = Dilatational::new(positions, volumes, &numbers, HORIZON, domain);
@@ -205,21 +122,7 @@ fn run(comm: Arc<dyn Comm>, make: Make) -> (Vec<usize>, End) {
 
 /// The same by several threads, put together in the order of numbers.
 fn divided(size: usize, make: Make) -> End {
-    let office = Arc::new(Office {
-        barrier: Barrier::new(size),
-        numbers: Mutex::default(),
-        letters: Mutex::new(vec![vec![VecDeque::new(); size]; size]),
-        delivered: Condvar::new(),
-    });
-    let parts: Vec<(Vec<usize>, End)> = std::thread::scope(|scope| {
-        let ranks: Vec<_> = (0..size)
-            .map(|rank| {
-                let office = office.clone();
-                scope.spawn(move || run(Arc::new(Threads { rank, size, office }), make))
-            })
-            .collect();
-        ranks.into_iter().map(|rank| rank.join().unwrap()).collect()
-    });
+    let parts = on_processes(size, |comm| run(comm, make));
     let mut whole = vec![[0; 4]; SIDES[0] * SIDES[1]];
     for (own, (values, sums)) in &parts {
         assert_eq!(sums, &parts[0].1.1, "every process knows the same sums");

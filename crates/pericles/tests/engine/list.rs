@@ -209,9 +209,9 @@ fn neighbours_far_apart_in_number() {
     let x = |k: usize| ((k % half) * 2 + k / half) as f64;
     let positions: Vec<f64> = (0..2 * half).map(x).collect();
     let cloud = PointCloud::new(1, positions, vec![1.0; 2 * half], 1.0).unwrap();
+    let cloud = Arc::new(cloud);
     let bonds = BondList::new(&cloud, 3.5, VolumeCorrection::None).unwrap();
     assert_eq!(bonds.directed_bonds(), 2 * (6 * half as u64 - 6));
-    let cloud = Arc::new(cloud);
     let list = BondForce::<LinearBond, 1>::with_stiffness(
         cloud.clone(),
         bonds,

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod divided;
+mod divided_bonds;
 mod dynamics;
 mod fragments;
 mod grid;
@@ -10,6 +11,8 @@ mod guard;
 mod implicit;
 mod list;
 mod multi_time_step;
+mod periodic;
+mod processes;
 mod properties;
 mod round_trip;
 mod single_precision;

@@ -325,7 +325,7 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
     let bonds = BondList::new(&cloud, steel.horizon, steel.volume_correction).unwrap();
     let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
     assert_eq!(
-        SurfaceCorrection::None.factors(&cloud, &bonds, &steel),
+        SurfaceCorrection::None.factors(&bonds, &steel),
         SurfaceFactors::None
     );
     for (correction, margin) in [
@@ -333,8 +333,8 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
         // Its condition is iterated: what is corrected reaches as many families further.
         (SurfaceCorrection::Energy, 0.12),
     ] {
-        let factors = correction.factors(&cloud, &bonds, &steel);
-        let factor = |i: usize, j: usize| factors.of_bond(i, j, bonds.vector(&cloud, i, j));
+        let factors = correction.factors(&bonds, &steel);
+        let factor = |i: usize, j: usize| factors.of_bond(i, j, bonds.vector(i, j));
         let corner = cloud.nearest([0.0; 3]);
         let (_, beside) = bonds.family(corner).next().unwrap();
         assert!(factor(corner, beside) > 1.5 && factor(corner, beside) < 5.0);

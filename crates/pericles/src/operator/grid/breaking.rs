@@ -4,6 +4,7 @@ use super::arrays::Grid;
 use super::layout::Chunk;
 use super::numbers::GridNumber;
 use super::stencil::Offset;
+use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::lanes::Lanes;
 use crate::operator::damage::{BreakEvent, Tally};
@@ -24,6 +25,8 @@ pub(super) struct GridBreaking<'a> {
     pub point_at: &'a (dyn Fn(usize) -> usize + Sync),
     /// The step that ended.
     pub step: &'a StepEnd<'a>,
+    /// Mean velocities over the step, where it has any.
+    pub velocity: Option<Field<'a>>,
     /// Note what breaks, so that the other end can be told.
     pub note_events: bool,
 }
@@ -101,8 +104,13 @@ fn book<L: FastLaw, N: GridNumber, const D: usize>(
         let difference = |field: &[N]| -> f64 { field[there].into() - field[here].into() };
         let eta: [f64; D] = std::array::from_fn(|c| difference(grid.u[c]) * grid.unit);
         let stiffness: f64 = offset.stiffness.into();
+        let ends = [here, there].map(|place| (rule.point_at)(place - grid.margin));
         let bond = BreakingBond {
-            ends: [here, there].map(|place| (rule.point_at)(place - grid.margin)),
+            ends,
+            velocity: match rule.velocity {
+                Some(field) => field.difference::<D>(ends),
+                None => [0.0; D],
+            },
             force: L::force(xi, eta),
             energy: L::energy(xi, eta),
             critical: Some(L::energy(

@@ -8,7 +8,7 @@ use crate::error::{PericlesError, Result};
 use crate::family::{Crack, Cut, EndRule};
 use crate::lanes::LANES;
 use crate::operator::damage::BlockDamage;
-use crate::space::PointCloud;
+use crate::space::Sites;
 
 /// All bonds of the geometric families.
 pub(super) fn geometric_blocks<const D: usize>(
@@ -34,7 +34,7 @@ pub(super) fn geometric_blocks<const D: usize>(
 /// # Errors
 /// A crack of another dimension than the cloud's, or without extent.
 pub(super) fn cut<const D: usize>(
-    cloud: &PointCloud,
+    sites: &Sites,
     layout: &GridLayout,
     stencil: &Stencil<D>,
     (crack, rule): &(Crack, EndRule),
@@ -47,9 +47,10 @@ pub(super) fn cut<const D: usize>(
             dimension: D,
         });
     }
-    let cutter = crack.cutter(*rule, 1e-9 * cloud.spacing())?;
+    let spacing = sites.cloud().spacing();
+    let cutter = crack.cutter(*rule, 1e-9 * spacing)?;
     let longest = stencil.lengths().iter().copied().fold(0.0, f64::max);
-    let near = longest + 1e-6 * cloud.spacing();
+    let near = longest + 1e-6 * spacing;
     let removed: Vec<Vec<(u32, u64)>> = blocks
         .par_iter_mut()
         .enumerate()
@@ -58,18 +59,20 @@ pub(super) fn cut<const D: usize>(
             let chunks = &layout.chunks()[layout.chunks_of(block)];
             for (chunk, intact) in chunks.iter().zip(state.intact.chunks_mut(stencil.len())) {
                 for (lane, i) in chunk.points() {
-                    let here = cloud.point(i);
-                    if crack.distance(here) > near {
+                    let here = sites.of_point(i);
+                    let place = chunk.place as usize * LANES + lane;
+                    // Beyond a periodic face the crack has images.
+                    let alone = sites.are_points();
+                    if alone && crack.distance(sites.places().point(here)) > near {
                         continue;
                     }
-                    let place = chunk.place as usize * LANES + lane;
                     let mut count = 0;
                     for (mask, offset) in intact.iter_mut().zip(stencil.offsets()) {
                         if *mask >> lane & 1 == 0 {
                             continue;
                         }
-                        let j = layout.point_at(place.wrapping_add_signed(offset.shift));
-                        if cutter.cuts(here, cloud.point(j)) {
+                        let there = layout.site_at(place.wrapping_add_signed(offset.shift));
+                        if cutter.cuts_bond(sites, here, there) {
                             *mask &= !(1 << lane);
                             count += 1;
                         }
@@ -120,20 +123,4 @@ pub(super) fn precut_bonds<const D: usize>(
         })
         .collect();
     lost.concat()
-}
-
-/// One byte per chunk: which of its points are in the set.
-pub(super) fn bits_of_set(layout: &GridLayout, set: &[u32]) -> Vec<u8> {
-    let mut sorted = set.to_vec();
-    sorted.sort_unstable();
-    layout
-        .chunks()
-        .iter()
-        .map(|chunk| {
-            chunk
-                .points()
-                .filter(|&(_, i)| sorted.binary_search(&(i as u32)).is_ok())
-                .fold(0, |bits, (lane, _)| bits | 1 << lane)
-        })
-        .collect()
 }

@@ -11,7 +11,7 @@ use crate::operator::{Breakable, CoarseBreak, Force, On, damage};
 
 impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     fn dissipated(&self) -> f64 {
-        damage::dissipated(&self.blocks)
+        damage::dissipated(self.cloud.domain(), &self.blocks)
     }
 
     fn dissipate(&mut self, energy: f64) {
@@ -23,7 +23,7 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     }
 
     fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(&self.blocks)
+        damage::broken_bonds(self.cloud.domain(), &self.blocks)
     }
 
     fn can_break(&self) -> bool {
@@ -58,7 +58,7 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     }
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        let offsets = self.stencil.offsets();
+        let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
         for (number, block) in self.blocks.iter().enumerate() {
             let chunks = self.layout.chunks_of(number);
             for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
@@ -69,7 +69,10 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
                     for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
                         let place = chunk.place as usize * LANES + lane;
                         let there = place.wrapping_add_signed(offset.shift);
-                        visit(i, self.layout.point_at(there));
+                        let j = self.layout.point_at(there);
+                        if j < n && j != i {
+                            visit(i, j);
+                        }
                     }
                 }
             }

@@ -5,13 +5,14 @@ use std::sync::{Arc, Mutex};
 use super::arrays::Grid;
 use super::block::ChunkBlock;
 use super::breaking::GridBreaking;
-use super::build::{bits_of_set, cut, geometric_blocks, precut_bonds};
+use super::build::{cut, geometric_blocks, precut_bonds};
 use super::kernels::{accept_chunks, accept_chunks_in_floats};
 use super::layout::{Chunk, GridLayout, Partners};
 use super::numbers::GridNumber;
 use super::padded::Padded;
 use super::stencil::{BondRule, Stencil};
 use super::working::Working;
+use crate::domain::{Field, Letter};
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, Cut, EndRule};
 use crate::lanes::LANES;
@@ -20,7 +21,7 @@ use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{BondForm, DamageMeasure, Force, InstructionSet, On};
 use crate::parallel::{components_mut, for_each_part};
-use crate::space::PointCloud;
+use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
 
 /// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
@@ -73,7 +74,7 @@ pub struct GridForce<L: FastLaw, const D: usize> {
     pub(super) stencil: Stencil<D>,
     /// Bonds left: one byte per chunk and offset, offsets fastest.
     pub(super) blocks: Vec<BlockDamage>,
-    /// Points whose bonds never break, one byte per chunk.
+    /// Sites whose bonds never break, one byte for each place (in chunks).
     pub(super) held: Option<Vec<u8>>,
     pub(super) cuts: Vec<Cut>,
     /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
@@ -129,10 +130,12 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
                 constants.micromodulus * material.influence.alpha_of(xi, material.horizon)
             },
         };
-        let layout = GridLayout::new(lattice);
+        let sites = Sites::new(&cloud, rule.reach);
+        let lattice = sites.places().lattice().unwrap_or(lattice);
+        let layout = GridLayout::new(&sites, lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
         let mut blocks = geometric_blocks(&layout, &stencil);
-        if bonds_left(&blocks) == 0 {
+        if cloud.domain().all(bonds_left(&blocks) == 0) {
             return Err(PericlesError::HorizonTooSmall {
                 horizon: material.horizon,
                 spacing,
@@ -140,7 +143,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         }
         let cuts = cracks
             .iter()
-            .map(|crack| cut(&cloud, &layout, &stencil, crack, &mut blocks))
+            .map(|crack| cut(&sites, &layout, &stencil, crack, &mut blocks))
             .collect::<Result<Vec<_>>>()?;
         let precut = if cuts.iter().any(|cut| cut.bonds > 0) {
             precut_bonds(&layout, &stencil, &blocks)
@@ -149,7 +152,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         };
         Ok(Self {
             directed_bonds: bonds_left(&blocks),
-            held: (!no_fail.is_empty()).then(|| bits_of_set(&layout, no_fail)),
+            held: held_sites(&cloud, &layout, no_fail),
             doubles: Working::new(
                 stencil.offsets().to_vec(),
                 1.0,
@@ -224,7 +227,8 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         out: &mut [f64],
         chunks: impl Fn(&Grid<'_, N, D>, &ChunkBlock<'_>, &[u8], &mut [&mut [f64]; C]) + Sync,
     ) {
-        working.with(&self.layout, u, on, |grid, lanes| {
+        let ghosts = self.cloud.domain().ghosts(u);
+        working.with(&self.layout, Field::new(u, &ghosts), on, |grid, lanes| {
             // A vector of nothing: the blocks' state is only read, and no memory is taken.
             let mut nothing = vec![(); self.blocks.len()];
             for_each_part(
@@ -251,6 +255,9 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         let whole = matches!(on, On::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
         let set = self.instruction_set;
+        let domain = self.cloud.domain();
+        let (ghosts, velocity) = (domain.ghosts(step.u), step.mean_velocities());
+        let moved = velocity.map(|owned| domain.ghosts(owned));
         let rule = GridBreaking {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
@@ -258,10 +265,13 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             breakable: &|chunk: &Chunk, offset: usize| self.breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),
             step,
+            velocity: (velocity.zip(moved.as_deref()))
+                .map(|(owned, ghosts)| Field::new(owned, ghosts)),
             note_events: !whole,
         };
+        let u = Field::new(step.u, &ghosts);
         match &self.floats {
-            Some(working) => working.with(&self.layout, step.u, on, |grid, lanes| {
+            Some(working) => working.with(&self.layout, u, on, |grid, lanes| {
                 self.decide_blocks(
                     lanes,
                     partners,
@@ -274,7 +284,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
                     },
                 );
             }),
-            None => self.doubles.with(&self.layout, step.u, on, |grid, lanes| {
+            None => self.doubles.with(&self.layout, u, on, |grid, lanes| {
                 self.decide_blocks(
                     lanes,
                     partners,
@@ -329,32 +339,48 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     /// Which of a chunk's bonds of one offset may break.
     pub(super) fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
         let Some(held) = &self.held else { return 0xFF };
-        let bits = |chunk: &Chunk| {
-            let (number, _) = self.layout.chunk_at(chunk.place as usize * LANES);
-            held[number]
-        };
-        let there = self
-            .layout
-            .neighbour_bits(chunk, self.stencil.cells()[offset], bits);
-        !(bits(chunk) | there)
+        let cell = self.stencil.cells()[offset];
+        let there = self.layout.neighbour_bits(chunk, cell, |place| held[place]);
+        !(held[chunk.place as usize] | there)
     }
 
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
     fn tell_the_other_ends(&mut self) {
-        let m = self.stencil.len();
-        for b in 0..self.blocks.len() {
-            let events = std::mem::take(&mut self.blocks[b].tally.events);
-            for event in events {
+        let (n, m) = (self.cloud.len(), self.stencil.len());
+        let (mut here, mut away) = (Vec::new(), Vec::new());
+        for block in &mut self.blocks {
+            for event in block.tally.events.drain(..) {
                 let (group, lane) = (event.entry / LANES, event.entry % LANES);
                 let (chunk, offset) = (group / m, group % m);
-                let here = self.layout.chunks()[chunk].place as usize * LANES + lane;
-                let there = here.wrapping_add_signed(self.stencil.offsets()[offset].shift);
-                let (chunk, lane) = self.layout.chunk_at(there);
-                let block = self.layout.block_of(chunk);
-                let first = self.layout.chunks_of(block).start;
-                let group = (chunk - first) * m + self.stencil.opposite(offset);
-                self.blocks[block].break_other_end(group, lane, &event);
+                let place = self.layout.chunks()[chunk].place as usize * LANES + lane;
+                let there = place.wrapping_add_signed(self.stencil.offsets()[offset].shift);
+                let letter = Letter {
+                    from: self.layout.point_at(place),
+                    to: self.layout.point_at(there),
+                    numbers: [
+                        event.dissipated,
+                        self.stencil.opposite(offset) as f64,
+                        0.0,
+                        0.0,
+                    ],
+                };
+                match letter.to.checked_sub(n) {
+                    None => here.push(letter),
+                    Some(ghost) => away.push(Letter {
+                        to: ghost,
+                        ..letter
+                    }),
+                }
             }
+        }
+        here.extend(self.cloud.domain().deliver(&away));
+        for letter in here {
+            let [dissipated, offset, ..] = letter.numbers;
+            let (chunk, lane) = self.layout.chunk_at(self.layout.place_of(letter.to));
+            let block = self.layout.block_of(chunk);
+            let first = self.layout.chunks_of(block).start;
+            let group = (chunk - first) * m + offset as usize;
+            self.blocks[block].break_other_end(group, lane, dissipated);
         }
     }
 
@@ -410,4 +436,18 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             }
         }
     }
+}
+
+/// The sites whose bonds never break, one byte for each place (in chunks); none if there are no such points.
+fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Option<Vec<u8>> {
+    let domain = cloud.domain();
+    if domain.all(no_fail.is_empty()) {
+        return None;
+    }
+    let mut held = vec![0.0; cloud.len()];
+    for &i in no_fail {
+        held[i as usize] = 1.0;
+    }
+    let held = domain.with_ghosts(&held);
+    Some(layout.marked(|point| held[point] != 0.0))
 }

@@ -3,22 +3,28 @@
 //! The rows of the lattice's bounding box along x are padded to whole chunks of eight nodes and follow each other, x fastest. So a
 //! neighbour is a fixed number of places away; what lies beyond the end of a row is another row's, and masked out. Before the first and behind
 //! the last row lie as many unused places as the farthest neighbour is away. Points keep their compact order outside.
+//!
+//! Ghosts of other processes and images beyond periodic faces ([`Sites`]) have places like points, in a larger box; no force is computed for them.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::rows::NodeRows;
+use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::space::Lattice;
+use crate::parallel::BLOCK;
+use crate::space::{Lattice, Sites};
 
-/// Eight nodes in a row, at least one of which is a point.
+/// Eight nodes in a row, at least one of which is an own point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chunk {
     /// Place of the first node in the padded rows, in chunks.
     pub place: u32,
-    /// The first point in it.
+    /// The first own point in it.
     pub point: u32,
-    /// Which of its nodes are points.
+    /// Which of its nodes are own points.
     pub lanes: u8,
 }
 
@@ -49,10 +55,22 @@ pub(super) struct GridLayout {
     blocks: Vec<Block>,
     /// The chunk at each place (in chunks), or `NONE`.
     chunk_at: Vec<u32>,
-    /// The first point of each row, and the number of points at the end.
-    row_start: Vec<u32>,
-    /// Node of each point along x, only where some row has gaps.
-    columns: Option<Vec<u32>>,
+    /// Own points by row.
+    own: NodeRows,
+    /// Ghosts and images too, where there are any.
+    seen: Option<Seen>,
+}
+
+/// The nodes of all sites.
+#[derive(Debug, Clone)]
+struct Seen {
+    rows: NodeRows,
+    /// The site of each node, in their order.
+    site: Vec<u32>,
+    /// Its point; ghosts are counted behind own points.
+    point: Vec<u32>,
+    /// Which nodes are sites, a byte for each place (in chunks).
+    present: Vec<u8>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -64,44 +82,57 @@ const ROWS: usize = 8;
 /// The longest piece of a row in a block, in chunks: rows of a bar are shared among threads.
 const LONGEST: usize = 256;
 
-/// Numbers copied by one task.
-const PIECE: usize = 4096;
-
 impl GridLayout {
-    /// The layout of a lattice's nodes.
-    pub fn new(lattice: &Lattice) -> Self {
-        let shape = lattice.shape;
+    /// The layout of a lattice's sites.
+    pub fn new(sites: &Sites, lattice: &Lattice) -> Self {
+        if sites.are_points() {
+            return Self::of_rows(NodeRows::new(lattice.shape, &lattice.node), lattice.shape);
+        }
+        let (corner, shape) = bounding_box(lattice);
+        let inside = |site: usize| {
+            let at = lattice.coordinates(lattice.node[site]);
+            let [x, y, z] = std::array::from_fn(|c| (at[c] - corner[c]) as usize);
+            (x + shape[0] * (y + shape[1] * z)) as u32
+        };
+        let owned = sites.cloud().len();
+        let own: Vec<u32> = (0..owned).map(|i| inside(sites.of_point(i))).collect();
+        let mut layout = Self::of_rows(NodeRows::new(shape, &own), shape);
+        let mut site: Vec<u32> = (0..sites.len() as u32).collect();
+        site.sort_unstable_by_key(|&site| inside(site as usize));
+        let nodes: Vec<u32> = site.iter().map(|&site| inside(site as usize)).collect();
+        let mut present = vec![0; layout.chunk_at.len()];
+        for &node in &nodes {
+            let (row, x) = (node as usize / shape[0], node as usize % shape[0]);
+            let place = row * layout.stride + x;
+            present[place / LANES] |= 1 << (place % LANES);
+        }
+        let point = |&site: &u32| sites.point(site as usize) as u32;
+        layout.seen = Some(Seen {
+            rows: NodeRows::new(shape, &nodes),
+            point: site.iter().map(point).collect(),
+            site,
+            present,
+        });
+        layout
+    }
+
+    /// The layout of own points.
+    fn of_rows(own: NodeRows, shape: [usize; 3]) -> Self {
         let rows = shape[1] * shape[2];
         let mut row_chunks = shape[0].div_ceil(LANES);
         // Rows a multiple of 1024 numbers apart would all compete for the same lines of a cache.
         if rows > 1 && row_chunks.is_multiple_of(16) {
             row_chunks += 1;
         }
-        let stride = row_chunks * LANES;
         let mut layout = Self {
             shape,
-            stride,
+            stride: row_chunks * LANES,
             chunks: Vec::new(),
             blocks: Vec::new(),
             chunk_at: vec![NONE; rows * row_chunks],
-            row_start: Vec::with_capacity(rows + 1),
-            columns: None,
+            own,
+            seen: None,
         };
-        let mut full = true;
-        let mut point = 0;
-        for row in 0..rows {
-            layout.row_start.push(point as u32);
-            let end = point
-                + lattice.node[point..]
-                    .partition_point(|&node| (node as usize) < (row + 1) * shape[0]);
-            full &= end - point == shape[0] || end == point;
-            point = end;
-        }
-        layout.row_start.push(point as u32);
-        if !full {
-            let column = |&node: &u32| (node as usize % shape[0]) as u32;
-            layout.columns = Some(lattice.node.iter().map(column).collect());
-        }
         let (tall, long) = if row_chunks > LONGEST {
             (1, LONGEST)
         } else {
@@ -124,7 +155,7 @@ impl GridLayout {
         let mut first_point = usize::MAX;
         for column in columns {
             for row in rows.clone() {
-                let (point, lanes) = self.points_of(row, column);
+                let (point, lanes) = self.own.chunk(row, column);
                 if lanes != 0 {
                     let place = row * (self.stride / LANES) + column;
                     self.chunk_at[place] = self.chunks.len() as u32;
@@ -142,35 +173,6 @@ impl GridLayout {
                 first_chunk,
                 first_point,
             });
-        }
-    }
-
-    /// The first point of a chunk and which of its nodes are points.
-    fn points_of(&self, row: usize, column: usize) -> (usize, u8) {
-        let (from, to) = (
-            self.row_start[row] as usize,
-            self.row_start[row + 1] as usize,
-        );
-        if from == to {
-            return (from, 0);
-        }
-        let x = column * LANES;
-        match &self.columns {
-            None => {
-                let len = self.shape[0].saturating_sub(x).min(LANES);
-                (from + x, if len == 0 { 0 } else { 0xFF >> (LANES - len) })
-            }
-            Some(columns) => {
-                let row = &columns[from..to];
-                let first = row.partition_point(|&c| (c as usize) < x);
-                let inside = row[first..]
-                    .iter()
-                    .take_while(|&&c| (c as usize) < x + LANES);
-                (
-                    from + first,
-                    inside.fold(0, |lanes, &c| lanes | 1 << (c as usize - x)),
-                )
-            }
         }
     }
 
@@ -197,7 +199,7 @@ impl GridLayout {
     pub fn first_point(&self, block: usize) -> usize {
         match self.blocks.get(block) {
             Some(block) => block.first_point,
-            None => self.row_start[self.row_start.len() - 1] as usize,
+            None => self.own.len(),
         }
     }
 
@@ -233,13 +235,20 @@ impl GridLayout {
         ]
     }
 
-    /// Which of the nodes a step `cell` away from a chunk's points are points themselves.
+    /// Which of the nodes a step `cell` away from a chunk's points are sites themselves.
     pub fn neighbours(&self, chunk: &Chunk, cell: [i32; 3]) -> u8 {
-        self.neighbour_bits(chunk, cell, |chunk| chunk.lanes) & chunk.lanes
+        let there = match &self.seen {
+            None => self.neighbour_bits(chunk, cell, |place| match self.chunk_at[place] {
+                NONE => 0,
+                chunk => self.chunks[chunk as usize].lanes,
+            }),
+            Some(seen) => self.neighbour_bits(chunk, cell, |place| seen.present[place]),
+        };
+        there & chunk.lanes
     }
 
-    /// One bit for each node a step `cell` away from a chunk's nodes, out of one byte per chunk; zero outside the body.
-    pub fn neighbour_bits(&self, chunk: &Chunk, cell: [i32; 3], bits: impl Fn(&Chunk) -> u8) -> u8 {
+    /// One bit for each node a step `cell` away from a chunk's nodes, out of one byte for each place (in chunks); zero outside the box.
+    pub fn neighbour_bits(&self, chunk: &Chunk, cell: [i32; 3], bits: impl Fn(usize) -> u8) -> u8 {
         let [x, y, z] = self.coordinates(chunk.place as usize * LANES);
         let y = y as i64 + i64::from(cell[1]);
         let z = z as i64 + i64::from(cell[2]);
@@ -254,111 +263,97 @@ impl GridLayout {
             if !(0..row_chunks as i64).contains(&column) {
                 return 0;
             }
-            match self.chunk_at[row + column as usize] {
-                NONE => 0,
-                chunk => u16::from(bits(&self.chunks[chunk as usize])),
-            }
+            u16::from(bits(row + column as usize))
         };
         ((byte(column) | byte(column + 1) << LANES) >> x.rem_euclid(LANES as i64)) as u8
     }
 
-    /// The point at a place that has one.
+    /// One byte for each place (in chunks): which of its sites are marked. `marks` are those of all points, ghosts behind own ones.
+    pub fn marked(&self, marks: impl Fn(usize) -> bool) -> Vec<u8> {
+        let mut bytes = vec![0; self.chunk_at.len()];
+        match &self.seen {
+            None => {
+                for chunk in &self.chunks {
+                    for (lane, _) in chunk.points().filter(|&(_, i)| marks(i)) {
+                        bytes[chunk.place as usize] |= 1 << lane;
+                    }
+                }
+            }
+            Some(seen) => {
+                for row in 0..seen.rows.rows() {
+                    let nodes = seen.rows.row(row);
+                    for node in nodes.filter(|&node| marks(seen.point[node] as usize)) {
+                        let place = row * self.stride + seen.rows.column(row, node);
+                        bytes[place / LANES] |= 1 << (place % LANES);
+                    }
+                }
+            }
+        }
+        bytes
+    }
+
+    /// The site at a place that has one.
+    pub fn site_at(&self, place: usize) -> usize {
+        match &self.seen {
+            None => self.point_at(place),
+            Some(seen) => {
+                seen.site[seen.rows.node(place / self.stride, place % self.stride)] as usize
+            }
+        }
+    }
+
+    /// The point at a place that has a site; ghosts are counted behind own points.
     pub fn point_at(&self, place: usize) -> usize {
+        if let Some(seen) = &self.seen {
+            return seen.point[seen.rows.node(place / self.stride, place % self.stride)] as usize;
+        }
         let (chunk, lane) = self.chunk_at(place);
         let chunk = &self.chunks[chunk];
         let before = chunk.lanes & !(0xFF << lane);
         chunk.point as usize + before.count_ones() as usize
     }
 
-    /// The place of a point.
+    /// The place of an own point.
     pub fn place_of(&self, point: usize) -> usize {
-        let row = self
-            .row_start
-            .partition_point(|&start| start as usize <= point)
-            - 1;
-        let column = match &self.columns {
-            None => point - self.row_start[row] as usize,
-            Some(columns) => columns[point] as usize,
-        };
-        row * self.stride + column
+        let row = self.own.row_of(point);
+        row * self.stride + self.own.column(row, point)
     }
 
-    /// Copies the named columns of each row of one component of a vector on points to its padded rows, as the numbers they become there; other places keep what they have.
-    pub fn pad<N: Send>(
-        &self,
-        values: &[f64],
-        columns: impl Fn(usize) -> Range<usize> + Sync,
-        number: &(impl Fn(f64) -> N + Sync),
-        padded: &mut [N],
-    ) {
-        // Whole rows to a task, or pieces of a very long one.
-        if self.stride <= PIECE {
-            let rows = PIECE / self.stride;
-            padded
-                .par_chunks_mut(rows * self.stride)
-                .enumerate()
-                .for_each(|(group, padded)| {
-                    for (k, padded) in padded.chunks_mut(self.stride).enumerate() {
-                        let row = group * rows + k;
-                        let columns = columns(row);
-                        if !columns.is_empty() {
-                            self.pad_piece(
-                                row,
-                                columns.start,
-                                values,
-                                number,
-                                &mut padded[columns],
-                            );
-                        }
-                    }
-                });
-        } else {
-            for (row, padded) in padded.chunks_mut(self.stride).enumerate() {
-                let columns = columns(row);
-                if !columns.is_empty() {
-                    padded[columns.clone()]
-                        .par_chunks_mut(PIECE)
-                        .enumerate()
-                        .for_each(|(k, padded)| {
-                            self.pad_piece(row, columns.start + k * PIECE, values, number, padded);
-                        });
-                }
-            }
-        }
+    /// Whether all sites are points.
+    pub fn is_of_points(&self) -> bool {
+        self.seen.is_none()
     }
 
-    /// Copies the points of a row from column x on.
-    fn pad_piece<N>(
-        &self,
-        row: usize,
-        x: usize,
-        values: &[f64],
-        number: &impl Fn(f64) -> N,
-        padded: &mut [N],
-    ) {
-        let (from, to) = (
-            self.row_start[row] as usize,
-            self.row_start[row + 1] as usize,
+    /// The values of all sites of one component of a vector on points, in the order of their nodes.
+    pub fn of_sites<'a>(&self, field: Field<'a>, c: usize, components: usize) -> Cow<'a, [f64]> {
+        let (n, m) = (
+            field.owned.len() / components,
+            field.ghosts.len() / components,
         );
-        match &self.columns {
-            None => {
-                let from = (from + x).min(to);
-                let len = padded.len().min(to - from);
-                for (place, &value) in padded[..len].iter_mut().zip(&values[from..from + len]) {
-                    *place = number(value);
-                }
-            }
-            Some(columns) => {
-                let first =
-                    from + columns[from..to].partition_point(|&column| (column as usize) < x);
-                for point in first..to {
-                    match padded.get_mut(columns[point] as usize - x) {
-                        Some(place) => *place = number(values[point]),
-                        None => break,
-                    }
-                }
-            }
-        }
+        let owned = &field.owned[c * n..(c + 1) * n];
+        let Some(seen) = &self.seen else {
+            return Cow::Borrowed(owned);
+        };
+        let ghosts = &field.ghosts[c * m..(c + 1) * m];
+        let value = |&point: &u32| {
+            let point = point as usize;
+            owned
+                .get(point)
+                .copied()
+                .unwrap_or_else(|| ghosts[point - n])
+        };
+        Cow::Owned(
+            seen.point
+                .par_iter()
+                .with_min_len(BLOCK)
+                .map(value)
+                .collect(),
+        )
+    }
+
+    /// The rows of all nodes that have values.
+    pub fn nodes(&self) -> &NodeRows {
+        self.seen.as_ref().map_or(&self.own, |seen| &seen.rows)
     }
 
     /// Calls `visit(row, [first column, end], chunk, lanes)` for every chunk with points of a run of consecutive ones. Runs must come in ascending order:
@@ -371,14 +366,14 @@ impl GridLayout {
     ) {
         let mut point = run.start;
         while point < run.end {
-            while self.row_start[*row + 1] as usize <= point {
+            while self.own.row(*row).end <= point {
                 *row += 1;
             }
-            let first = self.row_start[*row] as usize;
-            let end = run.end.min(self.row_start[*row + 1] as usize);
+            let Range { start: first, end } = self.own.row(*row);
+            let end = run.end.min(end);
             while point < end {
                 let (from, last, bits);
-                match &self.columns {
+                match self.own.columns() {
                     None => {
                         from = point - first;
                         let behind = (from / LANES + 1) * LANES;
@@ -429,7 +424,7 @@ impl GridLayout {
 
     /// Number of rows.
     pub fn rows(&self) -> usize {
-        self.row_start.len() - 1
+        self.own.rows()
     }
 
     /// Memory, bytes.
@@ -437,10 +432,25 @@ impl GridLayout {
         size_of_val(&self.chunks[..])
             + size_of_val(&self.blocks[..])
             + size_of_val(&self.chunk_at[..])
-            + size_of_val(&self.row_start[..])
-            + self.columns.as_deref().map_or(0, size_of_val)
+            + self.own.bytes()
+            + self.seen.as_ref().map_or(0, |seen| {
+                seen.rows.bytes() + 2 * size_of_val(&seen.site[..]) + seen.present.len()
+            })
     }
 }
 
-/// Which points exert a force, one byte per chunk.
+/// The box of all nodes of a lattice: its corner, and nodes along each axis.
+fn bounding_box(lattice: &Lattice) -> ([i32; 3], [usize; 3]) {
+    let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+    for &node in &lattice.node {
+        let at = lattice.coordinates(node);
+        for c in 0..3 {
+            (low[c], high[c]) = (low[c].min(at[c]), high[c].max(at[c]));
+        }
+    }
+    let side = |c: usize| (high[c] - low[c] + 1) as usize;
+    (low, std::array::from_fn(side))
+}
+
+/// Which sites exert a force, one byte for each place (in chunks).
 pub(super) struct Partners(pub(super) Vec<u8>);

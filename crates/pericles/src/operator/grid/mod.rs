@@ -11,6 +11,7 @@ mod layout;
 mod numbers;
 mod operator;
 mod padded;
+mod rows;
 mod stencil;
 mod view;
 mod wanted;

@@ -5,6 +5,7 @@ use std::sync::PoisonError;
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
 use super::padded::Frame;
+use crate::domain::Field;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
     Breakable, Capabilities, Force, InstructionSet, LatticeSpring, LatticeSprings, LinearOperator,
@@ -65,11 +66,8 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
             });
         });
         let square = |(i, row): (usize, &f64)| 2.0 * row / density(i);
-        rows.iter()
-            .enumerate()
-            .map(square)
-            .fold(0.0, f64::max)
-            .sqrt()
+        let own = rows.iter().enumerate().map(square).fold(0.0, f64::max);
+        self.cloud.domain().max(own).sqrt()
     }
 
     fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
@@ -88,6 +86,8 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         };
         let idle = spare().take();
         let mut padded = idle.unwrap_or_else(|| self.doubles.room(&self.layout));
+        let ghosts = self.cloud.domain().ghosts(direction);
+        let direction = Field::new(direction, &ghosts);
         padded.fill(&self.layout, direction, &Frame::of(direction, 1.0));
         let direction = self.doubles.grid(&padded);
         out.fill(0.0);
@@ -216,7 +216,8 @@ impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
     }
 
     fn half_bandwidth(&self) -> Option<usize> {
-        (D == 1).then(|| self.stencil.farthest(0))
+        let is_band = D == 1 && self.layout.is_of_points();
+        is_band.then(|| self.stencil.farthest(0))
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::layout::GridLayout;
 use super::numbers::GridNumber;
 use super::wanted::WantedPoints;
-use crate::parallel::components;
+use crate::domain::Field;
 
 /// Bytes of a cache line; numbers loaded across two lines cost twice.
 const LINE: usize = 64;
@@ -18,7 +18,8 @@ pub(super) struct Frame<const D: usize> {
 
 impl<const D: usize> Frame<D> {
     /// The frame of a field in which `unit` is one.
-    pub fn of(field: &[f64], unit: f64) -> Self {
+    pub fn of(field: Field<'_>, unit: f64) -> Self {
+        let field = field.owned;
         let n = field.len() / D;
         Self {
             origin: std::array::from_fn(|c| field.get(c * n + n / 2).copied().unwrap_or(0.0)),
@@ -54,7 +55,7 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
     }
 
     /// Copies all points.
-    pub fn fill(&mut self, layout: &GridLayout, field: &[f64], frame: &Frame<D>) {
+    pub fn fill(&mut self, layout: &GridLayout, field: Field<'_>, frame: &Frame<D>) {
         let whole = 0..layout.row_length();
         self.copy(layout, field, frame, |_| whole.clone());
     }
@@ -63,7 +64,7 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
     pub fn fill_around(
         &mut self,
         layout: &GridLayout,
-        field: &[f64],
+        field: Field<'_>,
         frame: &Frame<D>,
         wanted: &WantedPoints,
     ) {
@@ -73,16 +74,19 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
     fn copy(
         &mut self,
         layout: &GridLayout,
-        field: &[f64],
+        field: Field<'_>,
         frame: &Frame<D>,
         columns: impl Fn(usize) -> Range<usize> + Sync,
     ) {
-        let field = components::<D>(field, field.len() / D);
         let rows = self.values[self.start + self.margin..].chunks_mut(self.places + self.margin);
-        for (c, (padded, values)) in rows.zip(field).enumerate() {
+        for (c, padded) in rows.take(D).enumerate() {
+            let values = layout.of_sites(field, c, D);
             let (origin, per_unit) = (frame.origin[c], frame.per_unit);
             let number = |value| N::of(value, origin, per_unit);
-            layout.pad(values, &columns, &number, &mut padded[..self.places]);
+            let padded = &mut padded[..self.places];
+            layout
+                .nodes()
+                .pad(layout.row_length(), &values, &columns, &number, padded);
         }
     }
 

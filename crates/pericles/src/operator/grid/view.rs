@@ -1,24 +1,20 @@
 //! The bonds of a lattice body one by one.
 
 use super::force::GridForce;
+use crate::domain::Field;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::view::{BondAt, BondView};
-use crate::parallel::components;
 
 impl<L: FastLaw, const D: usize> BondView for GridForce<L, D> {
     fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let Some(lattice) = self.cloud.lattice() else {
-            return;
-        };
-        let strides = self.layout.strides();
-        let cell = lattice.coordinates(lattice.node[i]);
-        let place: usize = (0..3).map(|c| cell[c] as usize * strides[c]).sum();
+        let place = self.layout.place_of(i);
         let (chunk, lane) = self.layout.chunk_at(place);
         let block = self.layout.block_of(chunk);
         let offsets = self.stencil.offsets();
         let first = (chunk - self.layout.chunks_of(block).start) * offsets.len();
         let intact = &self.blocks[block].intact[first..first + offsets.len()];
-        let u = components::<D>(u, self.cloud.len());
+        let ghosts = self.cloud.domain().ghosts(u);
+        let u = Field::new(u, &ghosts);
         let spatial =
             |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
         let left = offsets.iter().zip(intact);
@@ -26,7 +22,7 @@ impl<L: FastLaw, const D: usize> BondView for GridForce<L, D> {
             let j = self
                 .layout
                 .point_at(place.wrapping_add_signed(offset.shift));
-            let eta: [f64; D] = std::array::from_fn(|c| u[c][j] - u[c][i]);
+            let eta = u.difference::<D>([i, j]);
             let force = L::force(offset.xi, eta).map(|force| offset.stiffness * force);
             visit(BondAt {
                 neighbour: j,

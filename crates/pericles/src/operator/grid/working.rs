@@ -8,6 +8,7 @@ use super::numbers::GridNumber;
 use super::padded::{Frame, Padded};
 use super::stencil::Offset;
 use super::wanted::WantedPoints;
+use crate::domain::Field;
 use crate::operator::On;
 
 /// The stencil and the work arrays in doubles or in floats.
@@ -45,7 +46,7 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
     pub fn with<R>(
         &self,
         layout: &GridLayout,
-        u: &[f64],
+        u: Field<'_>,
         on: &On<'_>,
         work: impl FnOnce(&Grid<'_, N, D>, Option<&[u8]>) -> R,
     ) -> R {
@@ -75,7 +76,11 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
             }
             _ => {
                 wanted.set(layout, on, self.radius);
-                padded.fill_around(layout, u, &frame, wanted);
+                if layout.is_of_points() {
+                    padded.fill_around(layout, u, &frame, wanted);
+                } else {
+                    padded.fill(layout, u, &frame);
+                }
                 Some(wanted.lanes())
             }
         };

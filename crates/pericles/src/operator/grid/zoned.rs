@@ -3,20 +3,16 @@
 use super::block::ChunkBlock;
 use super::force::GridForce;
 use super::kernels::force_chunks;
-use super::layout::{Chunk, Partners};
-use crate::lanes::LANES;
+use super::layout::Partners;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{Breakable, LocalForce, On, SplitForce};
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {
-        let bits = |chunk: &Chunk| {
-            chunk
-                .points()
-                .fold(0, |bits, (lane, i)| bits | u8::from(marks[i]) << lane)
-        };
-        Partners(self.layout.chunks().iter().map(bits).collect())
+        let numbers: Vec<f64> = marks.iter().map(|&m| f64::from(u8::from(m))).collect();
+        let marks = self.cloud.domain().with_ghosts(&numbers);
+        Partners(self.layout.marked(|point| marks[point] != 0.0))
     }
 
     /// The bonds of a block's wanted chunks that are left and lead to partners; none of the other chunks'.
@@ -26,10 +22,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         block: &ChunkBlock<'_>,
         intact: &[u8],
     ) -> Vec<u8> {
-        let bits = |chunk: &Chunk| {
-            let (number, _) = self.layout.chunk_at(chunk.place as usize * LANES);
-            partners.0[number]
-        };
+        let bits = |place: usize| partners.0[place];
         let mut left = vec![0; intact.len()];
         let rows = left
             .chunks_mut(self.stencil.len())
@@ -79,7 +72,8 @@ impl<L: FastLaw, const D: usize> LocalForce for GridForce<L, D> {
         let place = self.layout.place_of(i);
         let (number, lane) = self.layout.chunk_at(place);
         let chunk = &self.layout.chunks()[number];
-        let m = self.stencil.len();
+        let (n, m) = (self.cloud.len(), self.stencil.len());
+        let mut near = Vec::new();
         for (k, &cell) in self.stencil.cells().iter().enumerate() {
             let mut family = self.layout.neighbours(chunk, cell);
             let group = (number * m + k) as u64;
@@ -91,8 +85,15 @@ impl<L: FastLaw, const D: usize> LocalForce for GridForce<L, D> {
             }
             if family >> lane & 1 == 1 {
                 let there = place.wrapping_add_signed(self.stencil.offsets()[k].shift);
-                visit(self.layout.point_at(there));
+                near.push(self.layout.point_at(there));
             }
         }
+        if !self.layout.is_of_points() {
+            // A point may be a neighbour more than once, and its own.
+            near.retain(|&j| j < n && j != i);
+            near.sort_unstable();
+            near.dedup();
+        }
+        near.into_iter().for_each(visit);
     }
 }

@@ -15,7 +15,7 @@ pub(super) struct Bonds<'a> {
     /// Length of one coordinate unit, m.
     unit: f64,
     stiffness: &'a Stiffness,
-    /// Marks of the points whose bonds count; all of them if none.
+    /// Marks of the sites whose bonds count; all of them if none.
     pub(super) partners: Option<&'a [bool]>,
 }
 
@@ -28,14 +28,14 @@ pub(super) struct Here<T, const D: usize> {
 
 impl<'a> Bonds<'a> {
     /// # Panics
-    /// If there are not as many rows as points.
+    /// If there are not as many rows as sites.
     pub fn new(
         list: &'a BondList,
         reference: &'a Records,
         unit: f64,
         stiffness: &'a Stiffness,
     ) -> Self {
-        assert_eq!(reference.len(), list.len(), "a row for every point");
+        assert_eq!(reference.len(), list.sites().len(), "a row for every site");
         Self {
             list,
             reference,
@@ -45,7 +45,7 @@ impl<'a> Bonds<'a> {
         }
     }
 
-    /// The same bonds, as far as they lead to marked points.
+    /// The same bonds, as far as they lead to marked sites.
     pub fn leading_to(self, partners: Option<&'a [bool]>) -> Self {
         Self { partners, ..self }
     }
@@ -54,13 +54,15 @@ impl<'a> Bonds<'a> {
         self.list
     }
 
-    /// ξ of one bond, m.
+    /// ξ of the bond between two sites, m.
     pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
         std::array::from_fn(|c| (self.reference[j][c] - self.reference[i][c]) * self.unit)
     }
 
+    /// What all bonds of point i share.
     #[inline(always)]
     pub(super) fn here<T: Lanes, const D: usize>(&self, i: usize, u: &Records) -> Here<T, D> {
+        let i = self.list.site(i);
         Here {
             reference: vector(|c| T::splat(self.reference[i][c])),
             u: vector(|c| T::splat(u[i][c])),
@@ -71,9 +73,9 @@ impl<'a> Bonds<'a> {
     /// The rows of the neighbours of a group.
     #[inline(always)]
     pub(super) fn there<T: Lanes>(&self, group: usize, field: &Records) -> [T; 4] {
-        assert!(field.len() == self.list.len(), "a row for every point");
+        assert!(field.len() == self.reference.len(), "a row for every site");
         let indices = self.list.group(group);
-        // SAFETY: neighbours are below the number of points, which `BondList` guarantees, and the field has as many rows.
+        // SAFETY: neighbours are below the number of sites, which `BondList` guarantees, and the field has as many rows.
         unsafe { T::gather(field, indices) }
     }
 
@@ -107,7 +109,7 @@ impl<'a> Bonds<'a> {
         (bond, eta)
     }
 
-    /// Stiffness c α κ V of an entry that leads from i to j, whose cells have the sizes given, m.
+    /// Stiffness c α κ V of an entry that leads from site i to site j, whose cells have the sizes given, m.
     pub fn stiffness_of<const D: usize>(
         &self,
         entry: usize,

@@ -1,6 +1,7 @@
 //! Breaking of a point's bonds, decided where the force sweep has seen a large strain.
 
 use super::arrays::Bonds;
+use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::{PairClasses, PairForce};
 use crate::operator::damage::{BreakEvent, Tally};
@@ -20,12 +21,15 @@ pub(super) struct BreakRule<'a> {
     pub volumes: &'a [f64],
     /// The step that ended.
     pub step: &'a StepEnd<'a>,
+    /// Mean velocities over the step, where it has any.
+    pub velocity: Option<Field<'a>>,
     /// Note what breaks, so that the other end can be told.
     pub note_events: bool,
 }
 
 /// Thresholds by the materials of a bond's ends.
 pub(super) struct PairThresholds {
+    /// By site.
     pub classes: PairClasses,
     /// By class of pairs.
     table: Vec<f64>,
@@ -68,26 +72,32 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
     intact: &mut [u8],
     tally: &mut Tally,
 ) -> bool {
-    let first = bonds.list().start()[i];
+    let list = bonds.list();
+    let (first, here) = (list.start()[i], list.site(i));
     let mut any = false;
     for (k, intact) in intact.iter_mut().enumerate() {
         let group = first + k;
         let breakable = rule.breakable.map_or(0xFF, |bits| bits[group]);
         let candidates = *intact & bonds.wanted(group) & breakable;
-        let neighbours = bonds.list().group(group);
+        let neighbours = list.group(group);
         for lane in (0..LANES).filter(|lane| candidates >> lane & 1 == 1) {
             let j = neighbours[lane];
-            let xi: [f64; D] = bonds.vector(i, j);
-            let eta: [f64; D] = std::array::from_fn(|c| u[j][c] - u[i][c]);
+            let xi: [f64; D] = bonds.vector(here, j);
+            let eta: [f64; D] = std::array::from_fn(|c| u[j][c] - u[here][c]);
             let (measure, square) = L::stretch_measure(xi, eta);
-            if measure > rule.threshold_of(i, j) * square {
+            if measure > rule.threshold_of(here, j) * square {
                 any = true;
                 *intact &= !(1 << lane);
                 let entry = group * LANES + lane;
-                let stiffness = bonds.stiffness_of::<D>(entry, [i, j], [u[i][3], u[j][3]]);
-                let stretch = rule.critical_stretch_of(i, j);
+                let stiffness = bonds.stiffness_of::<D>(entry, [here, j], [u[here][3], u[j][3]]);
+                let stretch = rule.critical_stretch_of(here, j);
+                let ends = [i, list.sites().point(j)];
                 let bond = BreakingBond {
-                    ends: [i, j],
+                    ends,
+                    velocity: match rule.velocity {
+                        Some(field) => field.difference::<D>(ends),
+                        None => [0.0; D],
+                    },
                     force: L::force(xi, eta),
                     energy: L::energy(xi, eta),
                     critical: Some(L::energy(xi, xi.map(|component| stretch * component))),

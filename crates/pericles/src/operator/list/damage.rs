@@ -1,14 +1,15 @@
 //! [`Breakable`] for bond lists.
 
 use super::force::BondForce;
+use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{Breakable, CoarseBreak, Force, damage};
-use crate::parallel::{components, for_each_chunk};
+use crate::parallel::for_each_chunk;
 
 impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
     fn dissipated(&self) -> f64 {
-        damage::dissipated(&self.blocks)
+        damage::dissipated(self.cloud.domain(), &self.blocks)
     }
 
     fn dissipate(&mut self, energy: f64) {
@@ -20,7 +21,7 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
     }
 
     fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(&self.blocks)
+        damage::broken_bonds(self.cloud.domain(), &self.blocks)
     }
 
     fn can_break(&self) -> bool {
@@ -31,15 +32,15 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
         for_each_chunk(out, &|first, out| {
             for (i, damage) in (first..).zip(out) {
                 let (mut whole, mut left) = (0.0, 0.0);
-                for (entry, j) in self.bonds.family(i) {
-                    let present = self.bonds.present()[entry / LANES] >> (entry % LANES) & 1 == 1;
-                    if !(present || self.damage.count_precut) {
+                let here = self.bonds.site(i);
+                for (entry, b) in self.bonds.family(i) {
+                    if !(self.bonds.is_present(entry) || self.damage.count_precut) {
                         continue;
                     }
                     let weight = if self.damage.count {
                         1.0
                     } else {
-                        self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
+                        self.bonds.volume_factor(here, b) * self.bonds.volume(b)
                     };
                     whole += weight;
                     if self.is_intact(i, entry) {
@@ -52,10 +53,13 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
     }
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        let sites = self.bonds.sites();
         for i in 0..self.points() {
             let family = self.bonds.family(i);
-            for (_, j) in family.filter(|&(entry, j)| j > i && self.is_intact(i, entry)) {
-                visit(i, j);
+            for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
+                if let Some(j) = sites.own_point(b).filter(|&j| j > i) {
+                    visit(i, j);
+                }
             }
         }
     }
@@ -64,19 +68,20 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
         if !self.can_break() {
             return;
         }
-        let threshold = |i: usize, j: usize| {
+        let threshold = |a: usize, b: usize| {
             let stretch = match &self.pairs {
-                Some(pairs) => pairs.classes.critical_stretch(i, j),
+                Some(pairs) => pairs.classes.critical_stretch(a, b),
                 None => self.critical_stretch,
             };
             L::threshold(fraction * stretch)
         };
-        let u = components::<D>(u, self.points());
+        let ghosts = self.cloud.domain().ghosts(u);
+        let (u, sites) = (Field::new(u, &ghosts), self.bonds.sites());
         let bonds = self.view();
-        let over = |i: usize, j: usize| {
-            let eta: [f64; D] = std::array::from_fn(|c| u[c][j] - u[c][i]);
-            let (measure, square) = L::stretch_measure(bonds.vector(i, j), eta);
-            measure > threshold(i, j) * square
+        let over = |a: usize, b: usize| {
+            let eta = u.difference::<D>([a, b].map(|site| sites.point(site)));
+            let (measure, square) = L::stretch_measure(bonds.vector(a, b), eta);
+            measure > threshold(a, b) * square
         };
         let may_break = |entry: usize| {
             self.breakable
@@ -85,10 +90,9 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
         };
         for_each_chunk(marks, &|first, marks| {
             for (i, mark) in (first..).zip(marks) {
-                *mark |= self
-                    .bonds
-                    .family(i)
-                    .any(|(entry, j)| self.is_intact(i, entry) && may_break(entry) && over(i, j));
+                *mark |= self.bonds.family(i).any(|(entry, b)| {
+                    self.is_intact(i, entry) && may_break(entry) && over(self.bonds.site(i), b)
+                });
             }
         });
     }

@@ -7,6 +7,7 @@ use super::breaking::{BreakRule, PairThresholds};
 use super::kernels::accept_rows;
 use super::packed::{Packed, Reach};
 use super::stiffness::{Formula, Stiffness};
+use crate::domain::{Field, Letter};
 use crate::family::BondList;
 use crate::lanes::LANES;
 use crate::lanes::Row;
@@ -100,7 +101,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     }
 
     /// An operator whose bonds have the stiffness c α(i, j, ξ) given for each pair of points and the vector ξ from one to the other; it must be the same from both
-    /// ends.
+    /// ends. Ghosts are counted behind own points.
     pub fn with_pair_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -108,15 +109,14 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
-        let points = cloud.clone();
-        let weighted = |bonds: &BondList, i: usize, j: usize| {
-            stiffness_of_pair(i, j, bonds.vector(&points, i, j))
-                * bonds.volume_factor(&points, i, j)
+        let weighted = |bonds: &BondList, a: usize, b: usize| {
+            let [i, j] = [a, b].map(|site| bonds.sites().point(site));
+            stiffness_of_pair(i, j, bonds.vector(a, b)) * bonds.volume_factor(a, b)
         };
         Self::with_weighted_stiffness(cloud, bonds, &weighted, breaking, damage)
     }
 
-    /// An operator whose bonds have the stiffness c α κ(i, j), partial volumes included, given for each pair of points; it must be the same from both ends.
+    /// An operator whose bonds have the stiffness c α κ(a, b), partial volumes included, given for each pair of sites; it must be the same from both ends.
     pub fn with_weighted_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -124,9 +124,9 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Self {
-        let volumes = cloud.volumes();
-        let stiffness =
-            Stiffness::of_pairs(&bonds, &|i, j| stiffness_of_pair(&bonds, i, j) * volumes[j]);
+        let stiffness = Stiffness::of_pairs(&bonds, &|i, b| {
+            stiffness_of_pair(&bonds, bonds.site(i), b) * bonds.volume(b)
+        });
         Self::build(cloud, bonds, stiffness, breaking, damage)
     }
 
@@ -139,7 +139,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     ) -> Self {
         assert_eq!(cloud.dimension(), D, "an operator of the cloud's dimension");
         let n = cloud.len();
-        let (reference, unit) = reference_rows(&cloud);
+        let (reference, unit) = reference_rows(bonds.sites().places());
         let blocks = (0..n.div_ceil(BLOCK))
             .map(|block| {
                 let (from, to) = (block * BLOCK, ((block + 1) * BLOCK).min(n));
@@ -147,8 +147,11 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                 BlockDamage::new(bonds.present()[groups].to_vec())
             })
             .collect();
-        let cells = cloud.clone();
-        let make = move || Packed::new((0..cells.len()).map(|i| cells.cell_size(i)));
+        let cells = bonds.shared_sites();
+        let make = move || {
+            let places = cells.places();
+            Packed::new((0..places.len()).map(|site| places.cell_size(site)))
+        };
         Self {
             reach: Reach::new(&bonds),
             packed: Pool::new(1, make),
@@ -171,7 +174,9 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     pub fn with_critical_stretches(self, classes: PairClasses) -> Self {
         Self {
             critical_stretch: classes.smallest_critical_stretch(),
-            pairs: Some(PairThresholds::of::<L>(classes)),
+            pairs: Some(PairThresholds::of::<L>(
+                classes.on_sites(self.bonds.sites()),
+            )),
             ..self
         }
     }
@@ -198,10 +203,12 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         Bonds::new(&self.bonds, &self.reference, self.unit, &self.stiffness)
     }
 
-    /// Calls `work` with a field packed as far as the wanted points need it.
-    pub(super) fn with_packed(&self, field: &[f64], on: &On<'_>, work: impl FnOnce(&Records)) {
+    /// Calls `work` with a vector on points packed as far as the wanted points need it.
+    pub(super) fn with_packed(&self, owned: &[f64], on: &On<'_>, work: impl FnOnce(&Records)) {
+        let ghosts = self.cloud.domain().ghosts(owned);
         let mut packed = self.packed.take();
-        work(packed.fill::<D>(field, on, &self.reach));
+        let field = Field::new(owned, &ghosts);
+        work(packed.fill::<D>(field, on, self.bonds.sites(), &self.reach));
     }
 
     /// Runs a read-only loop over all blocks.
@@ -236,7 +243,10 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let n = self.cloud.len();
         let whole = matches!(on, On::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
-        let bonds = self.view().leading_to(partners);
+        let partners = partners.map(|marks| self.bonds.sites().spread_marks(marks));
+        let bonds = self.view().leading_to(partners.as_deref());
+        let velocity = step.mean_velocities();
+        let ghosts = velocity.map(|owned| self.cloud.domain().ghosts(owned));
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
@@ -244,6 +254,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             breakable: self.breakable.as_deref(),
             volumes: self.cloud.volumes(),
             step,
+            velocity: (velocity.zip(ghosts.as_deref()))
+                .map(|(owned, ghosts)| Field::new(owned, ghosts)),
             note_events: !whole,
         };
         self.with_packed(step.u, on, |u| {
@@ -275,25 +287,50 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
 
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
     fn tell_the_other_ends(&mut self) {
-        for b in 0..self.blocks.len() {
-            let events = std::mem::take(&mut self.blocks[b].tally.events);
-            for event in events {
-                let here = event.point as usize;
-                let j = self.bonds.neighbour(event.entry);
-                let Some((back, _)) = self.bonds.family(j).find(|&(_, other)| other == here) else {
-                    continue;
+        let (n, sites) = (self.cloud.len(), self.bonds.shared_sites());
+        let (mut here, mut away) = (Vec::new(), Vec::new());
+        for block in &mut self.blocks {
+            for event in block.tally.events.drain(..) {
+                let site = self.bonds.neighbour(event.entry);
+                let [x, y, z] = sites.shift(site).map(|periods| -f64::from(periods));
+                let letter = Letter {
+                    from: event.point as usize,
+                    to: sites.point(site),
+                    numbers: [event.dissipated, x, y, z],
                 };
-                let block = j / BLOCK;
-                let group = back / LANES - self.bonds.start()[block * BLOCK];
-                self.blocks[block].break_other_end(group, back % LANES, &event);
+                match letter.to.checked_sub(n) {
+                    None => here.push(letter),
+                    Some(ghost) => away.push(Letter {
+                        to: ghost,
+                        ..letter
+                    }),
+                }
             }
+        }
+        let arrived = self.cloud.domain().deliver(&away);
+        here.extend(arrived.into_iter().map(|letter| Letter {
+            from: n + letter.from,
+            ..letter
+        }));
+        for letter in here {
+            let [dissipated, x, y, z] = letter.numbers;
+            let leads_back = |&(_, site): &(usize, usize)| {
+                sites.point(site) == letter.from && sites.shift(site).map(f64::from) == [x, y, z]
+            };
+            let Some((back, _)) = self.bonds.family(letter.to).find(leads_back) else {
+                continue;
+            };
+            let block = letter.to / BLOCK;
+            let group = back / LANES - self.bonds.start()[block * BLOCK];
+            self.blocks[block].break_other_end(group, back % LANES, dissipated);
         }
     }
 
-    /// Stiffness c α κ V of an entry of point i that leads to j.
-    pub(super) fn stiffness_of(&self, entry: usize, i: usize, j: usize) -> f64 {
-        let cells = [i, j].map(|point| self.cloud.cell_size(point));
-        self.view().stiffness_of::<D>(entry, [i, j], cells)
+    /// Stiffness c α κ V of an entry of point i that leads to site b.
+    pub(super) fn stiffness_of(&self, entry: usize, i: usize, b: usize) -> f64 {
+        let ends = [self.bonds.site(i), b];
+        let cells = ends.map(|site| self.bonds.sites().places().cell_size(site));
+        self.view().stiffness_of::<D>(entry, ends, cells)
     }
 
     /// Memory of what the loops read beside the list, bytes.
@@ -318,17 +355,18 @@ fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, f64) {
 
 /// One bit per entry that may break; none if all may.
 fn breakable(bonds: &BondList, no_fail: &[u32]) -> Option<Vec<u8>> {
-    if no_fail.is_empty() {
+    if bonds.sites().cloud().domain().all(no_fail.is_empty()) {
         return None;
     }
     let mut held = vec![false; bonds.len()];
     for &i in no_fail {
         held[i as usize] = true;
     }
+    let held = bonds.sites().spread_marks(&held);
     let mut breakable = vec![0u8; bonds.geometric().len()];
-    for i in (0..bonds.len()).filter(|&i| !held[i]) {
-        for (entry, j) in bonds.family(i) {
-            if !held[j] {
+    for i in (0..bonds.len()).filter(|&i| !held[bonds.site(i)]) {
+        for (entry, b) in bonds.family(i) {
+            if !held[b] {
                 breakable[entry / LANES] |= 1 << (entry % LANES);
             }
         }

@@ -194,7 +194,8 @@ fn tangent_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     for k in 0..rows.count() {
         let i = rows.at(k);
         let here = bonds.here::<T, D>(i, u);
-        let direction_here: [T; D] = vector(|c| T::splat(direction[i][c]));
+        let site = bonds.list.site(i);
+        let direction_here: [T; D] = vector(|c| T::splat(direction[site][c]));
         let groups = groups_of(bonds.list, i, rows.first);
         let first = bonds.list.start()[i];
         let mut total = [T::splat(0.0); D];

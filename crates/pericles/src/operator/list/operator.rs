@@ -2,12 +2,12 @@
 
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
+use crate::domain::Field;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
     BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
     LinearOperator, Linearity, On, SplitForce,
 };
-use crate::parallel::components;
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
@@ -53,13 +53,13 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
                 .bonds
                 .family(i)
                 .filter(|&(entry, _)| self.is_intact(i, entry))
-                .map(|(entry, j)| {
-                    self.stiffness_of(entry, i, j).abs() / self.bonds.length(&self.cloud, i, j)
+                .map(|(entry, b)| {
+                    self.stiffness_of(entry, i, b).abs() / self.bonds.length(self.bonds.site(i), b)
                 })
                 .sum();
             largest = largest.max(2.0 * row / density(i));
         }
-        largest.sqrt()
+        self.cloud.domain().max(largest).sqrt()
     }
 
     fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
@@ -132,18 +132,20 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
 
 impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
     fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (bonds, u) = (self.view(), components::<D>(u, self.points()));
+        let ghosts = self.cloud.domain().ghosts(u);
+        let (bonds, u, sites) = (self.view(), Field::new(u, &ghosts), self.bonds.sites());
+        let here = sites.of_point(i);
         let spatial =
             |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
-        for (entry, j) in self.bonds.family(i) {
+        for (entry, b) in self.bonds.family(i) {
             if !self.is_intact(i, entry) {
                 continue;
             }
-            let xi: [f64; D] = bonds.vector(i, j);
-            let eta: [f64; D] = std::array::from_fn(|c| u[c][j] - u[c][i]);
-            let stiffness = self.stiffness_of(entry, i, j);
+            let xi: [f64; D] = bonds.vector(here, b);
+            let eta = u.difference::<D>([i, sites.point(b)]);
+            let stiffness = self.stiffness_of(entry, i, b);
             visit(BondAt {
-                neighbour: j,
+                neighbour: sites.point(b),
                 xi: spatial(xi),
                 eta: spatial(eta),
                 force: spatial(L::force(xi, eta).map(|force| stiffness * force)),
@@ -160,6 +162,7 @@ impl<L: FastLaw, const D: usize> LinearOperator for BondForce<L, D> {
 
     fn half_bandwidth(&self) -> Option<usize> {
         let of_point = |i: usize| self.bonds.family(i).map(move |(_, j)| i.abs_diff(j));
-        (D == 1).then(|| (0..self.points()).flat_map(of_point).max().unwrap_or(0))
+        let is_band = D == 1 && self.bonds.sites().are_points();
+        is_band.then(|| (0..self.points()).flat_map(of_point).max().unwrap_or(0))
     }
 }

@@ -2,14 +2,16 @@
 
 use rayon::prelude::*;
 
+use crate::domain::Field;
 use crate::family::BondList;
 use crate::lanes::Row;
 use crate::operator::On;
-use crate::operator::records::{Records, pack, pack_part};
+use crate::operator::records::{Records, pack, pack_part, pack_sites};
 use crate::operator::rows::Rows;
 use crate::parallel::BLOCK;
+use crate::space::Sites;
 
-/// Which blocks of points the bonds of each block lead to, its own among them.
+/// Which blocks of points the bonds of each block lead to, its own among them; nothing where bonds lead to ghosts or images.
 #[derive(Debug, Clone)]
 pub(super) struct Reach {
     start: Vec<usize>,
@@ -18,7 +20,10 @@ pub(super) struct Reach {
 
 impl Reach {
     pub fn new(bonds: &BondList) -> Self {
-        let n = bonds.len();
+        let n = match bonds.sites().are_points() {
+            true => bonds.len(),
+            false => 0,
+        };
         let rows: Vec<Vec<u32>> = (0..n.div_ceil(BLOCK))
             .into_par_iter()
             .map(|block| {
@@ -76,7 +81,18 @@ impl Packed {
     }
 
     /// Packs a field, as far as the wanted points and their neighbours need it.
-    pub fn fill<const D: usize>(&mut self, field: &[f64], on: &On<'_>, reach: &Reach) -> &Records {
+    pub fn fill<const D: usize>(
+        &mut self,
+        field: Field<'_>,
+        on: &On<'_>,
+        sites: &Sites,
+        reach: &Reach,
+    ) -> &Records {
+        if !sites.are_points() {
+            pack_sites::<D>(field, sites, &mut self.rows);
+            return &self.rows;
+        }
+        let field = field.owned;
         if let On::All = on {
             pack::<D>(field, &mut self.rows);
             return &self.rows;

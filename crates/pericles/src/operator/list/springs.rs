@@ -12,9 +12,11 @@ use crate::parallel::BLOCK;
 impl<L: FastLaw, const D: usize> BondForce<L, D> {
     /// The stiffest intact bond of every offset; none of points that are no lattice, or of different volumes or horizons.
     pub(super) fn springs_of_offsets(&self) -> Option<LatticeSprings> {
-        let lattice = self.cloud.lattice()?;
-        let volumes = self.cloud.volumes();
-        if volumes.iter().any(|volume| *volume != volumes[0]) {
+        let (sites, domain) = (self.bonds.sites(), self.cloud.domain());
+        let lattice = sites.places().lattice()?;
+        let largest = self.cloud.volumes().iter().copied().fold(0.0, f64::max);
+        let volume = domain.max(largest);
+        if !domain.all(self.cloud.volumes().iter().all(|own| *own == volume)) {
             return None;
         }
         let reach = self
@@ -22,13 +24,13 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             .correction()
             .reach(self.bonds.uniform_horizon()?, lattice.spacing);
         let cells = (reach / lattice.spacing).floor();
-        // Bonds reach no farther than the body; beyond that size plane waves are dear.
+        // Bonds reach no farther than the body and its images; beyond that size plane waves are dear.
         let most = cells.min(lattice.shape.iter().copied().max()? as f64) as usize;
         let width = 2 * most + 1;
         let places = width.checked_pow(D as u32).filter(|&p| p <= 1 << 20)?;
-        let coordinates = |i: usize| lattice.coordinates(lattice.node[i]);
-        let offset = |i: usize, j: usize| {
-            let (from, to) = (coordinates(i), coordinates(j));
+        let coordinates = |site: usize| lattice.coordinates(lattice.node[site]);
+        let offset = |a: usize, b: usize| {
+            let (from, to) = (coordinates(a), coordinates(b));
             std::array::from_fn::<i32, 3, _>(|c| to[c] - from[c])
         };
         let place = |offset: [i32; 3]| {
@@ -39,11 +41,12 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let of_block = |points: Range<usize>| {
             let mut stiffest = vec![f64::NEG_INFINITY; places];
             for i in points {
-                for (entry, j) in self.bonds.family(i) {
+                let here = sites.of_point(i);
+                for (entry, b) in self.bonds.family(i) {
                     if self.is_intact(i, entry) {
-                        let length = self.bonds.length(&self.cloud, i, j);
-                        let stiffness = self.stiffness_of(entry, i, j) / length;
-                        let largest = &mut stiffest[place(offset(i, j))];
+                        let length = self.bonds.length(here, b);
+                        let stiffness = self.stiffness_of(entry, i, b) / length;
+                        let largest = &mut stiffest[place(offset(here, b))];
                         // NaN and negative numbers are refused by the caller.
                         *largest = if stiffness >= 0.0 && !largest.is_nan() {
                             largest.max(stiffness)
@@ -58,7 +61,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let n = self.cloud.len();
         let blocks = n.div_ceil(BLOCK);
         let parts = rayon::current_num_threads().clamp(1, blocks);
-        let stiffest = (0..parts)
+        let mut stiffest = (0..parts)
             .into_par_iter()
             .map(|part| of_block(part * n / parts..(part + 1) * n / parts))
             .reduce_with(|mut a, b| {
@@ -71,6 +74,11 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                 }
                 a
             })?;
+        // No maximum of processes is NaN.
+        let usable = domain.all(stiffest.iter().all(|stiffness| !stiffness.is_nan()));
+        if usable {
+            domain.max_each(&mut stiffest);
+        }
         let springs = stiffest
             .iter()
             .enumerate()

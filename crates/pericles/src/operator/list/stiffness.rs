@@ -54,8 +54,10 @@ impl Formula {
             (InfluenceFunction::Conical, ActsOn::Stretch) => (1.0, -1.0 / horizon),
             _ => return None,
         };
-        let first = cloud.cell_size(0);
-        let equal = (1..cloud.len()).all(|i| cloud.cell_size(i) == first);
+        let domain = cloud.domain();
+        let largest = (0..cloud.len()).fold(0.0, |most: f64, i| most.max(cloud.cell_size(i)));
+        let first = domain.max(largest);
+        let equal = domain.all((0..cloud.len()).all(|i| cloud.cell_size(i) == first));
         Some(Self {
             constant: micromodulus * constant,
             slope: micromodulus * slope,
@@ -117,7 +119,7 @@ impl Stiffness {
         }
     }
 
-    /// The values of a function of the points of each entry, on all cores.
+    /// The values of a function of the point and the site of each entry, on all cores.
     pub fn of_pairs(bonds: &BondList, of: &(dyn Fn(usize, usize) -> f64 + Sync)) -> Self {
         let rows = for_each_point(bonds.len(), &|i| {
             let first = bonds.start()[i] * LANES;

@@ -13,7 +13,7 @@
 //! far below τ, so that the bound stands; copies of converged values change nothing at the upper end.
 
 use crate::domain::Domain;
-use crate::noise::noise;
+use crate::noise::noise_on;
 
 /// A symmetric matrix M⁻¹K in the inner product of the masses.
 pub(super) struct Problem<'a> {
@@ -70,7 +70,8 @@ impl<'a> Lanczos<'a> {
         failure: f64,
         hold: impl Fn(&mut [f64]),
     ) -> Option<Self> {
-        let mut start = noise(entries, 0x9E37_79B9_7F4A_7C15);
+        let components = entries / problem.domain.owned_points().max(1);
+        let mut start = noise_on(problem.domain, components, 0x9E37_79B9_7F4A_7C15);
         hold(&mut start);
         // σ² is a third for numbers that are uniform in [−1, 1).
         let norm = problem.domain.norm(&start);

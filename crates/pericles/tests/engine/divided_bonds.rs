@@ -1,0 +1,326 @@
+//! Bodies of bonds divided among several processes, with and without periodic faces: every bit is that of one process.
+
+use std::sync::Arc;
+
+use crate::common::{listed, material, points};
+use crate::processes::on_processes;
+use pericles::domain::{Comm, Domain, Peer};
+use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::material::{
+    BondMaterial, BondStretch, Fracture, GreenBond, InterfaceRule, LinearBond, PairClasses,
+    PairLaw, StressState, SurfaceCorrection,
+};
+use pericles::operator::{
+    BondBody, BondForm, CompositeBody, DamageMeasure, FastLaw, Force, GridForce,
+};
+use pericles::space::{Grid, PointCloud, Region, Shape};
+use pericles::time::{
+    AdaptiveRungeKutta, Implicit, ImplicitRule, Integrator, RungeKutta, State, Tableau,
+    VelocityVerlet,
+};
+use pericles::{Control, PointScalar, Simulation, System};
+
+const SIZE: [f64; 2] = [21.0, 13.0];
+const STATE: StressState = StressState::PlaneStress;
+
+fn plate(periodic: bool) -> PointCloud {
+    let hole = Region::Ball {
+        centre: [13.0, 7.0, 0.0],
+        radius: 1.6,
+    };
+    let grid = Grid {
+        shape: Shape::Box {
+            origin: [0.0; 3],
+            size: SIZE.to_vec(),
+        },
+        spacing: 1.0,
+        section: 1.0,
+        holes: if periodic { vec![] } else { vec![hole] },
+    };
+    let cloud = grid.points().unwrap();
+    if periodic {
+        cloud.with_periodic_faces().unwrap()
+    } else {
+        cloud
+    }
+}
+
+/// The owner of each point: oblique stripes, so that no part is a range of numbers or a box.
+fn owner(cloud: &PointCloud, size: usize, k: usize) -> usize {
+    let [x, y, _] = cloud.point(k);
+    (((x + 0.4 * y) / 27.0 * size as f64) as usize).min(size - 1)
+}
+
+/// The part of the plate that a process owns, with ghosts up to three and a half cells away.
+fn part(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
+    const REACH: f64 = 3.5;
+    let near = |a: usize, b: usize| {
+        let (p, q) = (cloud.point(a), cloud.point(b));
+        let apart = |c: usize| {
+            let direct = (q[c] - p[c]).abs();
+            if cloud.is_periodic() {
+                direct.min(SIZE[c] - direct)
+            } else {
+                direct
+            }
+        };
+        apart(0).hypot(apart(1)) <= REACH
+    };
+    let of = |rank: usize| -> Vec<usize> {
+        (0..cloud.len())
+            .filter(|&k| owner(cloud, comm.size(), k) == rank)
+            .collect()
+    };
+    let seen = |from: &[usize], by: &[usize]| -> Vec<usize> {
+        let is_seen = |a: &usize| by.iter().any(|&b| near(*a, b));
+        from.iter().copied().filter(is_seen).collect()
+    };
+    let own = of(comm.rank());
+    let mut numbers: Vec<u32> = own.iter().map(|&k| k as u32).collect();
+    let mut peers = Vec::new();
+    for rank in (0..comm.size()).filter(|&rank| rank != comm.rank()) {
+        let theirs = of(rank);
+        let (ghosts, sent) = (seen(&theirs, &own), seen(&own, &theirs));
+        if ghosts.is_empty() {
+            continue;
+        }
+        let first = numbers.len() - own.len();
+        numbers.extend(ghosts.iter().map(|&k| k as u32));
+        let place = |k: &usize| own.binary_search(k).unwrap() as u32;
+        peers.push(Peer {
+            rank,
+            sent: sent.iter().map(place).collect(),
+            received: first..first + ghosts.len(),
+        });
+    }
+    cloud.part(Domain::new(numbers, own.len(), peers, comm))
+}
+
+fn glass(law: PairLaw) -> BondMaterial {
+    BondMaterial {
+        law,
+        ..material(
+            1.0,
+            1.0,
+            3.0,
+            VolumeCorrection::Extended,
+            Fracture::CriticalStretch(0.02),
+        )
+    }
+}
+
+fn notch() -> Crack {
+    Crack::Segment {
+        from: [0.0, 6.0],
+        to: [6.0, 6.0],
+    }
+}
+
+fn held(cloud: &PointCloud) -> Vec<u32> {
+    points(cloud, |x, y, _| x > 16.0 && y > 9.0)
+}
+
+type Make = fn(&Arc<PointCloud>) -> Box<dyn Force>;
+
+fn list<L: FastLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+    let force = listed::<L, 2>(cloud, &glass(law), STATE, Some(notch()), &held(cloud));
+    Box::new(force)
+}
+
+fn grid<L: FastLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+    let glass = glass(law);
+    let constants = glass.constants(cloud, STATE).unwrap();
+    let cracks = [(notch(), EndRule::Closed)];
+    let held = held(cloud);
+    let damage = DamageMeasure::default();
+    let force =
+        GridForce::<L, 2>::new(cloud.clone(), &glass, &constants, &cracks, &held, damage).unwrap();
+    Box::new(force)
+}
+
+/// Two materials, an inclusion and corrected surfaces.
+fn composite(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+    let glass = glass(PairLaw::BondStretch);
+    let constants = glass.constants(cloud, STATE).unwrap();
+    let softer = BondMaterial {
+        fracture: Fracture::CriticalStretch(0.015),
+        ..material(
+            1.0,
+            0.5,
+            3.0,
+            VolumeCorrection::Extended,
+            Fracture::Unbreakable,
+        )
+    };
+    let softer = softer.constants(cloud, STATE).unwrap();
+    let number = |i: usize| u8::from(cloud.point(i)[0] > 10.0);
+    let numbers = (0..cloud.len()).map(number).collect();
+    let both = [constants.clone(), softer];
+    let classes = PairClasses::new(numbers, &both, InterfaceRule::Harmonic).unwrap();
+    let share = |i: usize| if cloud.point(i)[1] < 3.0 { 1.5 } else { 1.0 };
+    let stiffness: Vec<f64> = (0..cloud.len()).map(share).collect();
+    let cracks = [(notch(), EndRule::Closed)];
+    let body = BondBody {
+        cracks: &cracks,
+        stiffness: &stiffness,
+        ..BondBody::new(cloud, &glass, &constants)
+    };
+    let body = CompositeBody {
+        classes: Some(&classes),
+        correction: SurfaceCorrection::Energy,
+        ..CompositeBody::from(body)
+    };
+    body.operator(BondForm::List).unwrap().operator
+}
+
+type MakeScheme = fn(&System) -> Box<dyn Integrator>;
+
+/// What a run ends with: displacements, velocities and damage by the numbers of points; energies, momentum, energy dissipated and bonds broken.
+type End = (Vec<[u64; 5]>, [u64; 5]);
+
+fn run(cloud: PointCloud, make: Make, scheme: MakeScheme) -> End {
+    let cloud = Arc::new(cloud);
+    let n = cloud.len();
+    let system = System::new(cloud.clone(), make(&cloud), PointScalar::Uniform(1.0)).unwrap();
+    let mut state = State::at_rest(2 * n);
+    for i in 0..n {
+        let number = cloud.domain().number(i) as f64;
+        state.v[i] = 0.02 * (number * number).sin();
+        state.v[n + i] = 0.06 * (cloud.point(i)[1] - 6.0).signum() + 0.01 * (3.0 * number).cos();
+    }
+    let scheme = scheme(&system);
+    let mut run = Simulation::new(system, scheme, state, 0.2, 40);
+    run.run(|_| Control::Continue).unwrap();
+    let (system, state) = (run.system(), run.state());
+    let operator = system.operator();
+    let sums = [
+        system.kinetic_energy(&state.v),
+        operator.energy(state.t, &state.u),
+        system.momentum(&state.v)[0],
+        operator.dissipated(),
+        operator.broken_bonds() as f64,
+    ];
+    let mut damage = vec![0.0; n];
+    operator.damage_into(&mut damage);
+    let of = |i: usize| {
+        let values = [
+            state.u[i],
+            state.u[n + i],
+            state.v[i],
+            state.v[n + i],
+            damage[i],
+        ];
+        values.map(f64::to_bits)
+    };
+    ((0..n).map(of).collect(), sums.map(f64::to_bits))
+}
+
+fn divided(whole: &PointCloud, size: usize, make: Make, scheme: MakeScheme) -> End {
+    let parts = on_processes(size, |comm| {
+        let cloud = part(whole, comm);
+        let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.domain().number(i)).collect();
+        (numbers, run(cloud, make, scheme))
+    });
+    let mut values = vec![[0; 5]; whole.len()];
+    for (numbers, (own, sums)) in &parts {
+        assert_eq!(sums, &parts[0].1.1, "every process knows the same sums");
+        for (&k, own) in numbers.iter().zip(own) {
+            values[k] = *own;
+        }
+    }
+    (values, parts[0].1.1)
+}
+
+const VERLET: MakeScheme = |_| Box::new(VelocityVerlet);
+
+#[test]
+fn a_divided_body_of_bonds_moves_by_the_same_bits() {
+    let forces: [(&str, Make); 5] = [
+        ("list", |cloud| {
+            list::<BondStretch>(PairLaw::BondStretch, cloud)
+        }),
+        ("list, Green strain", |cloud| {
+            list::<GreenBond>(PairLaw::GreenStrain, cloud)
+        }),
+        ("list of several materials", composite),
+        ("stencil", |cloud| {
+            grid::<BondStretch>(PairLaw::BondStretch, cloud)
+        }),
+        ("linear stencil", |cloud| {
+            grid::<LinearBond>(PairLaw::Linear, cloud)
+        }),
+    ];
+    for periodic in [false, true] {
+        let whole = plate(periodic);
+        for (name, make) in forces {
+            if periodic && name.contains("several") {
+                continue;
+            }
+            let alone = run(whole.clone(), make, VERLET);
+            let broken = f64::from_bits(alone.1[4]);
+            assert!(broken > 50.0, "{name}: {broken} bonds broken");
+            for size in [1, 2, 3, 5] {
+                let equal = divided(&whole, size, make, VERLET) == alone;
+                assert!(equal, "{name}, {size} processes, periodic: {periodic}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_scheme_of_whole_steps_gives_the_same_bits() {
+    let schemes: [(&str, MakeScheme); 3] = [
+        ("Runge–Kutta", |system| {
+            Box::new(RungeKutta::new(&Tableau::rk4(), system))
+        }),
+        ("Dormand–Prince", |system| {
+            Box::new(AdaptiveRungeKutta::new(1e-7, system).unwrap())
+        }),
+        ("implicit midpoint", |system| {
+            Box::new(Implicit::new(ImplicitRule::Midpoint, system).unwrap())
+        }),
+    ];
+    let whole = plate(false);
+    let make: Make = |cloud| {
+        let mut linear = glass(PairLaw::Linear);
+        linear.fracture = Fracture::Unbreakable;
+        Box::new(listed::<LinearBond, 2>(
+            cloud,
+            &linear,
+            STATE,
+            Some(notch()),
+            &[],
+        ))
+    };
+    for (name, scheme) in schemes {
+        let alone = run(whole.clone(), make, scheme);
+        for size in [2, 3] {
+            let equal = divided(&whole, size, make, scheme) == alone;
+            assert!(equal, "{name}, {size} processes");
+        }
+    }
+}
+
+/// The bound and the estimate of the highest frequency decide the time step.
+#[test]
+fn the_highest_frequency_does_not_depend_on_the_division() {
+    use pericles::time::highest_frequency;
+    let whole = plate(false);
+    let of = |cloud: PointCloud, make: Make| {
+        let cloud = Arc::new(cloud);
+        let system = System::new(cloud.clone(), make(&cloud), PointScalar::Uniform(1.0)).unwrap();
+        let u = vec![0.0; 2 * cloud.len()];
+        let found = highest_frequency(&system, &u).unwrap();
+        [found.estimate, found.bound].map(f64::to_bits)
+    };
+    let forces: [Make; 2] = [
+        |cloud| list::<BondStretch>(PairLaw::BondStretch, cloud),
+        |cloud| grid::<BondStretch>(PairLaw::BondStretch, cloud),
+    ];
+    for make in forces {
+        let alone = of(whole.clone(), make);
+        for found in on_processes(3, |comm| of(part(&whole, comm), make)) {
+            assert_eq!(found, alone);
+        }
+    }
+}
