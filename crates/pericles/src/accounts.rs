@@ -1,6 +1,7 @@
 //! Work and impulse of everything outside the body.
 
 use crate::boundary::Load;
+use crate::space::PointCloud;
 use crate::step_end::{Path, StepEnd};
 
 /// Work and impulse of everything outside the body since the start.
@@ -24,14 +25,8 @@ impl Ledger {
     }
 
     /// Books the work and impulse of a load over a step.
-    pub(crate) fn book_load(
-        &mut self,
-        step: &StepEnd<'_>,
-        load: &Load,
-        dimension: usize,
-        volumes: &[f64],
-    ) {
-        let n = volumes.len();
+    pub(crate) fn book_load(&mut self, step: &StepEnd<'_>, load: &Load, cloud: &PointCloud) {
+        let (n, volumes) = (cloud.len(), cloud.volumes());
         let times = [step.t - step.dt, step.t - 0.5 * step.dt, step.t];
         let mut factors = times.map(|t| load.factor(t));
         if let Path::Chord { first: true, .. } = step.path {
@@ -41,19 +36,17 @@ impl Ledger {
         if factors == [0.0; 3] {
             return;
         }
-        for c in 0..dimension {
-            if load.is_free_of(c) {
-                continue;
-            }
-            for (k, &i) in load.points.iter().enumerate() {
-                let (i, entry) = (i as usize, c * n + i as usize);
+        for c in (0..cloud.dimension()).filter(|&c| !load.is_free_of(c)) {
+            let push_and_work = |k: usize| {
+                let i = load.points[k] as usize;
                 let forces: [f64; 3] = std::array::from_fn(|m| {
                     load.amplitude(c, k, times[m]) * factors[m] * volumes[i]
                 });
-                let (push, done) = step.push_and_work(forces, entry);
-                work += done;
-                impulse[c] += push;
-            }
+                step.push_and_work(forces, c * n + i)
+            };
+            let (domain, points) = (cloud.domain(), load.points.len());
+            work += domain.sum(points, |k| push_and_work(k).1);
+            impulse[c] = domain.sum(points, |k| push_and_work(k).0);
         }
         self.book(work, impulse);
     }
@@ -86,8 +79,9 @@ mod tests {
                             v: [&[(t - dt).cos()], &[t.cos()]],
                         },
                     };
+                    let cloud = PointCloud::new(1, vec![0.0], vec![1.0], 1.0).unwrap();
                     let mut ledger = Ledger::default();
-                    ledger.book_load(&step, &load, 1, &[1.0]);
+                    ledger.book_load(&step, &load, &cloud);
                     ledger.work
                 })
                 .sum()

@@ -20,25 +20,34 @@ impl System {
     /// In each pass every bond asks for its impulse from the same velocities; all impulses together are scaled so that they take the energy that is still missing, or as much
     /// of it as they can.
     pub fn settle_breaking(&mut self, t: f64, v: &mut [f64]) {
+        let domain = self.domain().clone();
         let Some(breaking) = self.operator_mut().breaking_mut() else {
             return;
         };
         let mut breaks = breaking.take_coarse_breaks();
-        if breaks.is_empty() {
+        if domain.all(breaks.is_empty()) {
             return;
         }
-        self.coarse_breaks.add(breaks.len() as u64);
-        let mut free = vec![1.0; v.len()];
-        self.hold_at(t, &mut free);
+        // In the same order for every division among processes.
+        breaks.sort_by_key(|bond| {
+            let [a, b] = bond.points.map(|point| domain.number(point as usize));
+            [a.min(b), a.max(b)]
+        });
+        let own: Vec<usize> = (0..breaks.len())
+            .filter(|&k| self.is_ours(&breaks[k]))
+            .collect();
+        self.coarse_breaks.add(own.len() as u64);
+        let mut ends = Ends::new(self, t, v.len());
         let shares: Vec<f64> = breaks.iter().map(|bond| bond.missing.abs()).collect();
-        let all: f64 = shares.iter().sum();
-        let mut left: f64 = breaks.iter().map(|bond| bond.missing).sum();
+        let all = domain.sum(own.len(), |k| shares[own[k]]);
+        let mut left = domain.sum(own.len(), |k| breaks[own[k]].missing);
         for _ in 0..PASSES {
             if left.abs() <= LEFT * all {
                 break;
             }
-            let impulse = self.impulses(&breaks, v, &free);
-            let taken = self.push(&impulse, left, v, &free);
+            ends.velocity = domain.ghosts(v);
+            let impulse = self.impulses(&breaks, v, &ends);
+            let taken = self.push(&impulse, left, v, &ends.free);
             if taken == 0.0 {
                 break;
             }
@@ -49,49 +58,69 @@ impl System {
         }
     }
 
+    /// Whether this process counts a bond: the owner of the end with the smaller number does.
+    fn is_ours(&self, bond: &CoarseBreak) -> bool {
+        let number = |&point: &u32| self.domain().number(point as usize);
+        let first = bond.points.iter().min_by_key(|&point| number(point));
+        first.is_some_and(|&point| (point as usize) < self.points())
+    }
+
     /// Applies impulses, N s, scaled so that they take the energy `missing`, J, or as much of it as they can; books and returns what they took.
     fn push(&mut self, impulse: &[f64], missing: f64, v: &mut [f64], free: &[f64]) -> f64 {
-        let n = self.points();
-        let pushed = || impulse.iter().enumerate().filter(|(_, push)| **push != 0.0);
-        let (mut rate, mut compliance) = (0.0, 0.0);
-        for (entry, push) in pushed() {
-            rate += push * v[entry];
-            compliance += free[entry] * push * push / self.mass(entry % n);
-        }
+        let (n, domain) = (self.points(), self.domain().clone());
+        let pushed: Vec<usize> = (0..impulse.len()).filter(|&k| impulse[k] != 0.0).collect();
+        let rate = domain.sum(pushed.len(), |k| impulse[pushed[k]] * v[pushed[k]]);
+        let compliance = domain.sum(pushed.len(), |k| {
+            let entry = pushed[k];
+            free[entry] * impulse[entry] * impulse[entry] / self.mass(entry % n)
+        });
         let scale = separating_impulse(rate, compliance, missing);
         // Impulses against the bonds' own are no separation.
         if scale <= 0.0 || !scale.is_finite() {
             return 0.0;
         }
-        let (mut given, mut work, mut reaction) = (0.0, 0.0, [0.0; 3]);
-        for (entry, push) in pushed() {
-            let push = scale * push;
+        let mut given = Vec::with_capacity(pushed.len());
+        let (mut supports, mut reaction) = (Vec::new(), [const { Vec::new() }; 3]);
+        for entry in pushed {
+            let push = scale * impulse[entry];
             if free[entry] == 0.0 {
                 // The support takes the impulse.
-                given += push * v[entry];
-                work -= push * v[entry];
-                reaction[entry / n] -= push;
+                given.push(push * v[entry]);
+                supports.push(-push * v[entry]);
+                reaction[entry / n].push(-push);
             } else {
                 let change = push / self.mass(entry % n);
-                given += push * (v[entry] + 0.5 * change);
+                given.push(push * (v[entry] + 0.5 * change));
                 v[entry] += change;
             }
         }
-        self.book_reaction(work, reaction);
+        let sum = |terms: &[f64]| domain.sum(terms.len(), |k| terms[k]);
+        let taken = -sum(&given);
+        self.book_reaction(sum(&supports), reaction.each_ref().map(|terms| sum(terms)));
         if let Some(breaking) = self.operator_mut().breaking_mut() {
-            breaking.dissipate(-given);
+            // One by one: the sum of all processes does not depend on the division.
+            given.iter().for_each(|given| breaking.dissipate(-given));
         }
-        -given
+        taken
     }
 
     /// Bonds that broke within a step too coarse for them so far.
     pub fn coarse_breaks(&self) -> u64 {
-        self.coarse_breaks.get()
+        self.domain().count(self.coarse_breaks.get())
     }
 
     /// The impulse on every unknown, N s.
-    fn impulses(&self, breaks: &[CoarseBreak], v: &[f64], free: &[f64]) -> Vec<f64> {
+    fn impulses(&self, breaks: &[CoarseBreak], v: &[f64], ends: &Ends) -> Vec<f64> {
         let (n, dimension) = (self.points(), self.dimension());
+        let m = self.domain().ghost_points();
+        let velocity = |c: usize, point: usize| match point.checked_sub(n) {
+            None => v[c * n + point],
+            Some(ghost) => ends.velocity[c * m + ghost],
+        };
+        let free = |c: usize, point: usize| match point.checked_sub(n) {
+            None => ends.free[c * n + point],
+            Some(ghost) => ends.free_ghosts[c * m + ghost],
+        };
         let mut impulse = vec![0.0; v.len()];
         for bond in breaks {
             let [i, j] = bond.points.map(|point| point as usize);
@@ -101,15 +130,18 @@ impl System {
             }
             let (mut rate, mut compliance) = (0.0, 0.0);
             for c in 0..dimension {
-                let (e, from, to) = (bond.along[c] / length, c * n + i, c * n + j);
-                rate += e * (v[to] - v[from]);
-                compliance += e * e * (free[to] / self.mass(j) + free[from] / self.mass(i));
+                let e = bond.along[c] / length;
+                rate += e * (velocity(c, j) - velocity(c, i));
+                compliance += e * e * (free(c, j) / ends.mass[j] + free(c, i) / ends.mass[i]);
             }
             let push = separating_impulse(rate, compliance, bond.missing);
             for c in 0..dimension {
                 let push = push * bond.along[c] / length;
-                impulse[c * n + j] += push;
-                impulse[c * n + i] -= push;
+                for (point, push) in [(j, push), (i, -push)] {
+                    if point < n {
+                        impulse[c * n + point] += push;
+                    }
+                }
             }
         }
         impulse
@@ -118,6 +150,31 @@ impl System {
     /// ρ V of a point, kg.
     fn mass(&self, i: usize) -> f64 {
         self.density().at(i) * self.cloud().volumes()[i]
+    }
+}
+
+/// What is known of the ends of bonds, with those that other processes own.
+struct Ends {
+    /// One where the motion is free, zero where it is prescribed; by entry.
+    free: Vec<f64>,
+    free_ghosts: Vec<f64>,
+    /// Masses, kg; ghosts behind own points.
+    mass: Vec<f64>,
+    /// Velocities of ghosts, m/s.
+    velocity: Vec<f64>,
+}
+
+impl Ends {
+    fn new(system: &System, t: f64, entries: usize) -> Self {
+        let mut free = vec![1.0; entries];
+        system.hold_at(t, &mut free);
+        let mass: Vec<f64> = (0..system.points()).map(|i| system.mass(i)).collect();
+        Self {
+            free_ghosts: system.domain().ghosts(&free),
+            mass: system.domain().with_ghosts(&mass).into_owned(),
+            velocity: Vec::new(),
+            free,
+        }
     }
 }
 

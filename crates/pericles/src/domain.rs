@@ -228,6 +228,11 @@ impl Domain {
         self.max(f64::from(u8::from(!holds))) == 0.0
     }
 
+    /// Whether other processes own points of the body.
+    pub fn is_divided(&self) -> bool {
+        self.comm.size() > 1
+    }
+
     /// Number of own points.
     pub fn owned_points(&self) -> usize {
         self.owned

@@ -106,7 +106,7 @@ impl StopWhen {
             StopCondition::ReactionBelow { share, motions } => {
                 let mut sum = [0.0; 3];
                 for &motion in motions {
-                    let reaction = system.motions()[motion].reaction(system.cloud().volumes());
+                    let reaction = system.motions()[motion].reaction(system.cloud());
                     (0..3).for_each(|c| sum[c] += reaction[c]);
                 }
                 let now = sum.iter().map(|r| r * r).sum::<f64>().sqrt();

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::archive::{Archive, SavedUnder, Values};
-use crate::error::Result;
+use crate::error::{PericlesError, Result};
 use crate::lanes::{InstructionSet, for_each_instruction_set};
 use crate::parallel::BLOCK;
 
@@ -191,14 +191,25 @@ impl SavedUnder for BinnedSum {
     }
 
     fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        /// Far beyond the integers of any run, far below those that would overflow.
+        const MOST: u128 = 1 << 100;
         let numbers = archive.exactly::<u64>(name, 1 + 2 * (KEPT + 3))?;
-        let top = i32::try_from(numbers[0] as i64).unwrap_or(i32::MIN);
         let integer = |k: usize| {
             let [low, high] = [numbers[1 + 2 * k], numbers[2 + 2 * k]];
             i128::from(high as i64) << 64 | i128::from(low)
         };
-        *self = Self::of_integers(top, std::array::from_fn(integer));
-        Ok(())
+        let integers: [i128; KEPT + 3] = std::array::from_fn(integer);
+        let top = i32::try_from(numbers[0] as i64).ok();
+        let bins = bin_of(f64::MIN_POSITIVE * f64::EPSILON)..=bin_of(f64::MAX);
+        match top.filter(|top| *top == i32::MIN || bins.contains(top)) {
+            Some(top) if integers.iter().all(|k| k.unsigned_abs() < MOST) => {
+                *self = Self::of_integers(top, integers);
+                Ok(())
+            }
+            _ => Err(PericlesError::BadArchive {
+                reason: format!("{name} is no sum"),
+            }),
+        }
     }
 }
 

@@ -35,7 +35,7 @@ impl Observer for Reactions {
         let (state, system) = (snapshot.state(), snapshot.system());
         let mut row = vec![whole(state.step), state.t.into()];
         for motion in system.motions() {
-            let force = motion.reaction(system.cloud().volumes());
+            let force = motion.reaction(system.cloud());
             row.extend(motion.axes().map(|axis| Cell::Real(force[axis])));
         }
         Ok(self.table.append(&row)?)

@@ -4,8 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::TimeFunction;
+use crate::domain::Domain;
 use crate::operator::On;
-use crate::space::PointSet;
+use crate::space::{PointCloud, PointSet};
 
 /// What is prescribed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -258,12 +259,13 @@ impl PrescribedMotion {
         cloud_len: usize,
         acceleration: &[f64],
         chord: Option<[&[f64]; 2]>,
-        (density, volumes): (&dyn Fn(usize) -> f64, &[f64]),
+        (density, cloud): (&dyn Fn(usize) -> f64, &PointCloud),
     ) -> (f64, [f64; 3]) {
-        let (mut work, mut impulse) = (0.0, [0.0; 3]);
+        let (volumes, domain) = (cloud.volumes(), cloud.domain());
         let held = self.holds(t);
-        if !held && self.reaction.iter().all(|reaction| *reaction == 0.0) {
-            return (work, impulse);
+        let nothing = |reaction: &f64| *reaction == 0.0;
+        if !held && domain.all(self.reaction.iter().all(nothing)) {
+            return (0.0, [0.0; 3]);
         }
         // Of the step after the release the support has pushed the first half; its points then move on with about the last velocity.
         let mut advance = vec![0.0; self.reaction.len()];
@@ -284,31 +286,40 @@ impl PrescribedMotion {
             });
         }
         let mut reaction = std::mem::take(&mut self.reaction);
+        let mut push = vec![0.0; reaction.len()];
         self.for_each(2, t, &On::All, cloud_len, |entry, slot, rate| {
-            let (c, i) = (entry / cloud_len, entry % cloud_len);
+            let i = entry % cloud_len;
             let now = if held {
                 density(i) * (rate - acceleration[entry])
             } else {
                 0.0
             };
             let mean = 0.5 * (reaction[slot] + now) * volumes[i];
-            work += mean * advance[slot];
-            impulse[c] += mean * dt;
+            advance[slot] *= mean;
+            push[slot] = mean * dt;
             reaction[slot] = now;
         });
         self.reaction = reaction;
-        (work, impulse)
+        let work = domain.sum(advance.len(), |slot| advance[slot]);
+        (work, self.sums(domain, &push))
+    }
+
+    /// Sums over the points of slots, by axis.
+    fn sums(&self, domain: &Domain, slots: &[f64]) -> [f64; 3] {
+        let (n, mut sums) = (self.points.len(), [0.0; 3]);
+        for (axis, c) in self.axes().enumerate() {
+            sums[c] = domain.sum(n, |k| slots[axis * n + k]);
+        }
+        sums
     }
 
     /// The force of the support on the body at the last accepted state, N.
-    pub fn reaction(&self, volumes: &[f64]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        let slots = self.reaction.chunks(self.points.len().max(1));
-        for (c, reactions) in self.axes().zip(slots) {
-            let each = reactions.iter().zip(&self.points);
-            sum[c] = each.map(|(force, &i)| force * volumes[i as usize]).sum();
-        }
-        sum
+    pub fn reaction(&self, cloud: &PointCloud) -> [f64; 3] {
+        let volumes = cloud.volumes();
+        let points = self.points.iter().cycle();
+        let force = |(force, &i): (&f64, &u32)| force * volumes[i as usize];
+        let slots: Vec<f64> = self.reaction.iter().zip(points).map(force).collect();
+        self.sums(cloud.domain(), &slots)
     }
 
     /// Adds the force density of the support at the last accepted state (N/m³) to the entries of held points.

@@ -359,7 +359,7 @@ impl System {
         let density = |i: usize| self.density.at(i);
         for motion in &mut self.motions {
             motion.add_acceleration(t, n, work);
-            motion.account(t, 0.0, n, work, None, (&density, self.cloud.volumes()));
+            motion.account(t, 0.0, n, work, None, (&density, &self.cloud));
         }
     }
 
@@ -408,10 +408,8 @@ impl System {
     /// Books the work and impulse of a step; `acceleration` are the free accelerations f/ρ of all points at its end.
     pub fn book_step(&mut self, step: &StepEnd<'_>, acceleration: &[f64]) {
         let n = self.points();
-        let volumes = self.cloud.volumes();
         for load in &self.loads {
-            self.ledger
-                .book_load(step, load, self.cloud.dimension(), volumes);
+            self.ledger.book_load(step, load, &self.cloud);
         }
         let density = |i: usize| self.density.at(i);
         let chord = match step.path {
@@ -419,8 +417,14 @@ impl System {
             _ => None,
         };
         for motion in &mut self.motions {
-            let (work, impulse) =
-                motion.account(step.t, step.dt, n, acceleration, chord, (&density, volumes));
+            let (work, impulse) = motion.account(
+                step.t,
+                step.dt,
+                n,
+                acceleration,
+                chord,
+                (&density, &self.cloud),
+            );
             self.ledger.book(work, impulse);
         }
     }

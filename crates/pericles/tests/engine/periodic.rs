@@ -152,9 +152,9 @@ fn torn(shift: usize, stencil: bool) -> (Vec<f64>, u64, [f64; 3]) {
     for i in 0..n {
         let k = moved(i);
         let row = (k / columns) as f64;
-        start.v[i] = 0.01 * (k as f64).sin();
+        start.v[i] = 0.001 * (k as f64).sin();
         // Continuous across the face, and steep at the crack.
-        start.v[n + i] = -0.08 * (std::f64::consts::TAU * (row + 0.5) / SIZE[1]).sin();
+        start.v[n + i] = -0.03 * (std::f64::consts::TAU * (row + 0.5) / SIZE[1]).sin();
     }
     let before = system.momentum(&start.v);
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, 0.1, 120);

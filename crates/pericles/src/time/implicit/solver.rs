@@ -99,10 +99,12 @@ impl StepSolver {
         })
     }
 
-    /// Whether steps of length tau are solved by a factor. One that breaking bonds would spoil is not made.
+    /// Whether steps of length tau are solved by a factor. One that breaking bonds would spoil is not made, nor one of a body divided among processes.
     pub(super) fn is_direct(&self, tau: f64, system: &System) -> bool {
         match self.choice {
             _ if system.operator().can_break() => false,
+            // A factor takes the whole matrix.
+            _ if system.domain().is_divided() => false,
             LinearSolver::Direct => true,
             LinearSolver::ConjugateGradients => false,
             LinearSolver::Fastest => self.shape.favours_a_factor(tau),
