@@ -75,16 +75,6 @@ pub enum Scheme {
     },
 }
 
-impl Scheme {
-    /// Whether it has two time steps, and takes the force apart by points.
-    pub fn has_two_steps(&self) -> bool {
-        matches!(
-            self,
-            Self::MultiTimeStep3 { .. } | Self::MultiTimeStep4 { .. } | Self::Respa { .. }
-        )
-    }
-}
-
 /// The smaller of two time steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,14 +1,16 @@
-//! What works together: the schemes and what they need, the forms of forces and what they offer. Refusals follow from the same lists, and the tables of the book are written by [`tables`].
+//! What works together: the schemes and what they need, the forms of forces, what they offer and what they do not represent. Refusals follow from the same lists, and the tables of the book are written
+//! by [`tables`].
 
 use std::fmt::Write;
 
+use pericles::operator::{Feature, Limit};
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Implicit, InnerSolver, MultiTimeStep, Relaxation, Respa,
 };
 use pericles::{Need, Requirement, StepKind};
 use pericles_deck::Scheme as DeckScheme;
-use pericles_waves::Trigonometric;
 use pericles_waves::absorbing::LatticeScheme;
+use pericles_waves::{ForceForm, Trigonometric};
 
 /// A scheme, or several with the same needs.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +34,8 @@ pub struct Form {
     pub name: &'static str,
     /// The needs of schemes that its forces meet.
     pub offers: &'static [Need],
+    /// The choice that a deck makes; none for surfaces, which have no other form.
+    pub choice: Option<ForceForm>,
 }
 
 /// Needs that concern the form of forces.
@@ -119,33 +123,47 @@ pub const FORMS: [Form; 6] = [
         words: "list of bonds (any body)",
         name: "list",
         offers: &OF_FORMS,
+        choice: Some(ForceForm::List),
     },
     Form {
         words: "stencil (grids)",
         name: "grid",
         offers: &OF_FORMS,
+        choice: Some(ForceForm::Grid),
     },
     Form {
         words: "stencil, single precision",
         name: "grid-f32",
         offers: &[],
+        choice: Some(ForceForm::FloatGrid),
     },
     Form {
         words: "bonds of surfaces",
         name: "surface",
         offers: &OF_FORMS,
+        choice: None,
     },
     Form {
         words: "convolution (grids, linear)",
         name: "convolution",
         offers: &[Need::DoublePrecision],
+        choice: Some(ForceForm::Convolution),
     },
     Form {
         words: "plane waves (periodic, linear)",
         name: "spectral",
         offers: &[Need::DoublePrecision],
+        choice: Some(ForceForm::Spectral),
     },
 ];
+
+impl Form {
+    /// Why the form does not represent a feature of a body; none if it does.
+    pub fn refusal_of_feature(&self, feature: Feature) -> Option<&'static str> {
+        let limits = self.choice.map_or(&[][..], ForceForm::limits);
+        Limit::refusal(limits, feature.into())
+    }
+}
 
 impl Scheme {
     /// Why the scheme cannot step forces of a form; none if it can.
@@ -255,7 +273,7 @@ impl Condition {
     }
 }
 
-/// The tables of schemes with forms and with conditions, in Markdown, with the reasons of what is refused.
+/// The tables of schemes with forms and with conditions, and of features of bodies with forms, in Markdown, with the reasons of what is refused.
 pub fn tables() -> String {
     let mut reasons = Reasons::default();
     let forms = FORMS.map(|form| form.words);
@@ -270,6 +288,16 @@ pub fn tables() -> String {
     for scheme in &SCHEMES {
         let cells = Condition::ALL.map(|condition| scheme.refusal_of_condition(condition));
         row(&mut text, scheme.words, &cells, &mut reasons);
+    }
+    text.push('\n');
+    let chosen = FORMS.iter().filter(|form| form.choice.is_some());
+    let chosen: Vec<&Form> = chosen.collect();
+    let words: Vec<&str> = chosen.iter().map(|form| form.words).collect();
+    text.push_str(&head("body", &words));
+    for feature in Feature::ALL {
+        let cells = chosen.iter().map(|form| form.refusal_of_feature(feature));
+        let cells: Vec<_> = cells.collect();
+        row(&mut text, feature.words(), &cells, &mut reasons);
     }
     text.push('\n');
     for (k, reason) in reasons.0.iter().enumerate() {

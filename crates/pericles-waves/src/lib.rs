@@ -12,9 +12,11 @@
 pub mod absorbing;
 mod assemble;
 pub mod exact;
+mod form;
 pub mod function;
 pub mod linear;
 mod trigonometric;
 
-pub use assemble::{AssembledForce, ForceForm, assemble};
+pub use assemble::{AssembledForce, assemble, features};
+pub use form::ForceForm;
 pub use trigonometric::{FunctionMethod, LoadRule, Trigonometric, TrigonometricOptions};

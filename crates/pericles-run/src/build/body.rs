@@ -2,7 +2,7 @@
 
 use pericles::material::BondConstants;
 use pericles::observe::TrackedCrack;
-use pericles::operator::{BondBody, CompositeBody};
+use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
@@ -68,11 +68,12 @@ impl Assembler<'_> {
             correction: solid.material.surface_correction,
         };
         let (bonds, cracks) = self.bonds(solid, composite, grids, warnings)?;
-        if self.model.output.wants_tensors() && bonds.operator.as_bonds().is_none() {
-            let reason = if solid.shape.is_periodic() {
-                "periodic bodies keep no list of bonds"
-            } else {
-                "they are sums over single bonds; use bonds = \"list\", \"grid\" or \"fastest\""
+        let refused = bonds.form.refusal(Feature::Tensors.into());
+        if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
+            // A periodic body has no choice of forms.
+            let reason = match solid.shape.is_periodic() {
+                true => "periodic bodies keep no list of bonds",
+                false => reason,
             };
             return Err(at_path(self.tensor_key(), Fault::NoTensors { reason }));
         }
@@ -212,11 +213,14 @@ impl Assembler<'_> {
                     ForceForm::List
                 }
                 ForceForm::Fastest
-                    if self.model.time.scheme.has_two_steps() && !solid.shape.is_periodic() =>
+                    if has_need(&self.model.time.scheme, Need::FiniteReach)
+                        && !solid.shape.is_periodic() =>
                 {
                     composite.fastest_form().into()
                 }
-                ForceForm::FloatGrid if needs_doubles(&self.model.time.scheme) => {
+                ForceForm::FloatGrid
+                    if has_need(&self.model.time.scheme, Need::DoublePrecision) =>
+                {
                     return Err(at_material(PericlesError::FormNotUsable {
                         form: ForceForm::FloatGrid.name(),
                         reason: "this scheme needs forces in double precision; use \"grid\", or a Verlet or Runge–Kutta scheme with one step",
@@ -241,8 +245,7 @@ impl Assembler<'_> {
     }
 }
 
-/// Whether a scheme needs forces in double precision.
-fn needs_doubles(scheme: &Scheme) -> bool {
-    let mut needs = requirements(scheme).iter();
-    needs.any(|one| one.need == Need::DoublePrecision)
+/// Whether a scheme has a need.
+fn has_need(scheme: &Scheme, need: Need) -> bool {
+    requirements(scheme).iter().any(|one| one.need == need)
 }

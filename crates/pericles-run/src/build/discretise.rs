@@ -2,15 +2,12 @@
 
 use std::sync::Arc;
 
-use pericles::material::{Fracture, PairLaw, SurfaceCorrection};
 use pericles::space::{GradedCloud, PointCloud};
-use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Model, Remark, Solid};
+use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Model, Remark};
 use pericles_manifold::surface::Surface;
-use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
-use super::refusal::at_path;
 use super::resources::Resources;
 
 /// Makes the points of a model and selects its sets.
@@ -98,45 +95,6 @@ pub fn body_points(
 }
 
 impl Assembler<'_> {
-    /// Refuses everything at once that a periodic body cannot have.
-    pub(super) fn check_periodic(&self, solid: &Solid) -> Result<(), BuildError> {
-        let material = &solid.material;
-        let spectral = material.form == ForceForm::Spectral;
-        let law = material.bonds.law;
-        let right_law = law == PairLaw::Linear || (law == PairLaw::GreenStrain && spectral);
-        let breaks = material.bonds.fracture != Fracture::Unbreakable;
-        let listed = matches!(
-            material.form,
-            ForceForm::List | ForceForm::Grid | ForceForm::FloatGrid
-        );
-        let corrected = material.surface_correction != SurfaceCorrection::None;
-        let conflicts: Vec<String> = [
-            (!right_law, format!("model = \"{}\"", material.model_name())),
-            (
-                breaks,
-                "bonds that break (`fracture_energy`, `critical_stretch`)".into(),
-            ),
-            (listed, format!("bonds = \"{}\"", material.form.name())),
-            (
-                !self.model.cracks.is_empty(),
-                "pre-cracks ([[crack]])".into(),
-            ),
-            (
-                !material.inclusions.is_empty(),
-                "[[material.inclusion]]".into(),
-            ),
-            (!material.parts.is_empty(), "[[material.part]]".into()),
-            (corrected, "a surface correction".into()),
-        ]
-        .into_iter()
-        .filter_map(|(found, what)| found.then_some(what))
-        .collect();
-        if !solid.shape.is_periodic() || conflicts.is_empty() {
-            return Ok(());
-        }
-        Err(at_path("body.periodic", Fault::NotPeriodic { conflicts }))
-    }
-
     fn select(&self, cloud: &PointCloud) -> Result<Sets, BuildError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
         let mut problems = Vec::new();

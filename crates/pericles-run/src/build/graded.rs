@@ -1,11 +1,9 @@
 //! Bonds of a body with cells of several sizes.
 
 use pericles::PericlesError;
-use pericles::material::PairLaw;
-use pericles::operator::{CompositeBody, GradedBody};
+use pericles::operator::{CompositeBody, Feature, GradedBody};
 use pericles_deck::{BuildError, Solid};
 use pericles_waves::AssembledForce;
-use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::discretisation::Grids;
@@ -18,29 +16,14 @@ impl Assembler<'_> {
         composite: &CompositeBody<'_>,
         grids: &Grids,
     ) -> Result<AssembledForce, BuildError> {
-        if !matches!(solid.material.form, ForceForm::Fastest | ForceForm::List) {
-            let error = PericlesError::Graded {
-                what: "bonds of this form",
-                reason: "there is no one lattice; leave `bonds` out or give \"list\"",
-            };
-            return Err(at("material.bonds", error));
-        }
+        let features = composite.features().with(Feature::SeveralSpacings, true);
+        solid.material.form.check(features).map_err(at_material)?;
         if !composite.is_plain() {
             let error = PericlesError::Graded {
                 what: "several materials or corrected surfaces",
                 reason: "its bonds have the laws of two grids already; parts of other stiffness are possible ([[material.inclusion]])",
             };
             return Err(at("material", error));
-        }
-        if !matches!(
-            composite.body.material.law,
-            PairLaw::Linear | PairLaw::BondStretch
-        ) {
-            let error = PericlesError::Graded {
-                what: "this model",
-                reason: "bonds between cells of two sizes are \"linear\" or \"bond-stretch\"",
-            };
-            return Err(at("material.model", error));
         }
         let body = &composite.body;
         let graded = GradedBody {

@@ -19,6 +19,7 @@ mod graded;
 mod loads;
 mod memory;
 mod parts;
+mod periodic;
 mod plausible;
 mod points;
 mod refusal;

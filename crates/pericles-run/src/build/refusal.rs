@@ -21,9 +21,7 @@ pub(super) fn at(keys: impl Into<Keys>, error: PericlesError) -> BuildError {
 pub(super) fn at_material(error: PericlesError) -> BuildError {
     match &error {
         PericlesError::BadInfluence { .. } => at("material.influence", error),
-        PericlesError::FormNotUsable { .. } | PericlesError::OneStencil => {
-            at("material.bonds", error)
-        }
+        PericlesError::FormNotUsable { .. } => at("material.bonds", error),
         _ if error.extension::<NoConvolution>().is_some() => at("material.bonds", error),
         PericlesError::HorizonTooSmall { .. } | PericlesError::HorizonTooLarge { .. } => {
             at(HORIZON, error)

@@ -3,6 +3,7 @@
 use super::composition::{ONE_STEP, Operator, PART, TWO_STEPS};
 use crate::common::Build;
 use crate::parse;
+use pericles::operator::Feature;
 use pericles_run::composition::{Condition, FORMS, Form, SCHEMES, Scheme, tables};
 
 /// The row of the scheme that a text such as `scheme = "rk4", dt = 0.1` names.
@@ -52,6 +53,82 @@ fn decks_are_refused_where_the_table_says() {
     }
 }
 
+/// A deck of a body with a feature, and as few others as the form allows: plane waves need periodic faces.
+fn deck_with(feature: Feature, form: &Form) -> String {
+    use Feature::{
+        BondStretch, Breaking, FreeFaces, GaussNodes, GreenStrain, GreenStrainBar, Inclusions,
+        NoLattice, OtherCubic, PeriodicFaces, PreCracks, SeveralMaterials, SeveralSpacings,
+        SurfaceCorrection, Tensors,
+    };
+    let bar = matches!(feature, GreenStrainBar | OtherCubic | GaussNodes);
+    let periodic = match feature {
+        FreeFaces => false,
+        PeriodicFaces => true,
+        _ => form.name == "spectral",
+    };
+    let shape = match (bar, feature) {
+        (true, _) => "shape = \"bar\", length = 20, spacing = 1",
+        (_, NoLattice) => {
+            "shape = \"plate\", size = [12, 8], plane = \"stress\", spacing = [1, 0.8]"
+        }
+        _ => "shape = \"plate\", size = [12, 8], plane = \"stress\", spacing = 1",
+    };
+    let body = match feature {
+        GaussNodes => ", quadrature = \"gauss\"",
+        SeveralSpacings => ", refine = [{ box = { max = [4, 8] }, ratio = 2 }]",
+        _ => "",
+    };
+    let model = match feature {
+        BondStretch => "bond-stretch",
+        GreenStrain | GreenStrainBar => "green-strain",
+        OtherCubic => "literal57",
+        _ => "linear",
+    };
+    let material = match feature {
+        GreenStrainBar => {
+            ", influence = { function = \"gaussian\", length = 1, acts_on = \"displacement\" }"
+        }
+        Breaking => ", critical_stretch = 0.1",
+        SeveralMaterials => {
+            ", part = [{ name = \"other\", set = \"part\", density = 1, youngs_modulus = 2 }]"
+        }
+        Inclusions => ", inclusion = [{ set = \"part\", stiffness = 2 }]",
+        SurfaceCorrection => ", surface_correction = \"volume\"",
+        _ => "",
+    };
+    let others = match feature {
+        PreCracks => "crack = [{ segment = [[0, 4], [6, 4]] }]\n",
+        Tensors => "output = { fields = { names = [\"Stress\"] } }\n",
+        _ => "",
+    };
+    let periodic = if periodic { ", periodic = true" } else { "" };
+    let name = form.name;
+    format!(
+        "body = {{ {shape}{periodic}{body} }}\n\
+         material = {{ model = \"{model}\", density = 1, youngs_modulus = 1, horizon_ratio = 3, bonds = \"{name}\"{material} }}\n\
+         sets.part = {{ where = \"x < 4\" }}\n\
+         initial = [{{ set = \"part\", velocity = [{}] }}]\n\
+         {others}time = {{ end = 1, dt = 0.1 }}\n",
+        if bar { "1e-3" } else { "1e-3, 0" }
+    )
+}
+
+#[test]
+fn bodies_are_refused_where_the_table_says() {
+    let forms = FORMS.iter().filter(|form| form.choice.is_some());
+    for form in forms {
+        for feature in Feature::ALL {
+            let built = parse(&deck_with(feature, form)).build();
+            let refused = form.refusal_of_feature(feature).is_some();
+            let (form, feature) = (form.words, feature.words());
+            match built {
+                Ok(_) => assert!(!refused, "{form}: {feature} is not refused"),
+                Err(error) => assert!(refused, "{form}: {feature}: {error}"),
+            }
+        }
+    }
+}
+
 #[test]
 fn the_book_shows_the_tables() {
     let folder = env!("CARGO_MANIFEST_DIR");
@@ -79,6 +156,14 @@ fn cells_that_are_refused_do_not_become_more() {
                 .count()
     };
     let cells: usize = SCHEMES.iter().map(refused).sum();
-    // As many as there were when the table was made.
+    let features = |form: &Form| {
+        let features = Feature::ALL.into_iter();
+        features
+            .filter(|feature| form.refusal_of_feature(*feature).is_some())
+            .count()
+    };
+    let bodies: usize = FORMS.iter().map(features).sum();
+    // As many as there were when the tables were made.
     assert!(cells <= 40, "{cells}");
+    assert!(bodies <= 46, "{bodies}");
 }

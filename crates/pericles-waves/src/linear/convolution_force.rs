@@ -10,12 +10,13 @@ use super::tensor_kernel::{Axis, axes, pairs};
 use super::tensor_spectra::{Product, pair};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
-use super::{refuse, require_convolution};
+use super::{features_of, require};
+use crate::form::ForceForm;
 use pericles::family::{Crack, VolumeCorrection};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
-    Capabilities, Force, InstructionSet, LatticeSprings, LinearOperator, Linearity, On,
+    Capabilities, Feature, Force, InstructionSet, LatticeSprings, LinearOperator, Linearity, On,
 };
 use pericles::parallel::{components, components_mut};
 use pericles::space::{Lattice, PointCloud};
@@ -61,12 +62,12 @@ impl<const D: usize> ConvolutionForce<D> {
         cracks: &[Crack],
         periodic: [bool; D],
     ) -> Result<Self> {
-        require_convolution(material, constants)?;
-        if !cracks.is_empty() {
-            return refuse(
-                "pre-cracks cut single bonds, which a convolution cannot; use the bond list",
-            );
-        }
+        let features = features_of(material, constants, D);
+        let cut = !cracks.is_empty();
+        require(
+            ForceForm::Convolution,
+            features.with(Feature::PreCracks, cut),
+        )?;
         let stiffness =
             |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
         Self::with_stiffness(

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::energy::{elastic_energy, origin};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
-use super::{refuse, require_convolution};
+use super::{features_of, refuse, require};
+use crate::form::ForceForm;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
@@ -50,7 +51,7 @@ impl GaussForce {
         material: &BondMaterial,
         constants: &BondConstants,
     ) -> Result<Self> {
-        require_convolution(material, constants)?;
+        require(ForceForm::Convolution, features_of(material, constants, 1))?;
         let stiffness = |r| constants.micromodulus * material.influence.alpha(r, material.horizon);
         Self::with_stiffness(
             cloud,

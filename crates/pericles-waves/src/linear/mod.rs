@@ -71,30 +71,23 @@ pub use gauss_force::GaussForce;
 pub use spectral::{SpectralCubicForce, SpectralForce, Symbol};
 pub use toeplitz::{Ends, Toeplitz};
 
-use pericles::material::{BondConstants, BondMaterial, PairLaw};
+use pericles::material::{BondConstants, BondMaterial};
+use pericles::operator::{Feature, Features};
 use pericles::{PericlesError, Result};
 
-/// Refuses what makes bonds of one offset differ: nonlinear laws and breaking.
-fn require_convolution(material: &BondMaterial, constants: &BondConstants) -> Result<()> {
-    if material.law != PairLaw::Linear {
-        return refuse("only the linear law is one; use the bond list for the bond-stretch law");
-    }
-    if constants.critical_stretch.is_finite() {
-        return refuse(
-            "bonds that break are none; use the bond list, or leave the critical stretch and fracture energy out",
-        );
-    }
-    Ok(())
+use crate::form::ForceForm;
+
+/// The features of a material's bonds in so many dimensions.
+fn features_of(material: &BondMaterial, constants: &BondConstants, dimension: usize) -> Features {
+    let law = Feature::of_law(material.law, dimension);
+    let breaks = constants.critical_stretch.is_finite();
+    law.map_or_else(Features::default, Features::from)
+        .with(Feature::Breaking, breaks)
 }
 
-/// Refuses breaking where plane waves are computed one by one.
-fn require_unbreakable(constants: &BondConstants) -> Result<()> {
-    if constants.critical_stretch.is_finite() {
-        return refuse(
-            "bonds that break couple all plane waves; leave the critical stretch and fracture energy out",
-        );
-    }
-    Ok(())
+/// Refuses features that a form does not represent.
+fn require(form: ForceForm, features: Features) -> Result<()> {
+    form.refusal(features).map_or(Ok(()), refuse)
 }
 
 /// An operator that cannot be applied as a convolution.

@@ -222,11 +222,6 @@ pub enum PericlesError {
         /// Why, and what fits.
         reason: &'static str,
     },
-    /// The grid form for a body whose bonds are not all alike.
-    #[error(
-        "parts of other stiffness cannot be kept as one stencil: bonds = \"list\" or \"fastest\" can"
-    )]
-    OneStencil,
     /// A ratio of time steps below one.
     #[error("the ratio of the time steps is {ratio}: it must be a whole number of at least 1")]
     StepRatio {

@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
+use super::by_law::{ByLaw, by_law};
+use super::limits::{Feature, Features, Limit};
 use super::{BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force, GridForce};
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::family::{BondList, Crack, Cut, EndRule};
 use crate::lanes::LANES;
-use crate::material::{
-    BondConstants, BondMaterial, BondStretch, CubicLaw, GreenBond, LinearBond, LiteralBond,
-    PairLaw, SecondOrder, Trapezoidal, Treated, Treatment,
-};
+use crate::material::{BondConstants, BondMaterial};
 use crate::space::PointCloud;
 
 /// A body of one bond-based material: all that its operator is made of.
@@ -64,10 +63,19 @@ impl<'a> BondBody<'a> {
 }
 
 impl BondBody<'_> {
+    /// What the body has that not every form represents.
+    pub fn features(&self) -> Features {
+        let breaks = self.constants.critical_stretch.is_finite();
+        Features::of_points(self.material.law, self.cloud)
+            .with(Feature::Breaking, breaks)
+            .with(Feature::PreCracks, !self.cracks.is_empty())
+            .with(Feature::Inclusions, !self.stiffness.is_empty())
+    }
+
     /// The faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {
         match self.cloud.lattice() {
-            Some(lattice) if self.stiffness.is_empty() => {
+            Some(lattice) if Limit::refusal(BondForm::Grid.limits(), self.features()).is_none() => {
                 let [x, y, z] = lattice.shape;
                 let places = x.next_multiple_of(LANES) * y * z;
                 if places <= SPARSE * self.cloud.len().max(LANES) {
@@ -83,120 +91,13 @@ impl BondBody<'_> {
     /// The operator.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack, [`BondForm::Grid`] without a lattice; a form that does not fit.
+    /// A form that does not represent the body ([`BondForm::check`]), a law that is not defined in this dimension, a horizon that reaches no neighbour, an unusable crack.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
-        match (self.material.law, self.cloud.dimension()) {
-            (PairLaw::Linear, 1) => self.operator_of::<LinearBond, 1>(form),
-            (PairLaw::Linear, 2) => self.operator_of::<LinearBond, 2>(form),
-            (PairLaw::Linear, 3) => self.operator_of::<LinearBond, 3>(form),
-            (PairLaw::BondStretch, 1) => self.operator_of::<BondStretch, 1>(form),
-            (PairLaw::BondStretch, 2) => self.operator_of::<BondStretch, 2>(form),
-            (PairLaw::BondStretch, 3) => self.operator_of::<BondStretch, 3>(form),
-            (PairLaw::GreenStrain, 1) => self.listed::<GreenBond, 1>(form),
-            (PairLaw::GreenStrain, 2) => self.listed::<GreenBond, 2>(form),
-            (PairLaw::GreenStrain, 3) => self.listed::<GreenBond, 3>(form),
-            (PairLaw::Literal57, 1) => self.listed::<LiteralBond, 1>(form),
-            (PairLaw::Treated(law, treatment), 1) => self.treated(law, treatment, form),
-            (PairLaw::Treated(..), dimension) => Err(PericlesError::WrongDimension {
-                what: "a treatment of a nonlinear law",
-                needed: "1",
-                dimension,
-            }),
-            (PairLaw::Literal57, dimension) => Err(PericlesError::WrongDimension {
-                what: "the law of equation 57 as printed",
-                needed: "1",
-                dimension,
-            }),
-            (_, dimension) => Err(PericlesError::WrongDimension {
-                what: "a bond-based material",
-                needed: "1, 2 or 3",
-                dimension,
-            }),
-        }
-    }
-
-    fn treated(
-        &self,
-        law: CubicLaw,
-        treatment: Treatment,
-        form: BondForm,
-    ) -> Result<AssembledBonds> {
-        match (law, treatment) {
-            (CubicLaw::GreenStrain, Treatment::SecondOrder) => {
-                self.listed::<Treated<GreenBond, SecondOrder>, 1>(form)
-            }
-            (CubicLaw::GreenStrain, Treatment::Trapezoidal) => {
-                self.listed::<Treated<GreenBond, Trapezoidal>, 1>(form)
-            }
-            (CubicLaw::Literal57, Treatment::SecondOrder) => {
-                self.listed::<Treated<LiteralBond, SecondOrder>, 1>(form)
-            }
-            (CubicLaw::Literal57, Treatment::Trapezoidal) => {
-                self.listed::<Treated<LiteralBond, Trapezoidal>, 1>(form)
-            }
-        }
-    }
-
-    /// Laws that only the list computes.
-    fn listed<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
-        let refuse = |form: BondForm, reason| {
-            Err(PericlesError::FormNotUsable {
-                form: form.name(),
-                reason,
-            })
-        };
-        if self.cloud.is_periodic() {
-            return refuse(
-                form,
-                "bonds through periodic faces are followed for the linear law only; use model = \"linear\"",
-            );
-        }
-        match form {
-            BondForm::Fastest | BondForm::List => {
-                let (list, cuts) = self.list::<L, D>()?;
-                Ok(AssembledBonds {
-                    operator: Box::new(list),
-                    cuts,
-                    form: BondForm::List,
-                })
-            }
-            BondForm::Grid | BondForm::FloatGrid => {
-                refuse(form, "this law is kept as a list: \"list\" or \"fastest\"")
-            }
-        }
-    }
-
-    fn operator_of<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
-        let form = match form {
-            BondForm::Fastest => self.fastest_form(),
-            chosen => chosen,
-        };
-        let (operator, cuts): (Box<dyn Force>, _) = match form {
-            _ if self.cloud.is_periodic() => {
-                return Err(PericlesError::FormNotUsable {
-                    form: form.name(),
-                    reason: "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",
-                });
-            }
-            BondForm::List => {
-                let (list, cuts) = self.list::<L, D>()?;
-                (Box::new(list), cuts)
-            }
-            _ if !self.stiffness.is_empty() => return Err(PericlesError::OneStencil),
-            _ => {
-                let mut grid = self.grid::<L, D>()?;
-                if form == BondForm::FloatGrid {
-                    grid = grid.in_floats();
-                }
-                let cuts = grid.cuts().to_vec();
-                (Box::new(grid), cuts)
-            }
-        };
-        Ok(AssembledBonds {
-            operator,
-            cuts,
-            form,
-        })
+        by_law(
+            self.material.law,
+            self.cloud.dimension(),
+            OfBody(self, form),
+        )
     }
 
     /// The grid operator, of the material itself everywhere.
@@ -253,5 +154,44 @@ impl BondBody<'_> {
             self.damage,
         );
         Ok((list, cuts))
+    }
+}
+
+/// Makes the operator of a body in a form.
+struct OfBody<'a>(&'a BondBody<'a>, BondForm);
+
+impl ByLaw for OfBody<'_> {
+    type Output = AssembledBonds;
+
+    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        let Self(body, form) = self;
+        let form = match form {
+            BondForm::Fastest => body.fastest_form(),
+            chosen => chosen,
+        };
+        if form == BondForm::List {
+            return Self(body, form).listed::<L, D>();
+        }
+        form.check(body.features())?;
+        let mut grid = body.grid::<L, D>()?;
+        if form == BondForm::FloatGrid {
+            grid = grid.in_floats();
+        }
+        Ok(AssembledBonds {
+            cuts: grid.cuts().to_vec(),
+            operator: Box::new(grid),
+            form,
+        })
+    }
+
+    fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        let Self(body, form) = self;
+        form.check(body.features())?;
+        let (list, cuts) = body.list::<L, D>()?;
+        Ok(AssembledBonds {
+            operator: Box::new(list),
+            cuts,
+            form: BondForm::List,
+        })
     }
 }

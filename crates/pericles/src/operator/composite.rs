@@ -1,11 +1,11 @@
 //! Bodies whose bonds depend on their two ends: several materials, corrected surfaces.
 
+use super::by_law::{ByLaw, by_law};
+use super::limits::{Feature, Features};
 use super::{AssembledBonds, BondBody, BondForce, BondForm, Breaking};
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::family::BondList;
-use crate::material::{
-    BondStretch, GreenBond, LinearBond, LiteralBond, PairClasses, PairLaw, SurfaceCorrection,
-};
+use crate::material::{PairClasses, SurfaceCorrection};
 use crate::operator::fast_law::FastLaw;
 
 /// A body of several materials, or with corrected surfaces; always kept as a list.
@@ -49,45 +49,31 @@ impl CompositeBody<'_> {
         }
     }
 
-    /// The refusal of a form, by its name, that keeps bonds of one material only, without corrections.
-    pub fn only_listed(&self, form: &'static str) -> PericlesError {
-        let reason = if self.body.cloud.is_periodic() {
-            "bonds through periodic faces are followed in bodies of one material only, which have no surfaces to correct either"
-        } else {
-            "several materials and surface corrections are kept as a list: \"list\" or \"fastest\""
-        };
-        PericlesError::FormNotUsable { form, reason }
+    /// What the body has that not every form represents.
+    pub fn features(&self) -> Features {
+        let correction = self.correction != SurfaceCorrection::None;
+        let features = self.body.features();
+        let features = features.with(Feature::SurfaceCorrection, correction);
+        match self.classes {
+            None => features,
+            Some(classes) => features.with(Feature::SeveralMaterials, true).with(
+                Feature::Breaking,
+                classes.smallest_critical_stretch().is_finite(),
+            ),
+        }
     }
 
     /// The operator.
     ///
     /// # Errors
-    /// Those of [`BondBody::operator`], and any form but a list.
+    /// Those of [`BondBody::operator`].
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         if self.is_plain() {
             return self.body.operator(form);
         }
-        if self.body.cloud.is_periodic() || !matches!(form, BondForm::Fastest | BondForm::List) {
-            return Err(self.only_listed(form.name()));
-        }
-        match (self.body.material.law, self.body.cloud.dimension()) {
-            (PairLaw::Linear, 1) => self.list::<LinearBond, 1>(),
-            (PairLaw::Linear, 2) => self.list::<LinearBond, 2>(),
-            (PairLaw::Linear, _) => self.list::<LinearBond, 3>(),
-            (PairLaw::BondStretch, 1) => self.list::<BondStretch, 1>(),
-            (PairLaw::BondStretch, 2) => self.list::<BondStretch, 2>(),
-            (PairLaw::BondStretch, _) => self.list::<BondStretch, 3>(),
-            (PairLaw::GreenStrain, 1) => self.list::<GreenBond, 1>(),
-            (PairLaw::GreenStrain, 2) => self.list::<GreenBond, 2>(),
-            (PairLaw::GreenStrain, _) => self.list::<GreenBond, 3>(),
-            (PairLaw::Literal57, 1) => self.list::<LiteralBond, 1>(),
-            // The body alone refuses it, with the reason.
-            (PairLaw::Literal57, _) => self.body.operator(form),
-            (PairLaw::Treated(..), _) => Err(PericlesError::FormNotUsable {
-                form: form.name(),
-                reason: "treatments of nonlinear laws are for bodies of one material without surface correction",
-            }),
-        }
+        form.check(self.features())?;
+        let dimension = self.body.cloud.dimension();
+        by_law(self.body.material.law, dimension, Listed(self))
     }
 
     fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
@@ -137,5 +123,20 @@ impl CompositeBody<'_> {
             cuts,
             form: BondForm::List,
         })
+    }
+}
+
+/// Makes the list of a body whose bonds depend on their ends.
+struct Listed<'a>(&'a CompositeBody<'a>);
+
+impl ByLaw for Listed<'_> {
+    type Output = AssembledBonds;
+
+    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        self.0.list::<L, D>()
+    }
+
+    fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        self.0.list::<L, D>()
     }
 }

@@ -1,4 +1,7 @@
-//! Names of the forms in which bonds are kept.
+//! The forms in which bonds are kept, and what they do not represent.
+
+use super::limits::{Feature, Features, Limit};
+use crate::error::{PericlesError, Result};
 
 /// How bonds are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,6 +17,31 @@ pub enum BondForm {
     List,
 }
 
+const PERIODIC_FACES: Limit = Limit::new(
+    Feature::PeriodicFaces,
+    "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",
+);
+
+const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
+
+const OF_LIST: &[Limit] = &[PERIODIC_FACES];
+
+const OF_GRID: &[Limit] = &[
+    Limit::SEVERAL_SPACINGS,
+    Limit::SEVERAL_MATERIALS,
+    Limit::SURFACE_CORRECTION,
+    PERIODIC_FACES,
+    Limit::listed_law(Feature::GreenStrainBar),
+    Limit::listed_law(Feature::GreenStrain),
+    Limit::listed_law(Feature::OtherCubic),
+    Limit::new(
+        Feature::Inclusions,
+        "parts of other stiffness cannot be kept as one stencil; \"list\" or \"fastest\" can",
+    ),
+    Limit::new(Feature::NoLattice, NO_LATTICE),
+    Limit::new(Feature::GaussNodes, NO_LATTICE),
+];
+
 impl BondForm {
     /// As written in decks.
     pub fn name(self) -> &'static str {
@@ -22,6 +50,28 @@ impl BondForm {
             Self::Grid => "grid",
             Self::FloatGrid => "grid-f32",
             Self::List => "list",
+        }
+    }
+
+    /// What the form does not represent; the first limit that a body exceeds is the reason of its refusal. The fastest form is a list where a grid is not possible.
+    pub fn limits(self) -> &'static [Limit] {
+        match self {
+            Self::Fastest | Self::List => OF_LIST,
+            Self::Grid | Self::FloatGrid => OF_GRID,
+        }
+    }
+
+    /// Refuses a body with features that the form does not represent.
+    ///
+    /// # Errors
+    /// [`PericlesError::FormNotUsable`], with the reason.
+    pub fn check(self, features: Features) -> Result<()> {
+        match Limit::refusal(self.limits(), features) {
+            None => Ok(()),
+            Some(reason) => Err(PericlesError::FormNotUsable {
+                form: self.name(),
+                reason,
+            }),
         }
     }
 }

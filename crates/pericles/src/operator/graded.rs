@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::by_law::{ByLaw, by_law};
 use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
-use crate::material::{BondMaterial, BondStretch, Fracture, LinearBond, PairLaw, StressState};
+use crate::material::{BondMaterial, Fracture, StressState};
 use crate::space::PointCloud;
 
 /// What one grid of a body adds to the bonds of its points.
@@ -85,26 +86,10 @@ impl GradedBody<'_> {
     /// # Errors
     /// Those of [`GradedBody::laws`]; a horizon that reaches no neighbour, an unusable crack.
     pub fn operator(&self) -> Result<AssembledBonds> {
-        match (self.material.law, self.cloud.dimension()) {
-            (PairLaw::Linear, 1) => self.list::<LinearBond, 1>(),
-            (PairLaw::Linear, 2) => self.list::<LinearBond, 2>(),
-            (PairLaw::Linear, 3) => self.list::<LinearBond, 3>(),
-            (PairLaw::BondStretch, 1) => self.list::<BondStretch, 1>(),
-            (PairLaw::BondStretch, 2) => self.list::<BondStretch, 2>(),
-            (PairLaw::BondStretch, 3) => self.list::<BondStretch, 3>(),
-            (_, 1..=3) => Err(PericlesError::Graded {
-                what: "this law of bonds",
-                reason: "bonds between cells of two sizes are linear or follow the bond's stretch",
-            }),
-            (_, dimension) => Err(PericlesError::WrongDimension {
-                what: "a bond-based material",
-                needed: "1, 2 or 3",
-                dimension,
-            }),
-        }
+        by_law(self.material.law, self.cloud.dimension(), Listed(self))
     }
 
-    fn list<L: FastLaw + 'static, const D: usize>(&self) -> Result<AssembledBonds> {
+    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
         let laws = self.laws()?;
         let cloud = self.cloud;
         let law_of = |grid: u8| &laws[usize::from(grid)];
@@ -156,5 +141,20 @@ impl GradedBody<'_> {
             cuts,
             form: BondForm::List,
         })
+    }
+}
+
+/// Makes the list of a body.
+struct Listed<'a>(&'a GradedBody<'a>);
+
+impl ByLaw for Listed<'_> {
+    type Output = AssembledBonds;
+
+    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        self.0.list::<L, D>()
+    }
+
+    fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        self.0.list::<L, D>()
     }
 }

@@ -13,6 +13,7 @@
 
 mod assemble;
 mod breakable;
+mod by_law;
 mod capabilities;
 mod composite;
 mod damage;
@@ -21,6 +22,7 @@ mod forces;
 mod form;
 mod graded;
 mod grid;
+mod limits;
 mod linearisation;
 mod list;
 pub mod pool;
@@ -34,6 +36,7 @@ mod zoned;
 
 pub use assemble::{AssembledBonds, BondBody};
 pub use breakable::Breakable;
+pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
 pub use composite::CompositeBody;
 pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
@@ -42,6 +45,7 @@ pub use forces::Forces;
 pub use form::BondForm;
 pub use graded::{EndLaw, GradedBody};
 pub use grid::GridForce;
+pub use limits::{Feature, Features, Limit};
 pub use linearisation::Linearisation;
 pub use list::BondForce;
 pub use springs::{LatticeSpring, LatticeSprings};

@@ -8,8 +8,9 @@ use rustfft::num_complex::Complex;
 
 use super::super::fourier::LineTransform;
 use super::super::wanted::for_each_wanted;
-use super::super::{refuse, require_unbreakable};
+use super::super::{features_of, refuse, require};
 use super::symbol::Symbol;
+use crate::form::ForceForm;
 use pericles::Result;
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
@@ -80,7 +81,7 @@ impl SpectralCubicForce {
                 "the terms of a force whose influence function acts on the stretch have no Fourier series of their own; use acts_on = \"displacement\"",
             );
         }
-        require_unbreakable(constants)?;
+        require(ForceForm::Spectral, features_of(material, constants, 1))?;
         let symbol = Symbol::new(
             1,
             cloud.section(),

@@ -10,9 +10,10 @@ use rustfft::num_complex::Complex;
 use super::super::energy::{add_density, elastic_energy, origin};
 use super::super::tensor_kernel::pairs;
 use super::super::wanted::for_each_wanted;
-use super::super::{refuse, require_unbreakable};
+use super::super::{features_of, refuse, require};
 use super::box_transform::BoxTransform;
 use super::symbol::Symbol;
+use crate::form::{ForceForm, LINEAR_ONLY};
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
@@ -51,11 +52,9 @@ impl<const D: usize> SpectralForce<D> {
         constants: &BondConstants,
     ) -> Result<Self> {
         if material.law != PairLaw::Linear {
-            return refuse(
-                "plane waves are independent for the linear law only; use model = \"linear\"",
-            );
+            return refuse(LINEAR_ONLY);
         }
-        require_unbreakable(constants)?;
+        require(ForceForm::Spectral, features_of(material, constants, D))?;
         let symbol = Symbol::new(
             D,
             cloud.section(),

@@ -19,7 +19,7 @@ use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{BondForm, DamageMeasure, Force, InstructionSet, On};
+use crate::operator::{BondForm, DamageMeasure, Feature, Features, Force, InstructionSet, On};
 use crate::parallel::{components_mut, for_each_part};
 use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
@@ -104,14 +104,10 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         no_fail: &[u32],
         damage: DamageMeasure,
     ) -> Result<Self> {
+        let no_lattice = cloud.lattice().is_none();
+        BondForm::Grid.check(Features::default().with(Feature::NoLattice, no_lattice))?;
         let lattice = match cloud.lattice() {
             Some(lattice) if cloud.dimension() == D => lattice,
-            None if cloud.dimension() == D => {
-                return Err(PericlesError::FormNotUsable {
-                    form: BondForm::Grid.name(),
-                    reason: "its points lie on no regular grid; use \"list\"",
-                });
-            }
             _ => {
                 return Err(PericlesError::WrongDimension {
                     what: "the grid operator",

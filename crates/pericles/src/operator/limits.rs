@@ -1,0 +1,169 @@
+//! Features of bodies that not every form of forces represents: one list of limits for each form, from which refusals and the table of the book are made.
+
+use crate::material::PairLaw;
+use crate::space::PointCloud;
+
+/// A property of a body that some forms of forces do not represent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Feature {
+    /// The bond-stretch law.
+    BondStretch,
+    /// The Green-strain law on a bar.
+    GreenStrainBar,
+    /// The Green-strain law on a plate or block.
+    GreenStrain,
+    /// The other cubic laws, which are defined for bars: equation 57 as printed, and treatments of a cubic law.
+    OtherCubic,
+    /// Bonds that break.
+    Breaking,
+    /// Pre-cracks.
+    PreCracks,
+    /// Several materials.
+    SeveralMaterials,
+    /// Inclusions: points with a stiffness of their own.
+    Inclusions,
+    /// A surface correction.
+    SurfaceCorrection,
+    /// Cells of several sizes.
+    SeveralSpacings,
+    /// Periodic faces.
+    PeriodicFaces,
+    /// Free faces: the body is not periodic.
+    FreeFaces,
+    /// Points that lie on no regular grid.
+    NoLattice,
+    /// Two Gauss nodes in every cell of a bar.
+    GaussNodes,
+    /// Output of stress or strain, which are sums over single bonds.
+    Tensors,
+}
+
+impl Feature {
+    /// All features, in the order of the table.
+    pub const ALL: [Self; 15] = [
+        Self::BondStretch,
+        Self::GreenStrainBar,
+        Self::GreenStrain,
+        Self::OtherCubic,
+        Self::Breaking,
+        Self::PreCracks,
+        Self::SeveralMaterials,
+        Self::Inclusions,
+        Self::SurfaceCorrection,
+        Self::SeveralSpacings,
+        Self::PeriodicFaces,
+        Self::FreeFaces,
+        Self::NoLattice,
+        Self::GaussNodes,
+        Self::Tensors,
+    ];
+
+    /// The feature in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::BondStretch => "bond-stretch law",
+            Self::GreenStrainBar => "Green-strain law, bars",
+            Self::GreenStrain => "Green-strain law, plates and blocks",
+            Self::OtherCubic => "other cubic laws (bars)",
+            Self::Breaking => "breaking",
+            Self::PreCracks => "pre-cracks",
+            Self::SeveralMaterials => "several materials",
+            Self::Inclusions => "inclusions",
+            Self::SurfaceCorrection => "surface correction",
+            Self::SeveralSpacings => "cells of several sizes",
+            Self::PeriodicFaces => "periodic faces",
+            Self::FreeFaces => "free faces",
+            Self::NoLattice => "points off a grid",
+            Self::GaussNodes => "Gauss nodes (bars)",
+            Self::Tensors => "stress and strain",
+        }
+    }
+
+    /// The feature of a pair law in so many dimensions; none for the linear law, which every form computes.
+    pub fn of_law(law: PairLaw, dimension: usize) -> Option<Self> {
+        match law {
+            PairLaw::Linear => None,
+            PairLaw::BondStretch => Some(Self::BondStretch),
+            PairLaw::GreenStrain if dimension == 1 => Some(Self::GreenStrainBar),
+            PairLaw::GreenStrain => Some(Self::GreenStrain),
+            PairLaw::Literal57 | PairLaw::Treated(..) => Some(Self::OtherCubic),
+        }
+    }
+}
+
+/// The features that a body has.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Features(u32);
+
+impl Features {
+    /// These features and another one if `present`, or without that one if not.
+    pub fn with(self, feature: Feature, present: bool) -> Self {
+        let bit = 1 << feature as u32;
+        Self(if present { self.0 | bit } else { self.0 & !bit })
+    }
+
+    /// Whether a feature is among them.
+    pub fn has(self, feature: Feature) -> bool {
+        self.0 & (1 << feature as u32) != 0
+    }
+
+    /// The features that a pair law and points have by themselves.
+    pub fn of_points(law: PairLaw, cloud: &PointCloud) -> Self {
+        let law = Feature::of_law(law, cloud.dimension());
+        law.map_or_else(Self::default, Self::from)
+            .with(Feature::PeriodicFaces, cloud.is_periodic())
+            .with(Feature::FreeFaces, !cloud.is_periodic())
+            .with(Feature::NoLattice, cloud.lattice().is_none())
+    }
+}
+
+impl From<Feature> for Features {
+    fn from(feature: Feature) -> Self {
+        Self::default().with(feature, true)
+    }
+}
+
+/// A feature that a form of forces does not represent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limit {
+    /// The feature.
+    pub feature: Feature,
+    /// Why it is not represented, and what to use instead.
+    pub reason: &'static str,
+}
+
+const LISTED_PAIRS: &str =
+    "several materials and surface corrections are kept as a list: \"list\" or \"fastest\"";
+
+/// Limits of several forms.
+impl Limit {
+    /// Of forms whose bonds all have one constant.
+    pub const SEVERAL_MATERIALS: Self = Self::new(Feature::SeveralMaterials, LISTED_PAIRS);
+
+    /// Of forms whose bonds all have one constant.
+    pub const SURFACE_CORRECTION: Self = Self::new(Feature::SurfaceCorrection, LISTED_PAIRS);
+
+    /// Of forms that need one lattice.
+    pub const SEVERAL_SPACINGS: Self = Self::new(
+        Feature::SeveralSpacings,
+        "there is no one lattice; leave `bonds` out or give \"list\"",
+    );
+
+    /// Of forms that compute some laws only.
+    pub const fn listed_law(law: Feature) -> Self {
+        Self::new(law, "this law is kept as a list: \"list\" or \"fastest\"")
+    }
+}
+
+impl Limit {
+    /// A limit.
+    pub const fn new(feature: Feature, reason: &'static str) -> Self {
+        Self { feature, reason }
+    }
+
+    /// The reason of the first limit of a form that a body with these features exceeds; none if the form represents the body.
+    pub fn refusal(limits: &[Self], features: Features) -> Option<&'static str> {
+        let exceeded = limits.iter().find(|limit| features.has(limit.feature));
+        exceeded.map(|limit| limit.reason)
+    }
+}
