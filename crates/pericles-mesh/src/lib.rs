@@ -10,9 +10,11 @@
 mod cell;
 pub mod element;
 mod fault;
+pub mod fill;
 mod format;
 mod netcdf;
 mod points;
+pub mod random;
 mod raw;
 mod scan;
 
