@@ -16,6 +16,7 @@ mod netcdf;
 mod points;
 pub mod random;
 mod raw;
+pub mod results;
 mod scan;
 
 pub use cell::{CellKind, Facet};
