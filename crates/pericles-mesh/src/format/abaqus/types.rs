@@ -10,15 +10,15 @@ pub(super) struct ElementType {
     pub(super) nodes: usize,
 }
 
-/// Beginnings of the names of solids, of plane elements and shells, and of lines.
+/// Beginnings of the names of solids, of plane elements and shells, of trusses and of beams.
 const SOLIDS: [&str; 8] = ["C3D", "AC3D", "DC3D", "COH3D", "CSS", "SC", "EC3D", "DCC3D"];
 const PLANE: [&str; 16] = [
     "CPS", "CPE", "CPEG", "CAX", "CGAX", "AC2D", "ACAX", "DC2D", "DCAX", "M3D", "R3D", "SFM3D",
     "STRI", "DS", "S", "R2D",
 ];
-const LINES: [&str; 9] = [
-    "T2D", "T3D", "B2", "B3", "PIPE2", "PIPE3", "SAX", "RB2D", "RB3D",
-];
+const TRUSSES: [&str; 4] = ["T2D", "T3D", "RB2D", "RB3D"];
+/// The number after these is the order of the interpolation: 1 and 3 have two nodes, 2 has three.
+const BEAMS: [&str; 5] = ["B2", "B3", "PIPE2", "PIPE3", "SAX"];
 
 /// The type of this name; none of types that are not used. A name is a beginning, the number of nodes and letters: C3D8R.
 pub(super) fn element_type(name: &str) -> Option<ElementType> {
@@ -46,10 +46,12 @@ pub(super) fn element_type(name: &str) -> Option<ElementType> {
         let kind = solid(nodes)?;
         return Some(ElementType { kind, nodes });
     }
-    if let Some(nodes) = number_after(&LINES) {
-        // Of beams, a number of the dimension and one of the order: B31 has two nodes.
-        let kind = CellKind::Line;
-        let nodes = if matches!(nodes, 3 | 22 | 32) { 3 } else { 2 };
+    let kind = CellKind::Line;
+    if let Some(nodes @ (2 | 3)) = number_after(&TRUSSES) {
+        return Some(ElementType { kind, nodes });
+    }
+    if let Some(order) = number_after(&BEAMS) {
+        let nodes = if order % 10 == 2 { 3 } else { 2 };
         return Some(ElementType { kind, nodes });
     }
     let nodes = number_after(&PLANE)?;
