@@ -24,6 +24,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("pericles-waves", &["pericles"]),
     ("pericles-manifold", &["pericles"]),
     ("pericles-dispersion", &["pericles"]),
+    ("pericles-mesh", &[]),
     (
         "pericles-deck",
         &[
@@ -40,6 +41,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",
+            "pericles-mesh",
         ],
     ),
     (
@@ -49,6 +51,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",
+            "pericles-mesh",
             "pericles-deck",
             "pericles-io",
         ],
@@ -60,6 +63,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",
+            "pericles-mesh",
             "pericles-deck",
             "pericles-io",
             "pericles-run",
@@ -72,6 +76,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",
+            "pericles-mesh",
             "pericles-deck",
             "pericles-io",
             "pericles-run",

@@ -1,39 +1,11 @@
-//! Fields of VTK XML files, read back: to compare runs and to draw them again.
+//! Fields of VTK XML files, read back: to compare runs and to re-render them.
 
 use std::path::Path;
 
-use super::error::{Fault, MeshError};
-use super::vtk::File;
+use pericles_mesh::FieldData;
+
+use super::error::{MeshError, fault_of};
 use crate::whole::read_whole;
-
-/// The points of a file with their fields.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FieldData {
-    /// The time, s, where the file tells.
-    pub time: Option<f64>,
-    /// x, y, z of every point in turn.
-    pub points: Vec<f64>,
-    /// The fields on the points, in the file's order.
-    pub fields: Vec<FieldColumn>,
-}
-
-/// One field on all points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FieldColumn {
-    /// Its name.
-    pub name: String,
-    /// 1 for a scalar, 3 for a vector.
-    pub components: usize,
-    /// The components of every point in turn.
-    pub values: Vec<f64>,
-}
-
-impl FieldData {
-    /// The field of this name.
-    pub fn field(&self, name: &str) -> Option<&FieldColumn> {
-        self.fields.iter().find(|field| field.name == name)
-    }
-}
 
 /// Reads the points and point data of a `.vtu` or `.vtp` file.
 ///
@@ -54,35 +26,8 @@ pub fn parse_fields(
     content: &[u8],
     memory: u64,
 ) -> Result<FieldData, MeshError> {
-    parse(content, memory).map_err(|fault| fault.of(name.as_ref(), memory))
-}
-
-fn parse(content: &[u8], memory: u64) -> Result<FieldData, Fault> {
-    let file = File::new(content, memory)?;
-    let points = file.array("Points", None)?.real();
-    let count = points.len() / 3;
-    let mut fields = Vec::new();
-    for (name, components) in file.columns("PointData") {
-        let values = file.array("PointData", Some(name))?.real();
-        if components == 0 || Some(values.len()) != count.checked_mul(components) {
-            return Err(Fault::of_file(format!(
-                "{name} has {} numbers; {count} points of {components} components need {}",
-                values.len(),
-                count.saturating_mul(components)
-            )));
-        }
-        fields.push(FieldColumn {
-            name: name.to_owned(),
-            components,
-            values,
-        });
-    }
-    let time = file.array("FieldData", Some("TimeValue")).ok();
-    Ok(FieldData {
-        time: time.and_then(|time| time.real().first().copied()),
-        points,
-        fields,
-    })
+    pericles_mesh::parse_fields(content, memory)
+        .map_err(|fault| fault_of(fault, name.as_ref(), memory))
 }
 
 #[cfg(test)]
@@ -155,11 +100,11 @@ mod tests {
         let whole = std::fs::read(&path).unwrap();
         for length in 0..whole.len() - 1 {
             assert!(
-                parse(&whole[..length], u64::MAX).is_err(),
+                parse_fields("a.vtu", &whole[..length], u64::MAX).is_err(),
                 "{length} of {}",
                 whole.len()
             );
         }
-        assert!(parse(&whole, u64::MAX).is_ok());
+        assert!(parse_fields("a.vtu", &whole, u64::MAX).is_ok());
     }
 }

@@ -14,27 +14,20 @@
 //! Counts in a file are compared with what is left of it before anything is allocated. Whether the surface is closed and oriented is not asked here: see
 //! [`Surface::checked`].
 
-mod bytes;
 mod error;
 mod fields;
-mod gmsh;
-mod obj;
-mod off;
-mod ply;
-mod stl;
-mod vtk;
-mod vtk_array;
-mod words;
 
-pub use error::{MeshError, Place};
-pub use fields::{FieldColumn, FieldData, parse_fields, read_fields};
+pub use error::MeshError;
+pub use fields::{parse_fields, read_fields};
+pub use pericles_mesh::{FieldColumn, FieldData, Place};
 
 use std::path::Path;
 
 use pericles_manifold::surface::{Surface, SurfaceError};
+use pericles_mesh::{Format, RawMesh};
 
 use crate::whole::read_whole;
-use error::Fault;
+use error::fault_of;
 
 /// Corners of an STL file nearer than this part of the surface's largest side are one vertex.
 const WELD: f64 = 1e-9;
@@ -52,9 +45,9 @@ pub const SURFACE_ENDINGS: [&str; 7] = ["obj", "ply", "stl", "off", "msh", "vtu"
 /// [`Surface::new`] refuses.
 pub fn read_surface(path: impl AsRef<Path>, memory: u64) -> Result<Surface, MeshError> {
     let path = path.as_ref();
-    let format = Format::of(path)?;
+    let format = format_of(path)?;
     let content = read_whole(path, EXPANSION, memory)?;
-    format.surface(path, &content, memory)
+    surface(format, path, &content, memory)
 }
 
 /// The surface in the content of a file; its name tells the format, and is what messages call it.
@@ -67,78 +60,41 @@ pub fn parse_surface(
     memory: u64,
 ) -> Result<Surface, MeshError> {
     let name = name.as_ref();
-    Format::of(name)?.surface(name, content, memory)
+    surface(format_of(name)?, name, content, memory)
 }
 
-/// A format by its ending.
-struct Format {
-    parse: fn(&[u8], u64) -> Result<Mesh, Fault>,
-    /// Corners are given again for every triangle.
-    unwelded: bool,
-    /// Vertices may belong to other things than surfaces.
-    mixed: bool,
+/// The format of a file of a surface.
+fn format_of(path: &Path) -> Result<Format, MeshError> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let known = SURFACE_ENDINGS.contains(&ending.to_lowercase().as_str());
+    Format::of(path)
+        .filter(|_| known)
+        .ok_or_else(|| MeshError::UnknownFormat { path: path.into() })
 }
 
-impl Format {
-    fn of(path: &Path) -> Result<Self, MeshError> {
-        let ending = path
-            .extension()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .to_lowercase();
-        let parse: fn(&[u8], u64) -> Result<Mesh, Fault> = match ending.as_str() {
-            // Only VTK's arrays are compressed: the others take little more than the content.
-            "obj" => |content, _| obj::parse(content),
-            "ply" => |content, _| ply::parse(content),
-            "stl" => |content, _| stl::parse(content),
-            "off" => |content, _| off::parse(content),
-            "msh" => |content, _| gmsh::parse(content),
-            "vtu" | "vtp" => vtk::parse,
-            _ => return Err(MeshError::UnknownFormat { path: path.into() }),
-        };
-        Ok(Self {
-            parse,
-            unwelded: ending == "stl",
-            mixed: matches!(ending.as_str(), "msh" | "vtu" | "vtp"),
-        })
-    }
-
-    fn surface(&self, path: &Path, content: &[u8], memory: u64) -> Result<Surface, MeshError> {
-        let mesh = (self.parse)(content, memory).map_err(|fault| fault.of(path, memory))?;
-        self.made(mesh).map_err(|source| MeshError::Surface {
-            path: path.into(),
-            source,
-        })
-    }
-
-    fn made(&self, mesh: Mesh) -> Result<Surface, SurfaceError> {
-        let surface = Surface::new(mesh.positions, mesh.triangles)?;
-        if self.unwelded {
-            let [low, high] = surface.bounds();
-            let side = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
-            return surface.welded(WELD * side);
-        }
-        if self.mixed {
-            return surface.without_unreferenced();
-        }
-        Ok(surface)
-    }
+fn surface(format: Format, path: &Path, content: &[u8], memory: u64) -> Result<Surface, MeshError> {
+    let alone = |name: &str| Err(format!("{name} is not read: surfaces include no files"));
+    let mesh = format
+        .parse(content, memory, &alone)
+        .map_err(|fault| fault_of(fault, path, memory))?;
+    made(format, mesh).map_err(|source| MeshError::Surface {
+        path: path.into(),
+        source,
+    })
 }
 
-/// Vertices and triangles as they are in a file.
-#[derive(Debug, Default, PartialEq)]
-struct Mesh {
-    positions: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Mesh {
-    /// Adds the triangles of a polygon's fan.
-    fn polygon(&mut self, corners: &[u32]) {
-        for pair in corners.windows(2).skip(1) {
-            self.triangles.push([corners[0], pair[0], pair[1]]);
-        }
+fn made(format: Format, mesh: RawMesh) -> Result<Surface, SurfaceError> {
+    let triangles = mesh.triangles();
+    let surface = Surface::new(mesh.nodes, triangles)?;
+    if format.repeats_corners() {
+        let [low, high] = surface.bounds();
+        let side = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+        return surface.welded(WELD * side);
     }
+    if format.is_mixed() {
+        return surface.without_unreferenced();
+    }
+    Ok(surface)
 }
 
 #[cfg(test)]

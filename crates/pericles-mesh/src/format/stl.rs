@@ -1,9 +1,9 @@
 //! STL: triangles with their corners' coordinates, as text (`solid … facet … vertex x y z`) or binary (80 bytes, a count, 50 bytes each).
 
-use super::Mesh;
-use super::bytes::{Bytes, Scalar};
-use super::error::Fault;
-use super::words::Words;
+use crate::fault::Fault;
+use crate::raw::RawMesh;
+use crate::scan::Words;
+use crate::scan::{Bytes, Scalar};
 
 /// Bytes before the count, and of a triangle: normal, three corners, two bytes.
 const HEADER: usize = 80;
@@ -12,7 +12,7 @@ const TRIANGLE: usize = 50;
 /// Bytes that are looked at to tell a text.
 const GLANCE: usize = 1024;
 
-pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     // Some binary files begin with "solid" as well; soon there are bytes that no text has.
     let begin = &content[..content.len().min(GLANCE)];
     let is_text = begin.iter().all(|byte| byte.is_ascii() && *byte != 0);
@@ -23,9 +23,9 @@ pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
     }
 }
 
-fn text(content: &[u8]) -> Result<Mesh, Fault> {
+fn text(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut words = Words::new(content, None);
-    let mut mesh = Mesh::default();
+    let mut mesh = RawMesh::default();
     let mut corners = Vec::new();
     words.next();
     // The name of the solid, which may hold any word.
@@ -34,8 +34,8 @@ fn text(content: &[u8]) -> Result<Mesh, Fault> {
     while let Some(word) = words.next() {
         match word {
             "vertex" => {
-                corners.push(mesh.positions.len() as u32);
-                mesh.positions.push(words.point()?);
+                corners.push(mesh.nodes.len() as u32);
+                mesh.nodes.push(words.point()?);
             }
             "endfacet" => {
                 if corners.len() != 3 {
@@ -64,12 +64,12 @@ fn text(content: &[u8]) -> Result<Mesh, Fault> {
     Ok(mesh)
 }
 
-fn binary(content: &[u8]) -> Result<Mesh, Fault> {
+fn binary(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut bytes = Bytes::new(content, 0, true);
     bytes.take(HEADER)?;
     let count = bytes.integer(Scalar::U32)? as u64;
     let count = bytes.room(count, TRIANGLE, "triangles")?;
-    let mut mesh = Mesh::default();
+    let mut mesh = RawMesh::default();
     for triangle in 0..count as u32 {
         bytes.take(12)?;
         for _ in 0..3 {
@@ -77,7 +77,7 @@ fn binary(content: &[u8]) -> Result<Mesh, Fault> {
             for x in &mut corner {
                 *x = bytes.real(Scalar::F32)?;
             }
-            mesh.positions.push(corner);
+            mesh.nodes.push(corner);
         }
         bytes.take(2)?;
         let first = triangle

@@ -1,22 +1,22 @@
 //! Wavefront OBJ: lines `v x y z` and `f a b c …`, a corner being `vertex`, `vertex/texture` or `vertex/texture/normal`. Everything else is left out.
 
-use super::Mesh;
-use super::bytes::vertex_number;
-use super::error::Fault;
-use super::words::Words;
+use crate::fault::Fault;
+use crate::raw::RawMesh;
+use crate::scan::Words;
+use crate::scan::vertex_number;
 
-pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
-    let mut mesh = Mesh::default();
+pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
+    let mut mesh = RawMesh::default();
     let mut words = Words::new(content, Some(b'#'));
     while let Some(key) = words.next() {
         match key {
-            "v" => mesh.positions.push(words.point()?),
+            "v" => mesh.nodes.push(words.point()?),
             "f" => {
                 let line = words.line();
                 let corners = words
                     .rest_of_line()
                     .take_while(|word| !word.starts_with('#'))
-                    .map(|word| corner(word, mesh.positions.len(), line))
+                    .map(|word| corner(word, mesh.nodes.len(), line))
                     .collect::<Result<Vec<u32>, Fault>>()?;
                 if corners.len() < 3 {
                     let reason = format!(

@@ -1,10 +1,10 @@
 //! OFF: the word OFF, the numbers of vertices, faces and edges, coordinates, and for each face its number of corners and the corners, from 0.
 
-use super::Mesh;
-use super::error::Fault;
-use super::words::Words;
+use crate::fault::Fault;
+use crate::raw::RawMesh;
+use crate::scan::Words;
 
-pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut words = Words::new(content, Some(b'#'));
     let head = words.word("the word OFF")?;
     // Colours, normals and textures follow the coordinates of a vertex on its line.
@@ -14,10 +14,10 @@ pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
     let vertices = words.count("vertices", 3)?;
     let faces = words.count("faces", 4)?;
     let _edges: u64 = words.number("a number of edges")?;
-    let mut mesh = Mesh::default();
-    mesh.positions.reserve(vertices);
+    let mut mesh = RawMesh::default();
+    mesh.nodes.reserve(vertices);
     for _ in 0..vertices {
-        mesh.positions.push(words.point()?);
+        mesh.nodes.push(words.point()?);
         words.skip_line();
     }
     for _ in 0..faces {

@@ -2,10 +2,10 @@
 
 use std::str::FromStr;
 
-use super::error::Fault;
+use crate::fault::Fault;
 
 /// A text read word by word.
-pub(super) struct Words<'a> {
+pub(crate) struct Words<'a> {
     text: &'a [u8],
     at: usize,
     line: usize,
@@ -14,7 +14,7 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    pub(super) fn new(text: &'a [u8], comment: Option<u8>) -> Self {
+    pub(crate) fn new(text: &'a [u8], comment: Option<u8>) -> Self {
         Self {
             text,
             at: 0,
@@ -24,28 +24,28 @@ impl<'a> Words<'a> {
     }
 
     /// The line of what was read last.
-    pub(super) fn line(&self) -> usize {
+    pub(crate) fn line(&self) -> usize {
         self.line
     }
 
     /// Where the next byte is.
-    pub(super) fn position(&self) -> usize {
+    pub(crate) fn position(&self) -> usize {
         self.at
     }
 
     /// Goes on elsewhere further on.
-    pub(super) fn skip_to(&mut self, position: usize) {
+    pub(crate) fn skip_to(&mut self, position: usize) {
         let position = position.min(self.text.len());
         self.line += count_lines(&self.text[self.at..position]);
         self.at = position;
     }
 
-    pub(super) fn fault(&self, reason: impl Into<String>) -> Fault {
+    pub(crate) fn fault(&self, reason: impl Into<String>) -> Fault {
         Fault::at_line(self.line, reason)
     }
 
     /// The next word; none at the end.
-    pub(super) fn next(&mut self) -> Option<&'a str> {
+    pub(crate) fn next(&mut self) -> Option<&'a str> {
         loop {
             let byte = *self.text.get(self.at)?;
             if Some(byte) == self.comment {
@@ -66,7 +66,7 @@ impl<'a> Words<'a> {
     }
 
     /// The words up to the end of the line.
-    pub(super) fn rest_of_line(&mut self) -> impl Iterator<Item = &'a str> {
+    pub(crate) fn rest_of_line(&mut self) -> impl Iterator<Item = &'a str> {
         let start = self.at;
         self.skip_line();
         let text = &self.text[start..self.at];
@@ -76,7 +76,7 @@ impl<'a> Words<'a> {
     }
 
     /// Goes to the end of the line.
-    pub(super) fn skip_line(&mut self) {
+    pub(crate) fn skip_line(&mut self) {
         let rest = &self.text[self.at..];
         self.at += rest
             .iter()
@@ -85,7 +85,7 @@ impl<'a> Words<'a> {
     }
 
     /// The next word, which must be there.
-    pub(super) fn word(&mut self, what: &str) -> Result<&'a str, Fault> {
+    pub(crate) fn word(&mut self, what: &str) -> Result<&'a str, Fault> {
         match self.next() {
             Some(word) => Ok(word),
             None => Err(self.fault(format!("the file ends where {what} should follow"))),
@@ -93,14 +93,14 @@ impl<'a> Words<'a> {
     }
 
     /// The next word as a number.
-    pub(super) fn number<T: FromStr>(&mut self, what: &str) -> Result<T, Fault> {
+    pub(crate) fn number<T: FromStr>(&mut self, what: &str) -> Result<T, Fault> {
         let word = self.word(what)?;
         word.parse()
             .map_err(|_| self.fault(format!("{word:?} is not {what}")))
     }
 
     /// Three coordinates.
-    pub(super) fn point(&mut self) -> Result<[f64; 3], Fault> {
+    pub(crate) fn point(&mut self) -> Result<[f64; 3], Fault> {
         let mut point = [0.0; 3];
         for x in &mut point {
             *x = self.number("a coordinate")?;
@@ -109,7 +109,7 @@ impl<'a> Words<'a> {
     }
 
     /// A number of things to follow, each of at least so many words.
-    pub(super) fn count(&mut self, what: &str, words_each: usize) -> Result<usize, Fault> {
+    pub(crate) fn count(&mut self, what: &str, words_each: usize) -> Result<usize, Fault> {
         let count: u64 = self.number(&format!("a number of {what}"))?;
         let left = self.text.len() - self.at;
         // A word is a character and a space.

@@ -6,45 +6,45 @@ use std::str::FromStr;
 
 use flate2::read::ZlibDecoder;
 
-use super::bytes::{Bytes, Scalar};
-use super::error::Fault;
-use super::words::Words;
+use crate::fault::Fault;
+use crate::scan::Words;
+use crate::scan::{Bytes, Scalar};
 
 /// Deflate makes at most 1032 bytes of one.
 const MOST_PACKED: u64 = 1032;
 
 /// How binary arrays are written in a file.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Encoding {
-    pub(super) little: bool,
+pub(crate) struct Encoding {
+    pub(crate) little: bool,
     /// Type of the numbers before the data.
-    pub(super) header: Scalar,
-    pub(super) packed: bool,
+    pub(crate) header: Scalar,
+    pub(crate) packed: bool,
 }
 
 /// Where the numbers of an array are.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Source<'a> {
+pub(crate) enum Source<'a> {
     Text(&'a [u8]),
     Base64(&'a [u8]),
     Raw(&'a [u8]),
 }
 
 /// The numbers of an array.
-pub(super) enum Numbers {
+pub(crate) enum Numbers {
     Real(Vec<f64>),
     Whole(Vec<i64>),
 }
 
 impl Numbers {
-    pub(super) fn real(self) -> Vec<f64> {
+    pub(crate) fn real(self) -> Vec<f64> {
         match self {
             Self::Real(numbers) => numbers,
             Self::Whole(numbers) => numbers.into_iter().map(|number| number as f64).collect(),
         }
     }
 
-    pub(super) fn whole(self, what: &str) -> Result<Vec<i64>, Fault> {
+    pub(crate) fn whole(self, what: &str) -> Result<Vec<i64>, Fault> {
         match self {
             Self::Whole(numbers) => Ok(numbers),
             Self::Real(_) => Err(Fault::of_file(format!(
@@ -55,7 +55,7 @@ impl Numbers {
 }
 
 /// Reads an array that may take `room` bytes; tells how many its numbers take.
-pub(super) fn read(
+pub(crate) fn read(
     source: Source<'_>,
     scalar: Scalar,
     encoding: Encoding,

@@ -1,9 +1,9 @@
 //! PLY: a header that says which elements follow and what each consists of, then the elements, as text or binary of either byte order.
 
-use super::Mesh;
-use super::bytes::{Bytes, Scalar, no_vertex, vertex_number};
-use super::error::Fault;
-use super::words::Words;
+use crate::fault::Fault;
+use crate::raw::RawMesh;
+use crate::scan::Words;
+use crate::scan::{Bytes, Scalar, no_vertex, vertex_number};
 
 /// The largest number of elements without properties: they take no room in the file.
 const MOST_EMPTY: u64 = 1 << 20;
@@ -81,7 +81,7 @@ impl Numbers<'_> {
     }
 }
 
-pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut words = Words::new(content, None);
     if words.next() != Some("ply") {
         return Err(words.fault("the file does not begin with the word ply"));
@@ -93,7 +93,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Mesh, Fault> {
         Form::Text => Numbers::Text(words),
         Form::Binary { little } => Numbers::Binary(Bytes::new(content, data, little)),
     };
-    let mut mesh = Mesh::default();
+    let mut mesh = RawMesh::default();
     for element in &elements {
         check_count(&numbers, element, content.len())?;
         for _ in 0..element.count {
@@ -208,7 +208,7 @@ fn scalar(words: &Words<'_>, name: &str) -> Result<Scalar, Fault> {
     })
 }
 
-fn vertex(numbers: &mut Numbers<'_>, element: &Element, mesh: &mut Mesh) -> Result<(), Fault> {
+fn vertex(numbers: &mut Numbers<'_>, element: &Element, mesh: &mut RawMesh) -> Result<(), Fault> {
     let mut position = [f64::NAN; 3];
     for property in &element.properties {
         match ["x", "y", "z"]
@@ -219,11 +219,11 @@ fn vertex(numbers: &mut Numbers<'_>, element: &Element, mesh: &mut Mesh) -> Resu
             _ => numbers.skip(property)?,
         }
     }
-    mesh.positions.push(position);
+    mesh.nodes.push(position);
     Ok(())
 }
 
-fn face(numbers: &mut Numbers<'_>, element: &Element, mesh: &mut Mesh) -> Result<(), Fault> {
+fn face(numbers: &mut Numbers<'_>, element: &Element, mesh: &mut RawMesh) -> Result<(), Fault> {
     for property in &element.properties {
         match (property.name.as_str(), property.list) {
             ("vertex_indices" | "vertex_index", Some(count)) => {

@@ -1,85 +1,14 @@
-//! VTK XML files: `UnstructuredGrid` with its cells, `PolyData` with its polygons.
+//! The XML of a VTK file: its elements, and the arrays in them.
 
 use std::cell::Cell;
+use std::ops::Range;
 
-use super::Mesh;
-use super::bytes::{Scalar, no_vertex, vertex_number};
-use super::error::Fault;
-use super::vtk_array::{Encoding, Source, read};
-
-/// Cell types of VTK: triangle, polygon, quadrilateral.
-const FACES: [i64; 3] = [5, 7, 9];
-
-pub(super) fn parse(content: &[u8], memory: u64) -> Result<Mesh, Fault> {
-    let file = File::new(content, memory)?;
-    let points = file.array("Points", None)?.real();
-    if points.len() % 3 != 0 {
-        return Err(Fault::of_file(format!(
-            "{} coordinates of points; three each are needed",
-            points.len()
-        )));
-    }
-    let mut mesh = Mesh {
-        positions: points.as_chunks::<3>().0.to_vec(),
-        triangles: Vec::new(),
-    };
-    let unstructured = file.has("UnstructuredGrid");
-    let section = if unstructured { "Cells" } else { "Polys" };
-    if !unstructured && !file.has("PolyData") {
-        return Err(Fault::of_file(
-            "the file holds neither an UnstructuredGrid nor PolyData",
-        ));
-    }
-    let connectivity = file
-        .array(section, Some("connectivity"))?
-        .whole("connectivity")?;
-    let offsets = file.array(section, Some("offsets"))?.whole("offsets")?;
-    let types = match unstructured {
-        true => Some(file.array(section, Some("types"))?.whole("types")?),
-        false => None,
-    };
-    if let Some(types) = types.as_ref().filter(|types| types.len() != offsets.len()) {
-        return Err(Fault::of_file(format!(
-            "{} types for {} cells",
-            types.len(),
-            offsets.len()
-        )));
-    }
-    let mut begin = 0;
-    for (cell, &end) in offsets.iter().enumerate() {
-        let range = usize::try_from(end)
-            .ok()
-            .and_then(|end| connectivity.get(begin..end));
-        let Some(corners) = range else {
-            return Err(Fault::of_file(format!(
-                "cell {cell} ends at {end}; allowed: {begin} to {}",
-                connectivity.len()
-            )));
-        };
-        begin += corners.len();
-        if types
-            .as_ref()
-            .is_some_and(|types| !FACES.contains(&types[cell]))
-        {
-            continue;
-        }
-        if corners.len() < 3 {
-            return Err(Fault::of_file(format!(
-                "cell {cell} has {} corner(s); at least 3 are needed",
-                corners.len()
-            )));
-        }
-        let corners = corners
-            .iter()
-            .map(|&number| vertex_number(number).ok_or_else(|| Fault::of_file(no_vertex(number))))
-            .collect::<Result<Vec<u32>, Fault>>()?;
-        mesh.polygon(&corners);
-    }
-    Ok(mesh)
-}
+use super::array::{Encoding, Numbers, Source, read};
+use crate::fault::Fault;
+use crate::scan::Scalar;
 
 /// A file in its parts: elements, and data appended to them.
-pub(super) struct File<'a> {
+pub(crate) struct File<'a> {
     content: &'a [u8],
     elements: Vec<Element<'a>>,
     encoding: Encoding,
@@ -134,7 +63,7 @@ impl<'a> Element<'a> {
 
 impl<'a> File<'a> {
     /// A file whose content and arrays may take `memory` bytes together.
-    pub(super) fn new(content: &'a [u8], memory: u64) -> Result<Self, Fault> {
+    pub(crate) fn new(content: &'a [u8], memory: u64) -> Result<Self, Fault> {
         let last = b"</VTKFile>";
         if !content
             .windows(last.len())
@@ -202,14 +131,30 @@ impl<'a> File<'a> {
         })
     }
 
-    fn has(&self, name: &str) -> bool {
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.elements.iter().any(|element| element.starts(name))
     }
 
-    /// The arrays in the first section of this name.
-    fn arrays(&self, section: &str) -> impl Iterator<Item = &Element<'a>> {
-        let inside = self
-            .elements
+    /// The elements of each piece; all elements where there are no pieces.
+    pub(crate) fn pieces(&self) -> Vec<Range<usize>> {
+        let mut pieces = Vec::new();
+        let mut begin = None;
+        for (place, element) in self.elements.iter().enumerate() {
+            if element.starts("Piece") {
+                begin = Some(place);
+            } else if element.ends("Piece") {
+                pieces.extend(begin.take().map(|begin| begin..place));
+            }
+        }
+        if pieces.is_empty() {
+            pieces.push(0..self.elements.len());
+        }
+        pieces
+    }
+
+    /// The arrays in the first section of this name among some elements.
+    fn arrays(&self, within: Range<usize>, section: &str) -> impl Iterator<Item = &Element<'a>> {
+        let inside = self.elements[within]
             .iter()
             .skip_while(move |element| !element.starts(section));
         inside
@@ -218,8 +163,17 @@ impl<'a> File<'a> {
     }
 
     /// Names and numbers of components of the arrays in the first section of this name.
-    pub(super) fn columns(&self, section: &str) -> impl Iterator<Item = (&'a str, usize)> {
-        self.arrays(section).map(|array| {
+    pub(crate) fn columns(&self, section: &str) -> impl Iterator<Item = (&'a str, usize)> {
+        self.columns_in(0..self.elements.len(), section)
+    }
+
+    /// The same among some elements.
+    pub(crate) fn columns_in(
+        &self,
+        within: Range<usize>,
+        section: &str,
+    ) -> impl Iterator<Item = (&'a str, usize)> {
+        self.arrays(within, section).map(|array| {
             let components = array.attribute("NumberOfComponents");
             let components = components.and_then(|count| count.trim().parse().ok());
             (
@@ -230,14 +184,20 @@ impl<'a> File<'a> {
     }
 
     /// The first array of this name, or of any, in the first section of this name.
-    pub(super) fn array(
+    pub(crate) fn array(&self, section: &str, name: Option<&str>) -> Result<Numbers, Fault> {
+        self.array_in(0..self.elements.len(), section, name)
+    }
+
+    /// The same among some elements.
+    pub(crate) fn array_in(
         &self,
+        within: Range<usize>,
         section: &str,
         name: Option<&str>,
-    ) -> Result<super::vtk_array::Numbers, Fault> {
+    ) -> Result<Numbers, Fault> {
         let what = name.unwrap_or(section);
         let array = self
-            .arrays(section)
+            .arrays(within, section)
             .find(|element| name.is_none() || element.attribute("Name") == name);
         let Some(array) = array else {
             return Err(Fault::of_file(format!(

@@ -1,9 +1,9 @@
 //! Numbers of a binary file, with their places.
 
-use super::error::Fault;
+use crate::fault::Fault;
 
 /// A binary file read number by number.
-pub(super) struct Bytes<'a> {
+pub(crate) struct Bytes<'a> {
     data: &'a [u8],
     at: usize,
     little: bool,
@@ -11,7 +11,7 @@ pub(super) struct Bytes<'a> {
 
 /// Types of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scalar {
+pub(crate) enum Scalar {
     I8,
     U8,
     I16,
@@ -25,7 +25,7 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
-    pub(super) fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -36,20 +36,20 @@ impl Scalar {
 }
 
 impl<'a> Bytes<'a> {
-    pub(super) fn new(data: &'a [u8], at: usize, little: bool) -> Self {
+    pub(crate) fn new(data: &'a [u8], at: usize, little: bool) -> Self {
         Self { data, at, little }
     }
 
-    pub(super) fn position(&self) -> usize {
+    pub(crate) fn position(&self) -> usize {
         self.at
     }
 
-    pub(super) fn fault(&self, reason: impl Into<String>) -> Fault {
+    pub(crate) fn fault(&self, reason: impl Into<String>) -> Fault {
         Fault::at_byte(self.at, reason)
     }
 
     /// The next bytes.
-    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+    pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         let left = self.data.len().saturating_sub(self.at);
         if count > left {
             return Err(self.fault(format!(
@@ -62,7 +62,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// Checks that there can be so many things of at least so many bytes.
-    pub(super) fn room(&self, count: u64, bytes_each: usize, what: &str) -> Result<usize, Fault> {
+    pub(crate) fn room(&self, count: u64, bytes_each: usize, what: &str) -> Result<usize, Fault> {
         let left = self.data.len().saturating_sub(self.at);
         let room = (left / bytes_each.max(1)) as u64;
         if count > room {
@@ -82,7 +82,7 @@ impl<'a> Bytes<'a> {
         Ok(array)
     }
 
-    pub(super) fn real(&mut self, scalar: Scalar) -> Result<f64, Fault> {
+    pub(crate) fn real(&mut self, scalar: Scalar) -> Result<f64, Fault> {
         Ok(match scalar {
             Scalar::F32 => f64::from(f32::from_le_bytes(self.array()?)),
             Scalar::F64 => f64::from_le_bytes(self.array()?),
@@ -90,7 +90,7 @@ impl<'a> Bytes<'a> {
         })
     }
 
-    pub(super) fn integer(&mut self, scalar: Scalar) -> Result<i64, Fault> {
+    pub(crate) fn integer(&mut self, scalar: Scalar) -> Result<i64, Fault> {
         Ok(match scalar {
             Scalar::I8 => i8::from_le_bytes(self.array()?).into(),
             Scalar::U8 => u8::from_le_bytes(self.array()?).into(),
@@ -112,12 +112,12 @@ impl<'a> Bytes<'a> {
 }
 
 /// The number of a vertex, if it is one.
-pub(super) fn vertex_number(number: i64) -> Option<u32> {
+pub(crate) fn vertex_number(number: i64) -> Option<u32> {
     u32::try_from(number)
         .ok()
         .filter(|&number| number < u32::MAX)
 }
 
-pub(super) fn no_vertex(number: i64) -> String {
+pub(crate) fn no_vertex(number: i64) -> String {
     format!("{number} is no number of a vertex; they run from 0 to at most 4294967294")
 }

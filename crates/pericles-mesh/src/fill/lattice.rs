@@ -1,0 +1,153 @@
+//! Lattices, and the nodes of them that are inside of something.
+
+use super::FillError;
+
+/// A side may be longer than a whole number of spacings by this part of a spacing without another node.
+const SLACK: f64 = 1e-9;
+
+/// The largest number of nodes in the box of a lattice.
+const MOST_NODES: f64 = 4e9;
+
+/// The nodes of a lattice in a box, symmetric about its centre: node i of n along an axis is at centre + (2 i − n + 1) spacing / 2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// The centre of the box.
+    pub centre: [f64; 3],
+    /// Distances of neighbours along the axes.
+    pub spacing: [f64; 3],
+    /// Numbers of nodes along the axes.
+    pub counts: [usize; 3],
+}
+
+impl Lattice {
+    /// The smallest lattice whose cells cover a box, with n = ⌈side / spacing⌉ nodes along each axis, and at least one.
+    ///
+    /// # Errors
+    /// A spacing that is not positive, and more than 4·10⁹ nodes.
+    pub fn around(bounds: [[f64; 3]; 2], spacing: [f64; 3]) -> Result<Self, FillError> {
+        let mut counts = [1; 3];
+        let mut nodes = 1.0;
+        for c in 0..3 {
+            if !(spacing[c] > 0.0 && spacing[c].is_finite()) {
+                return Err(FillError::Spacing { value: spacing[c] });
+            }
+            let count = ((bounds[1][c] - bounds[0][c]) / spacing[c] - SLACK)
+                .ceil()
+                .max(1.0);
+            nodes *= count;
+            if !(nodes <= MOST_NODES) {
+                let most = MOST_NODES;
+                return Err(FillError::TooMany { nodes, most });
+            }
+            counts[c] = count as usize;
+        }
+        Ok(Self {
+            centre: std::array::from_fn(|c| 0.5 * (bounds[0][c] + bounds[1][c])),
+            spacing,
+            counts,
+        })
+    }
+
+    /// A coordinate of the nodes with this number along an axis.
+    pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
+        let steps = 2.0 * number as f64 - (self.counts[axis] as f64 - 1.0);
+        self.centre[axis] + steps * (0.5 * self.spacing[axis])
+    }
+
+    /// The position of a node.
+    pub fn position(&self, node: [usize; 3]) -> [f64; 3] {
+        std::array::from_fn(|c| self.coordinate(c, node[c]))
+    }
+
+    /// The number of nodes in the box.
+    pub fn len(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// Never true: there is at least one node.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The volume of a cell.
+    pub fn cell_volume(&self) -> f64 {
+        self.spacing.iter().product()
+    }
+
+    /// The numbers along an axis of the nodes whose coordinates lie between two numbers, with one more on both sides, so that rounding leaves out none.
+    pub(super) fn range(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<usize> {
+        let first = self.coordinate(axis, 0);
+        let place = |x: f64| (x - first) / self.spacing[axis];
+        // Casts keep numbers in range and make zero of NaN.
+        let begin = (place(low).floor() - 1.0).max(0.0) as usize;
+        let end = (place(high).ceil() + 2.0).max(0.0) as usize;
+        let count = self.counts[axis];
+        begin.min(count)..end.min(count)
+    }
+
+    /// The lattice of parts: each cell is divided into so many along x and y.
+    pub(super) fn divided(&self, parts: usize) -> Self {
+        let mut fine = *self;
+        for c in 0..2 {
+            fine.counts[c] *= parts;
+            fine.spacing[c] /= parts as f64;
+        }
+        fine
+    }
+}
+
+/// The nodes of a lattice that are inside of a surface or an outline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filled {
+    pub(super) lattice: Lattice,
+    /// By column (x fastest, then y), then along z.
+    pub(super) inside: Vec<bool>,
+    pub(super) enclosed: f64,
+    pub(super) was_turned: bool,
+}
+
+impl Filled {
+    /// The lattice.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Whether a node is inside.
+    pub fn contains(&self, [i, j, k]: [usize; 3]) -> bool {
+        let [nx, _, nz] = self.lattice.counts;
+        self.inside[(j * nx + i) * nz + k]
+    }
+
+    /// The nodes that are inside, x running fastest, then y, then z.
+    pub fn nodes(&self) -> impl Iterator<Item = [usize; 3]> {
+        let [nx, ny, nz] = self.lattice.counts;
+        let all =
+            (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+        all.filter(|&node| self.contains(node))
+    }
+
+    /// The number of nodes that are inside.
+    pub fn len(&self) -> usize {
+        self.inside.iter().filter(|inside| **inside).count()
+    }
+
+    /// Whether no node is inside.
+    pub fn is_empty(&self) -> bool {
+        !self.inside.contains(&true)
+    }
+
+    /// The volume of the cells of all nodes that are inside; of an outline their area.
+    pub fn volume(&self) -> f64 {
+        self.len() as f64 * self.lattice.cell_volume()
+    }
+
+    /// The volume that the surface encloses, Σ a · (b × c) / 6 over its triangles: what is enclosed twice counts twice. Of an outline its area.
+    pub fn enclosed_volume(&self) -> f64 {
+        self.enclosed
+    }
+
+    /// Whether all triangles looked inwards: the surface was turned inside out.
+    pub fn was_turned(&self) -> bool {
+        self.was_turned
+    }
+}

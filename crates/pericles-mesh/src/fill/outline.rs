@@ -1,0 +1,157 @@
+//! Plane lattices in polygons.
+
+use rayon::prelude::*;
+use robust::orient2d;
+
+use super::FillError;
+use super::lattice::{Filled, Lattice};
+use super::rows::{coord, sign};
+
+/// Closed polygons in the plane, in either direction. A point is inside where an odd number of them surrounds it: polygons inside others are holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    polygons: Vec<Vec<[f64; 2]>>,
+}
+
+/// Twice the signed area of a polygon, positions taken from its first corner.
+fn twice_area(polygon: &[[f64; 2]]) -> f64 {
+    let [x, y] = polygon[0];
+    let pairs = polygon.windows(2);
+    pairs
+        .map(|pair| {
+            let [a, b] = [pair[0], pair[1]].map(|p| [p[0] - x, p[1] - y]);
+            a[0] * b[1] - a[1] * b[0]
+        })
+        .sum()
+}
+
+fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().copied().zip(next.copied())
+}
+
+/// Whether the line at x + ε crosses an edge.
+fn crosses(a: [f64; 2], b: [f64; 2], x: f64) -> bool {
+    (a[0] <= x) != (b[0] <= x)
+}
+
+/// Whether the point (x + ε, y + ε²) is above an edge that the line at x + ε crosses.
+fn is_above(a: [f64; 2], b: [f64; 2], [x, y]: [f64; 2]) -> bool {
+    let (left, right) = if a[0] <= b[0] { (a, b) } else { (b, a) };
+    let ends = (coord(left[0], left[1]), coord(right[0], right[1]));
+    match sign(orient2d(ends.0, ends.1, coord(x, y))) {
+        // The sign of −(b_y − a_y) ε + (b_x − a_x) ε².
+        0 => right[1] <= left[1],
+        exact => exact > 0,
+    }
+}
+
+impl Outline {
+    /// An outline of polygons. The last corner of each is joined with its first.
+    ///
+    /// # Errors
+    /// No polygon, a polygon with fewer than three corners, a coordinate that is not finite.
+    pub fn new(polygons: Vec<Vec<[f64; 2]>>) -> Result<Self, FillError> {
+        if polygons.is_empty() {
+            return Err(FillError::FewCorners {
+                polygon: 0,
+                corners: 0,
+            });
+        }
+        for (polygon, corners) in polygons.iter().enumerate() {
+            if corners.len() < 3 {
+                let corners = corners.len();
+                return Err(FillError::FewCorners { polygon, corners });
+            }
+            for (vertex, x) in corners.iter().enumerate() {
+                if let Some(&value) = x.iter().find(|x| !x.is_finite()) {
+                    return Err(FillError::NotFinite { vertex, value });
+                }
+            }
+        }
+        Ok(Self { polygons })
+    }
+
+    /// Whether a point, meant at (x + ε, y + ε²), is inside.
+    pub fn contains(&self, point: [f64; 2]) -> bool {
+        let edges = self.polygons.iter().flat_map(|polygon| edges(polygon));
+        let above = edges.filter(|&(a, b)| crosses(a, b, point[0]) && !is_above(a, b, point));
+        above.count() % 2 == 1
+    }
+
+    /// The area inside, of polygons that do not cross each other: areas of holes are taken off.
+    pub fn area(&self) -> f64 {
+        let area = |number: usize| {
+            let polygon = &self.polygons[number];
+            let first = polygon[0];
+            let others = self.polygons.iter().enumerate();
+            let around = others.filter(|&(other, corners)| {
+                let single = || edges(corners);
+                let above =
+                    single().filter(|&(a, b)| crosses(a, b, first[0]) && !is_above(a, b, first));
+                other != number && above.count() % 2 == 1
+            });
+            let sign = if around.count() % 2 == 0 { 0.5 } else { -0.5 };
+            sign * twice_area(polygon).abs()
+        };
+        (0..self.polygons.len()).map(area).sum()
+    }
+
+    /// The nodes of a lattice inside, with one node along z, at z = 0.
+    ///
+    /// # Errors
+    /// A spacing that is not positive, too many nodes.
+    pub fn fill(&self, spacing: [f64; 2]) -> Result<Filled, FillError> {
+        let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for corner in self.polygons.iter().flatten() {
+            for (c, &x) in corner.iter().enumerate() {
+                bounds[0][c] = bounds[0][c].min(x);
+                bounds[1][c] = bounds[1][c].max(x);
+            }
+        }
+        (bounds[0][2], bounds[1][2]) = (0.0, 0.0);
+        let lattice = Lattice::around(bounds, [spacing[0], spacing[1], 1.0])?;
+        let [nx, ny, _] = lattice.counts;
+        let columns: Vec<Vec<bool>> = (0..nx)
+            .into_par_iter()
+            .map(|column| self.column(&lattice, column))
+            .collect();
+        let inside = (0..nx * ny).map(|node| columns[node % nx][node / nx]);
+        Ok(Filled {
+            lattice,
+            inside: inside.collect(),
+            enclosed: self.area(),
+            was_turned: false,
+        })
+    }
+
+    /// Which nodes of a line along y are inside.
+    fn column(&self, lattice: &Lattice, column: usize) -> Vec<bool> {
+        let x = lattice.coordinate(0, column);
+        let ny = lattice.counts[1];
+        let mut odd = vec![false; ny + 1];
+        for (a, b) in self.polygons.iter().flat_map(|polygon| edges(polygon)) {
+            if !crosses(a, b, x) {
+                continue;
+            }
+            let y = a[1] + (b[1] - a[1]) * ((x - a[0]) / (b[0] - a[0]));
+            let guess = (y - lattice.coordinate(1, 0)) / lattice.spacing[1];
+            let mut node = (guess.ceil().max(0.0) as usize).min(ny);
+            let above = |node: usize| is_above(a, b, [x, lattice.coordinate(1, node)]);
+            while node < ny && !above(node) {
+                node += 1;
+            }
+            while node > 0 && above(node - 1) {
+                node -= 1;
+            }
+            odd[node] ^= true;
+        }
+        let mut is_inside = odd[ny];
+        let mut inside = vec![false; ny];
+        for (inside, odd) in inside.iter_mut().zip(&odd[..ny]).rev() {
+            *inside = is_inside;
+            is_inside ^= odd;
+        }
+        inside
+    }
+}

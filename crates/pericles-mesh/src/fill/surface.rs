@@ -1,0 +1,92 @@
+//! Surfaces made of triangles.
+
+use super::FillError;
+use crate::element::{cross, dot};
+use crate::raw::RawMesh;
+
+/// Triangles, whose corners run counter-clockwise seen from outside. They may form several closed surfaces, which may overlap; a surface inside another one whose
+/// triangles look the other way is a cavity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriangleSurface {
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl TriangleSurface {
+    /// A surface from positions and corners.
+    ///
+    /// # Errors
+    /// No triangle, a coordinate that is not finite, a corner that is no vertex.
+    pub fn new(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, FillError> {
+        if triangles.is_empty() {
+            return Err(FillError::Empty);
+        }
+        for (vertex, x) in positions.iter().enumerate() {
+            if let Some(&value) = x.iter().find(|x| !x.is_finite()) {
+                return Err(FillError::NotFinite { vertex, value });
+            }
+        }
+        let vertices = positions.len();
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&corner) = corners.iter().find(|&&c| c as usize >= vertices) {
+                return Err(FillError::NoSuchVertex {
+                    triangle,
+                    corner,
+                    vertices,
+                });
+            }
+        }
+        Ok(Self {
+            positions,
+            triangles,
+        })
+    }
+
+    /// The plane cells of a mesh, in a unit of length (m).
+    ///
+    /// # Errors
+    /// As [`TriangleSurface::new`].
+    pub fn of_mesh(mesh: &RawMesh, unit: f64) -> Result<Self, FillError> {
+        let positions = mesh.nodes.iter().map(|x| x.map(|x| x * unit));
+        Self::new(positions.collect(), mesh.triangles())
+    }
+
+    /// The number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Never true: there is at least one triangle.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [[f64; 3]; 3] {
+        self.triangles[triangle].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The corners of the smallest box that holds all triangles.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for &vertex in self.triangles.iter().flatten() {
+            for (c, &x) in self.positions[vertex as usize].iter().enumerate() {
+                bounds[0][c] = bounds[0][c].min(x);
+                bounds[1][c] = bounds[1][c].max(x);
+            }
+        }
+        bounds
+    }
+
+    /// The enclosed volume Σ a · (b × c) / 6, negative if the triangles look inwards. Positions are taken from the first vertex of the first triangle.
+    pub fn signed_volume(&self) -> f64 {
+        let origin = self.corners(0)[0];
+        let six = (0..self.len()).map(|triangle| {
+            let [a, b, c] = self
+                .corners(triangle)
+                .map(|x| std::array::from_fn(|k| x[k] - origin[k]));
+            dot(a, cross(b, c))
+        });
+        six.sum::<f64>() / 6.0
+    }
+}

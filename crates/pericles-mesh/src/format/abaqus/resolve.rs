@@ -1,0 +1,169 @@
+//! Members of sets, whatever sets they refer to.
+
+use std::collections::HashMap;
+
+use super::keyword::Name;
+use super::scope::{Member, Scope};
+use crate::fault::Fault;
+use crate::raw::Cells;
+use crate::scan::Numbering;
+
+/// How deep sets may refer to sets.
+const DEPTH: usize = 32;
+
+/// A scope in its place in the mesh.
+pub(super) struct Placed {
+    /// The instance; none of the model itself.
+    pub(super) name: Option<Name>,
+    /// What stands before the names of its sets.
+    pub(super) prefix: String,
+    pub(super) scope: Scope,
+    pub(super) nodes: Numbering,
+    pub(super) elements: Numbering,
+}
+
+/// Sets by the scope, whether they are of nodes, and their place in it.
+type SetKey = (usize, bool, usize);
+
+pub(super) struct Resolver<'a> {
+    pub(super) placed: &'a [Placed],
+    pub(super) cells: &'a Cells,
+    known: HashMap<SetKey, Vec<u32>>,
+}
+
+impl<'a> Resolver<'a> {
+    pub(super) fn new(placed: &'a [Placed], cells: &'a Cells) -> Self {
+        Self {
+            placed,
+            cells,
+            known: HashMap::new(),
+        }
+    }
+
+    /// The members of a set, ascending: numbers of nodes or cells of the whole mesh.
+    pub(super) fn set(&mut self, key: SetKey, depth: usize) -> Result<Vec<u32>, Fault> {
+        if let Some(members) = self.known.get(&key) {
+            return Ok(members.clone());
+        }
+        let (scope, of_nodes, place) = key;
+        let placed = self.placed;
+        let definition = &sets_of(&placed[scope].scope, of_nodes)[place];
+        if depth > DEPTH {
+            return Err(Fault::of_file(format!(
+                "the set {:?} refers to itself, or to sets in more than {DEPTH} steps",
+                definition.shown
+            )));
+        }
+        let mut members = Vec::new();
+        for (instance, member) in &definition.members {
+            let scope = match instance {
+                None => scope,
+                Some(instance) => match self.scope_of(instance) {
+                    Some(scope) => scope,
+                    None => {
+                        return Err(Fault::of_file(format!(
+                            "the set {:?} names an instance that is not there",
+                            definition.shown
+                        )));
+                    }
+                },
+            };
+            members.extend(self.member(scope, of_nodes, member, depth)?);
+        }
+        members.sort_unstable();
+        members.dedup();
+        self.known.insert(key, members.clone());
+        Ok(members)
+    }
+
+    fn scope_of(&self, instance: &Name) -> Option<usize> {
+        let mut scopes = self.placed.iter();
+        scopes.position(|placed| placed.name.as_ref() == Some(instance))
+    }
+
+    /// The nodes or cells that a member of a set stands for. Numbers that are not there stand for nothing.
+    pub(super) fn member(
+        &mut self,
+        scope: usize,
+        of_nodes: bool,
+        member: &Member,
+        depth: usize,
+    ) -> Result<Vec<u32>, Fault> {
+        let placed = &self.placed[scope];
+        let numbering = if of_nodes {
+            &placed.nodes
+        } else {
+            &placed.elements
+        };
+        match member {
+            Member::Number(number) => Ok(numbering.get(*number).into_iter().collect()),
+            Member::Range(first, last, step) => {
+                Ok(in_range(placed, of_nodes, *first, *last, *step))
+            }
+            Member::Set(name) => match self.find(scope, of_nodes, name) {
+                Some(key) => self.set(key, depth + 1),
+                None => Ok(Vec::new()),
+            },
+            Member::NodesOf(name) => {
+                let Some(key) = self.find(scope, false, name) else {
+                    return Ok(Vec::new());
+                };
+                let cells = self.set(key, depth + 1)?;
+                let corners = cells.iter().flat_map(|&c| self.cells.corners(c as usize));
+                let mut nodes: Vec<u32> = corners.copied().collect();
+                nodes.sort_unstable();
+                nodes.dedup();
+                Ok(nodes)
+            }
+        }
+    }
+
+    /// The set of this name in a scope, or `instance.set` in another one.
+    fn find(&self, scope: usize, of_nodes: bool, name: &Name) -> Option<SetKey> {
+        let place = |scope: usize, name| self.placed[scope].scope.place(of_nodes, name);
+        if let Some(place) = place(scope, name) {
+            return Some((scope, of_nodes, place));
+        }
+        let (instance, set) = name.parts()?;
+        let scope = self.scope_of(&instance)?;
+        Some((scope, of_nodes, place(scope, &set)?))
+    }
+}
+
+fn sets_of(scope: &Scope, of_nodes: bool) -> &[super::scope::SetDefinition] {
+    match of_nodes {
+        true => &scope.node_sets,
+        false => &scope.element_sets,
+    }
+}
+
+/// What is there of the numbers first, first + step, … up to last.
+fn in_range(placed: &Placed, of_nodes: bool, first: i64, last: i64, step: i64) -> Vec<u32> {
+    let (numbering, count) = match of_nodes {
+        true => (&placed.nodes, placed.scope.nodes.len()),
+        false => (&placed.elements, placed.scope.elements.numbers.len()),
+    };
+    let width = last.saturating_sub(first);
+    if width < 0 {
+        return Vec::new();
+    }
+    if (width / step) as usize <= 2 * count + 16 {
+        let numbers = (0..=width / step).filter_map(|k| first.checked_add(k * step));
+        return numbers.filter_map(|number| numbering.get(number)).collect();
+    }
+    // A range much longer than the list: the list is searched instead.
+    let within = |number: &i64| {
+        (first..=last).contains(number) && (*number as i128 - first as i128) % step as i128 == 0
+    };
+    let places = |number: i64| numbering.get(number);
+    match of_nodes {
+        true => {
+            let numbers = placed.scope.nodes.iter().map(|&(number, ..)| number);
+            numbers.filter(within).filter_map(places).collect()
+        }
+        false => {
+            let numbers = placed.scope.elements.numbers.iter().copied();
+            numbers.filter(within).filter_map(places).collect()
+        }
+    }
+}

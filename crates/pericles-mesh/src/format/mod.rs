@@ -1,0 +1,111 @@
+//! Formats of meshes and surfaces.
+//!
+//! | ending | format | forms |
+//! |---|---|---|
+//! | `.obj` | Wavefront | text; polygons, negative numbers |
+//! | `.ply` | Stanford polygons | text, binary of either byte order |
+//! | `.stl` | stereolithography | text, binary |
+//! | `.off` | Object File Format | text |
+//! | `.msh` | Gmsh 2.2 and 4.1 | text, binary; physical groups |
+//! | `.vtu`, `.vtp` | VTK XML | text, base64, appended, compressed with zlib |
+//! | `.inp` | Abaqus | text; parts, instances, sets, surfaces |
+//! | `.e`, `.exo`, `.ex2`, `.g`, `.gen` | Exodus II | netCDF classic (CDF-1, CDF-2, CDF-5) |
+//!
+//! A polygon of more than four corners is cut into the triangles of a fan from its first corner. Counts in a file are compared with what is left of it
+//! before anything is allocated.
+
+mod abaqus;
+mod exodus;
+mod gmsh;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+mod vtk;
+
+pub use vtk::{FieldColumn, FieldData, parse_fields};
+
+use std::path::Path;
+
+use crate::fault::Fault;
+use crate::raw::RawMesh;
+
+/// Reads a file that a mesh includes, by the name that stands in the file; the reason why it cannot be read.
+pub type Include<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
+
+/// A format of meshes or surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford PLY.
+    Ply,
+    /// Stereolithography.
+    Stl,
+    /// Object File Format.
+    Off,
+    /// Gmsh 2.2 and 4.1.
+    Gmsh,
+    /// VTK XML: `UnstructuredGrid` or `PolyData`.
+    Vtk,
+    /// Abaqus input file.
+    Abaqus,
+    /// Exodus II.
+    Exodus,
+}
+
+impl Format {
+    /// The endings of files that are read.
+    pub const ENDINGS: [&str; 13] = [
+        "obj", "ply", "stl", "off", "msh", "vtu", "vtp", "inp", "e", "exo", "ex2", "g", "gen",
+    ];
+
+    /// The format of a file by the ending of its name.
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_string_lossy().to_lowercase();
+        Some(match ending.as_str() {
+            "obj" => Self::Obj,
+            "ply" => Self::Ply,
+            "stl" => Self::Stl,
+            "off" => Self::Off,
+            "msh" => Self::Gmsh,
+            "vtu" | "vtp" => Self::Vtk,
+            "inp" => Self::Abaqus,
+            "e" | "exo" | "ex2" | "g" | "gen" => Self::Exodus,
+            _ => return None,
+        })
+    }
+
+    /// Whether the corners of every triangle are given again, so that equal ones have to be merged.
+    pub fn repeats_corners(self) -> bool {
+        self == Self::Stl
+    }
+
+    /// Whether a file may have nodes that belong to other things than its surfaces.
+    pub fn is_mixed(self) -> bool {
+        !matches!(self, Self::Obj | Self::Ply | Self::Stl | Self::Off)
+    }
+
+    /// The mesh in the content of a file. `include` reads the files that an Abaqus file includes. Arrays of VTK files may be compressed and may take `memory`
+    /// bytes; those of other formats take little more than the content.
+    ///
+    /// # Errors
+    /// Content that is not what the format says, with its place.
+    pub fn parse(
+        self,
+        content: &[u8],
+        memory: u64,
+        include: &Include<'_>,
+    ) -> Result<RawMesh, Fault> {
+        match self {
+            Self::Obj => obj::parse(content),
+            Self::Ply => ply::parse(content),
+            Self::Stl => stl::parse(content),
+            Self::Off => off::parse(content),
+            Self::Gmsh => gmsh::parse(content),
+            Self::Vtk => vtk::parse(content, memory),
+            Self::Abaqus => abaqus::parse(content, include),
+            Self::Exodus => exodus::parse(content),
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! Sets of points from groups, face sets and node sets of a mesh.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::{PointOptions, Problem};
+use crate::cell::CellKind;
+use crate::element::facet_measure;
+use crate::raw::{Cells, RawMesh};
+
+/// What defines a set of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SetKind {
+    /// The points are the elements of a group.
+    Elements,
+    /// The points are the elements that own a face of a face set.
+    Faces,
+    /// The points are the elements that have a node of a node set.
+    Nodes,
+}
+
+/// A named set of points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointSet {
+    /// The name: that of the file, made unique.
+    pub name: String,
+    /// What defines it.
+    pub kind: SetKind,
+    /// The points, ascending.
+    pub points: Vec<u32>,
+    /// The area of the faces, m²: of solids, of edges times the thickness. None of other sets.
+    pub area: Option<f64>,
+    /// The faces, as numbers of nodes of the mesh; empty of other sets.
+    pub faces: Cells,
+}
+
+/// A set before it has points.
+struct Definition {
+    name: String,
+    kind: SetKind,
+    points: Vec<u32>,
+    faces: Cells,
+    nodes: Vec<u32>,
+}
+
+impl Definition {
+    fn new(name: &str, kind: SetKind) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            points: Vec::new(),
+            faces: Cells::default(),
+            nodes: Vec::new(),
+        }
+    }
+}
+
+/// All sets, and warnings about them.
+pub(super) fn point_sets(
+    mesh: &RawMesh,
+    dimension: usize,
+    cells: &[u32],
+    options: &PointOptions,
+) -> (Vec<PointSet>, Vec<Problem>) {
+    let mut definitions = definitions(mesh, dimension, cells);
+    let mut warnings = Vec::new();
+    let areas = own_faces(mesh, cells, &mut definitions, &mut warnings);
+    have_nodes(mesh, cells, &mut definitions);
+    // Lengths of edges times the thickness, areas of faces.
+    let scale = match dimension {
+        2 => options.unit * options.thickness,
+        _ => options.unit * options.unit,
+    };
+    let mut sets: Vec<PointSet> = definitions
+        .into_iter()
+        .zip(areas)
+        .filter(|(set, _)| !set.points.is_empty())
+        .map(|(set, area)| PointSet {
+            area: (set.kind == SetKind::Faces).then_some(area * scale),
+            name: set.name,
+            kind: set.kind,
+            points: set.points,
+            faces: set.faces,
+        })
+        .collect();
+    name_uniquely(&mut sets);
+    (sets, warnings)
+}
+
+/// What each group, face set and node set of the mesh defines.
+fn definitions(mesh: &RawMesh, dimension: usize, cells: &[u32]) -> Vec<Definition> {
+    let mut point_of = vec![None; mesh.cells.len()];
+    for (point, &cell) in (0u32..).zip(cells) {
+        point_of[cell as usize] = Some(point);
+    }
+    let mut all = Vec::new();
+    for group in &mesh.groups {
+        let mut elements = Definition::new(&group.name, SetKind::Elements);
+        let mut faces = Definition::new(&group.name, SetKind::Faces);
+        let mut nodes = Definition::new(&group.name, SetKind::Nodes);
+        for &cell in &group.members {
+            let (kind, corners) = (
+                mesh.cells.kind(cell as usize),
+                mesh.cells.corners(cell as usize),
+            );
+            match point_of[cell as usize] {
+                Some(point) => elements.points.push(point),
+                None if kind.dimension() + 1 == dimension => faces.faces.push(kind, corners),
+                None if kind.dimension() + 1 < dimension => nodes.nodes.extend(corners),
+                None => {}
+            }
+        }
+        elements.points.sort_unstable();
+        elements.points.dedup();
+        all.extend([elements, faces, nodes]);
+    }
+    for set in &mesh.face_sets {
+        let mut definition = Definition::new(&set.name, SetKind::Faces);
+        definition.faces = set.faces.clone();
+        all.push(definition);
+    }
+    for set in &mesh.node_sets {
+        let mut definition = Definition::new(&set.name, SetKind::Nodes);
+        definition.nodes = set.members.clone();
+        all.push(definition);
+    }
+    all
+}
+
+/// The corners of a face in ascending order: what two cells that share it agree on.
+type Key = (CellKind, [u32; 4]);
+
+fn key(kind: CellKind, corners: impl Iterator<Item = u32>) -> Key {
+    let mut sorted = [u32::MAX; 4];
+    for (place, corner) in sorted.iter_mut().zip(corners) {
+        *place = corner;
+    }
+    sorted.sort_unstable();
+    (kind, sorted)
+}
+
+/// The sets with a face, and whether an element owns it.
+struct Owned {
+    sets: Vec<u32>,
+    is_owned: bool,
+}
+
+/// Adds the elements that own a face of a face set; gives the area of the faces that are owned, in units of the file.
+fn own_faces(
+    mesh: &RawMesh,
+    cells: &[u32],
+    definitions: &mut [Definition],
+    warnings: &mut Vec<Problem>,
+) -> Vec<f64> {
+    let mut faces: HashMap<Key, Owned> = HashMap::new();
+    let mut on_face = vec![false; mesh.nodes.len()];
+    for (number, set) in (0u32..).zip(definitions.iter()) {
+        for (kind, corners) in set.faces.iter() {
+            let entry = faces.entry(key(kind, corners.iter().copied()));
+            let owned = entry.or_insert(Owned {
+                sets: Vec::new(),
+                is_owned: false,
+            });
+            if owned.sets.last() != Some(&number) {
+                owned.sets.push(number);
+            }
+            for &node in corners {
+                on_face[node as usize] = true;
+            }
+        }
+    }
+    for (point, &cell) in (0u32..).zip(cells) {
+        let corners = mesh.cells.corners(cell as usize);
+        for (kind, places) in mesh.cells.kind(cell as usize).facets() {
+            if !places.iter().all(|&place| on_face[corners[place] as usize]) {
+                continue;
+            }
+            let face = key(*kind, places.iter().map(|&place| corners[place]));
+            if let Some(owned) = faces.get_mut(&face) {
+                owned.is_owned = true;
+                for &set in &owned.sets {
+                    let points = &mut definitions[set as usize].points;
+                    if points.last() != Some(&point) {
+                        points.push(point);
+                    }
+                }
+            }
+        }
+    }
+    let mut areas = Vec::new();
+    for set in definitions.iter() {
+        let (mut area, mut unowned) = (0.0, 0);
+        let mut counted = BTreeSet::new();
+        for (kind, corners) in set.faces.iter() {
+            let face = key(kind, corners.iter().copied());
+            if !counted.insert(face) {
+                continue;
+            }
+            match faces.get(&face) {
+                Some(owned) if owned.is_owned => {
+                    area += facet_measure(kind, &mesh.corner_positions(corners));
+                }
+                _ => unowned += 1,
+            }
+        }
+        if unowned > 0 {
+            warnings.push(Problem::UnownedFaces {
+                name: set.name.clone(),
+                count: unowned,
+            });
+        }
+        areas.push(area);
+    }
+    areas
+}
+
+/// Adds the elements that have a node of a node set.
+fn have_nodes(mesh: &RawMesh, cells: &[u32], definitions: &mut [Definition]) {
+    for set in definitions.iter_mut().filter(|set| !set.nodes.is_empty()) {
+        let mut wanted = vec![false; mesh.nodes.len()];
+        for &node in &set.nodes {
+            wanted[node as usize] = true;
+        }
+        for (point, &cell) in (0u32..).zip(cells) {
+            let mut corners = mesh.cells.corners(cell as usize).iter();
+            if corners.any(|&node| wanted[node as usize]) {
+                set.points.push(point);
+            }
+        }
+    }
+}
+
+/// Elements keep their names, faces and nodes give way; what still is not unique is numbered.
+fn name_uniquely(sets: &mut [PointSet]) {
+    let mut order: Vec<usize> = (0..sets.len()).collect();
+    order.sort_by_key(|&set| sets[set].kind);
+    let mut taken = BTreeSet::new();
+    for set in order {
+        let ending = match sets[set].kind {
+            SetKind::Elements => "elements",
+            SetKind::Faces => "faces",
+            SetKind::Nodes => "nodes",
+        };
+        let base = sets[set].name.clone();
+        let mut name = base.clone();
+        let mut number = 1;
+        while !taken.insert(name.clone()) {
+            name = match number {
+                1 => format!("{base} ({ending})"),
+                _ => format!("{base} ({ending} {number})"),
+            };
+            number += 1;
+        }
+        sets[set].name = name;
+    }
+}

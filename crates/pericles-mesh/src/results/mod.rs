@@ -1,0 +1,137 @@
+//! Results of a run in one file that grows output by output: Exodus II and VTKHDF.
+//!
+//! | format | readers | a killed run leaves | resuming |
+//! |---|---|---|---|
+//! | Exodus II ([`ExodusWriter`]) | ParaView, VisIt, VTK, Ensight, scripts | a whole file of the outputs before | after any number of outputs, with the same bytes |
+//! | VTKHDF ([`VtkHdfWriter`]) | VTK 9.3 and ParaView 5.12 or newer; h5py | a whole file of the outputs before | the same |
+//!
+//! Arrays are component-major: component c of point i is entry c · n + i. Vectors of two components get a third one of zeros.
+
+mod cdf;
+mod exodus;
+mod hdf5;
+mod vtkhdf;
+
+pub use exodus::{ExodusLayout, ExodusWriter, PointList};
+pub use vtkhdf::{VtkHdfLayout, VtkHdfWriter};
+
+use std::io::{self, Seek, SeekFrom, Write};
+
+/// A field on the points.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldSpec {
+    /// Its name.
+    pub name: String,
+    /// 1 of scalars, 2 or 3 of vectors, 6 of symmetric tensors (xx, yy, zz, xy, yz, xz), or any other number.
+    pub components: usize,
+}
+
+impl FieldSpec {
+    /// A field.
+    pub fn new(name: impl Into<String>, components: usize) -> Self {
+        Self {
+            name: name.into(),
+            components,
+        }
+    }
+
+    /// The number of numbers that are written for each point.
+    fn columns(&self) -> usize {
+        match self.components {
+            2 => 3,
+            components => components,
+        }
+    }
+}
+
+/// Why results are not written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The system's reason.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// Data that do not fit together or cannot be stored.
+    #[error("{0}")]
+    Unsuitable(String),
+    /// A file that is to be continued is not of this run.
+    #[error("the file cannot be continued: {0}")]
+    NotContinued(String),
+}
+
+fn unsuitable<T>(reason: impl Into<String>) -> Result<T, WriteError> {
+    Err(WriteError::Unsuitable(reason.into()))
+}
+
+/// Checks that every field has components.
+fn check_fields<'a>(fields: impl IntoIterator<Item = &'a FieldSpec>) -> Result<(), WriteError> {
+    for field in fields {
+        if field.components == 0 {
+            return unsuitable(format!("the field {:?} has no components", field.name));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that there is an array for each field, with a number for each component of each point.
+fn check_values(fields: &[FieldSpec], values: &[&[f64]], points: usize) -> Result<(), WriteError> {
+    if fields.len() != values.len() {
+        return unsuitable(format!(
+            "{} arrays are given for {} fields",
+            values.len(),
+            fields.len()
+        ));
+    }
+    for (field, values) in fields.iter().zip(values) {
+        if values.len() != field.components * points {
+            return unsuitable(format!(
+                "the field {:?} has {} numbers; {points} points of {} components need {}",
+                field.name,
+                values.len(),
+                field.components,
+                field.components * points
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Size of numbers and order of bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Numbers {
+    is_single: bool,
+    is_little: bool,
+}
+
+impl Numbers {
+    fn bytes(self) -> u64 {
+        if self.is_single { 4 } else { 8 }
+    }
+
+    /// Writes so many numbers at a place of a file.
+    fn write_at(
+        self,
+        file: &mut (impl Write + Seek),
+        place: u64,
+        count: usize,
+        number: impl Fn(usize) -> f64,
+    ) -> io::Result<()> {
+        const BLOCK: usize = 8192;
+        file.seek(SeekFrom::Start(place))?;
+        let mut bytes = Vec::with_capacity(8 * BLOCK);
+        for begin in (0..count).step_by(BLOCK) {
+            bytes.clear();
+            for k in begin..count.min(begin + BLOCK) {
+                let x = number(k);
+                match (self.is_single, self.is_little) {
+                    (true, true) => bytes.extend_from_slice(&(x as f32).to_le_bytes()),
+                    (true, false) => bytes.extend_from_slice(&(x as f32).to_be_bytes()),
+                    (false, true) => bytes.extend_from_slice(&x.to_le_bytes()),
+                    (false, false) => bytes.extend_from_slice(&x.to_be_bytes()),
+                }
+            }
+            file.write_all(&bytes)?;
+        }
+        Ok(())
+    }
+}

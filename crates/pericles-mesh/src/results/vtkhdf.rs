@@ -1,0 +1,460 @@
+//! VTKHDF 2.0: an unstructured grid of points with fields over time, in one HDF5 file.
+//!
+//! The number of outputs is known before the run, so the file is laid out once and every number has a known place. The points are stored once, as one cell of
+//! the type poly-vertex. Readers believe the number of steps, which two headers in one page hold: the length of `Steps/Values` and the attribute `NSteps`. They are
+//! written together after each output, so that a killed run leaves a whole file. Before the first output the file has another name, for a file without
+//! steps cannot be read.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use super::hdf5::{Kind, MOST_MEMBERS, Object, Skeleton, Type, Value, header_of};
+use super::{FieldSpec, Numbers, WriteError, check_fields, check_values, unsuitable};
+
+/// A page: headers that change are written in one piece of it.
+const PAGE: u64 = 4096;
+
+/// Bytes of a page for the header of the values; that of the steps follows.
+const HALF: u64 = 512;
+
+/// What a file holds.
+#[derive(Debug, Clone)]
+pub struct VtkHdfLayout<'a> {
+    /// Number of coordinates of a point.
+    pub dimension: usize,
+    /// Positions, component-major, m.
+    pub positions: &'a [f64],
+    /// Fields on the points.
+    pub fields: Vec<FieldSpec>,
+    /// Fields that do not change, with their component-major values: volumes, materials.
+    pub constants: Vec<(FieldSpec, &'a [f64])>,
+    /// The number of outputs of the whole run.
+    pub outputs: usize,
+    /// Whether numbers are written with four bytes in place of eight.
+    pub is_single: bool,
+}
+
+impl VtkHdfLayout<'_> {
+    fn points(&self) -> usize {
+        self.positions.len() / self.dimension.max(1)
+    }
+
+    fn check(&self) -> Result<(), WriteError> {
+        if !(1..=3).contains(&self.dimension)
+            || self.positions.is_empty()
+            || !self.positions.len().is_multiple_of(self.dimension)
+        {
+            return unsuitable(format!(
+                "{} coordinates are given for points of {} dimensions",
+                self.positions.len(),
+                self.dimension
+            ));
+        }
+        if self.outputs == 0 {
+            return unsuitable("the number of outputs is 0; it must be 1 at least");
+        }
+        let constants = self.constants.iter().map(|(field, _)| field);
+        let all: Vec<&FieldSpec> = self.fields.iter().chain(constants).collect();
+        check_fields(all.iter().copied())?;
+        for (field, values) in &self.constants {
+            check_values(std::slice::from_ref(field), &[values], self.points())?;
+        }
+        if all.len() > MOST_MEMBERS {
+            return unsuitable(format!(
+                "{} fields; at most {MOST_MEMBERS} are possible",
+                all.len()
+            ));
+        }
+        for (k, field) in all.iter().enumerate() {
+            if field.name.is_empty() || field.name.contains(['/', '\0']) || field.name == "." {
+                return unsuitable(format!("{:?} cannot be the name of a field", field.name));
+            }
+            if all[..k].iter().any(|other| other.name == field.name) {
+                return unsuitable(format!("two fields have the name {:?}", field.name));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Places of numbers in the file.
+struct Plan {
+    skeleton: Skeleton,
+    file_bytes: u64,
+    values: Object,
+    steps: Object,
+    points: u64,
+    connectivity: u64,
+    fields: Vec<u64>,
+    constants: Vec<u64>,
+    /// Small arrays with their numbers.
+    small: Vec<(u64, Vec<i64>)>,
+    types: u64,
+}
+
+/// Hands out places of data behind the metadata.
+struct Space {
+    next: u64,
+}
+
+impl Space {
+    fn dataset(
+        &mut self,
+        name: &str,
+        kind: Type,
+        lengths: &[u64],
+    ) -> Result<(Object, u64), WriteError> {
+        let bytes = lengths
+            .iter()
+            .try_fold(kind.bytes(), |bytes, &length| bytes.checked_mul(length));
+        let place = self.next.next_multiple_of(64);
+        let end = bytes.and_then(|bytes| place.checked_add(bytes));
+        let (Some(bytes), Some(end)) = (bytes, end.filter(|&end| end < 1 << 62)) else {
+            return unsuitable(format!("{name} would take more bytes than a file can have"));
+        };
+        self.next = end;
+        let object = Object {
+            name: name.to_owned(),
+            attributes: Vec::new(),
+            kind: Kind::Dataset(kind, lengths.to_vec(), place, bytes),
+            header: None,
+        };
+        Ok((object, place))
+    }
+}
+
+/// Lengths of an array of so many rows.
+fn lengths(rows: u64, field: &FieldSpec) -> Vec<u64> {
+    match field.columns() {
+        1 => vec![rows],
+        columns => vec![rows, columns as u64],
+    }
+}
+
+/// The metadata take less than this, whatever the fields are.
+const METADATA: u64 = 1 << 18;
+
+impl Plan {
+    fn new(layout: &VtkHdfLayout<'_>) -> Result<Self, WriteError> {
+        let (n, outputs) = (layout.points() as u64, layout.outputs as u64);
+        let real = if layout.is_single {
+            Type::F32
+        } else {
+            Type::F64
+        };
+        let mut space = Space { next: METADATA };
+        let mut small = Vec::new();
+        let mut small_array =
+            |space: &mut Space, name: &str, lengths: &[u64], numbers: Vec<i64>| {
+                let (object, place) = space.dataset(name, Type::I64, lengths)?;
+                small.push((place, numbers));
+                Ok::<Object, WriteError>(object)
+            };
+        let zeros = || vec![0; layout.outputs];
+        let (values, _) = space.dataset("Values", Type::F64, &[outputs])?;
+        let values = values.at(PAGE);
+        let mut steps = vec![
+            small_array(
+                &mut space,
+                "NumberOfParts",
+                &[outputs],
+                vec![1; layout.outputs],
+            )?,
+            small_array(&mut space, "PartOffsets", &[outputs], zeros())?,
+            small_array(&mut space, "PointOffsets", &[outputs], zeros())?,
+            small_array(&mut space, "CellOffsets", &[outputs, 1], zeros())?,
+            small_array(&mut space, "ConnectivityIdOffsets", &[outputs, 1], zeros())?,
+        ];
+        let mut offsets = Vec::new();
+        for field in &layout.fields {
+            let rows = (0..outputs).map(|k| (k * n) as i64).collect();
+            offsets.push(small_array(&mut space, &field.name, &[outputs], rows)?);
+        }
+        for (field, _) in &layout.constants {
+            offsets.push(small_array(&mut space, &field.name, &[outputs], zeros())?);
+        }
+        let count = |number: u64| vec![number as i64];
+        let mut members = vec![
+            small_array(&mut space, "NumberOfPoints", &[1], count(n))?,
+            small_array(&mut space, "NumberOfCells", &[1], count(1))?,
+            small_array(&mut space, "NumberOfConnectivityIds", &[1], count(n))?,
+            small_array(&mut space, "Offsets", &[2], vec![0, n as i64])?,
+        ];
+        let (types, types_place) = space.dataset("Types", Type::U8, &[1])?;
+        let (points, points_place) = space.dataset("Points", real, &[n, 3])?;
+        let (connectivity, connectivity_place) = space.dataset("Connectivity", Type::I64, &[n])?;
+        members.extend([types, points, connectivity]);
+        let (mut data, mut fields, mut constants) = (vec![], vec![], vec![]);
+        for (field, _) in &layout.constants {
+            let (object, place) = space.dataset(&field.name, real, &lengths(n, field))?;
+            data.push(object);
+            constants.push(place);
+        }
+        for field in &layout.fields {
+            let (object, place) = space.dataset(&field.name, real, &lengths(outputs * n, field))?;
+            data.push(object);
+            fields.push(place);
+        }
+        steps.push(values.clone());
+        steps.push(Object::group("PointDataOffsets", offsets));
+        let steps = Object::group("Steps", steps)
+            .with("NSteps", Value::Number(layout.outputs as i64))
+            .at(PAGE + HALF);
+        members.push(Object::group("PointData", data));
+        members.push(steps.clone());
+        let root = Object::group(
+            "/",
+            vec![
+                Object::group("VTKHDF", members)
+                    .with("Version", Value::Numbers(vec![2, 0]))
+                    .with("Type", Value::Text("UnstructuredGrid")),
+            ],
+        );
+        let skeleton = Skeleton::new(&root, 2 * PAGE as usize, space.next);
+        if skeleton.bytes().len() as u64 > METADATA {
+            return unsuitable("the names of the fields are too long");
+        }
+        Ok(Self {
+            skeleton,
+            file_bytes: space.next,
+            values,
+            steps,
+            points: points_place,
+            connectivity: connectivity_place,
+            fields,
+            constants,
+            small,
+            types: types_place,
+        })
+    }
+
+    /// The page with the two headers that hold the number of steps.
+    fn page(&self, outputs: u64) -> Vec<u8> {
+        let mut values = self.values.clone();
+        if let Kind::Dataset(_, lengths, ..) = &mut values.kind {
+            *lengths = vec![outputs];
+        }
+        let mut steps = self.steps.clone();
+        steps.attributes = vec![("NSteps", Value::Number(outputs as i64))];
+        let mut page = header_of(&values, None);
+        page.resize(HALF as usize, 0);
+        page.extend(header_of(
+            &steps,
+            Some(self.skeleton.places_of(PAGE + HALF)),
+        ));
+        page
+    }
+
+    fn values_place(&self) -> u64 {
+        match self.values.kind {
+            Kind::Dataset(_, _, place, _) => place,
+            Kind::Group(_) => 0,
+        }
+    }
+}
+
+/// A file with room for all outputs of a run.
+pub struct VtkHdfWriter {
+    file: File,
+    plan: Plan,
+    /// The name until the first output, and the one from then on.
+    hidden: Option<(PathBuf, PathBuf)>,
+    fields: Vec<FieldSpec>,
+    points: usize,
+    numbers: Numbers,
+    most: usize,
+    outputs: usize,
+}
+
+/// The name of a file before its first output.
+fn hidden_name(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+impl VtkHdfWriter {
+    /// Makes a file without outputs; it gets its name with the first one.
+    ///
+    /// # Errors
+    /// A file that cannot be written, arrays that do not fit together, names that HDF5 cannot hold.
+    pub fn create(path: impl AsRef<Path>, layout: &VtkHdfLayout<'_>) -> Result<Self, WriteError> {
+        layout.check()?;
+        let path = path.as_ref();
+        let plan = Plan::new(layout)?;
+        let hidden = hidden_name(path);
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(true)
+            .open(&hidden)?;
+        file.write_all(plan.skeleton.bytes())?;
+        // Readers refuse a file that is shorter than it says; what is not written takes no room on most systems.
+        file.set_len(plan.file_bytes)?;
+        let mut writer = Self::of(file, plan, layout);
+        writer.hidden = Some((hidden, path.to_path_buf()));
+        writer.write_constants(layout)?;
+        Ok(writer)
+    }
+
+    fn of(file: File, plan: Plan, layout: &VtkHdfLayout<'_>) -> Self {
+        Self {
+            file,
+            plan,
+            hidden: None,
+            fields: layout.fields.clone(),
+            points: layout.points(),
+            numbers: Numbers {
+                is_single: layout.is_single,
+                is_little: true,
+            },
+            most: layout.outputs,
+            outputs: 0,
+        }
+    }
+
+    fn write_constants(&mut self, layout: &VtkHdfLayout<'_>) -> Result<(), WriteError> {
+        let n = self.points;
+        for (place, numbers) in &self.plan.small {
+            let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+            self.file.seek(SeekFrom::Start(*place))?;
+            self.file.write_all(&bytes)?;
+        }
+        self.file.seek(SeekFrom::Start(self.plan.types))?;
+        // The type of a poly-vertex.
+        self.file.write_all(&[2])?;
+        let positions = layout.positions;
+        let coordinate = |k: usize| match k % 3 < layout.dimension {
+            true => positions[(k % 3) * n + k / 3],
+            false => 0.0,
+        };
+        self.numbers
+            .write_at(&mut self.file, self.plan.points, 3 * n, coordinate)?;
+        self.file.seek(SeekFrom::Start(self.plan.connectivity))?;
+        for begin in (0..n as u64).step_by(8192) {
+            let end = (begin + 8192).min(n as u64);
+            let bytes: Vec<u8> = (begin..end).flat_map(u64::to_le_bytes).collect();
+            self.file.write_all(&bytes)?;
+        }
+        for ((field, values), &place) in layout.constants.iter().zip(&self.plan.constants) {
+            write_rows(&mut self.file, self.numbers, place, field, values, n)?;
+        }
+        Ok(())
+    }
+
+    /// Continues a file after a number of outputs.
+    ///
+    /// # Errors
+    /// A file that cannot be written, is of another layout, or holds fewer outputs.
+    pub fn resume(
+        path: impl AsRef<Path>,
+        layout: &VtkHdfLayout<'_>,
+        outputs: usize,
+    ) -> Result<Self, WriteError> {
+        if outputs == 0 {
+            let path = path.as_ref();
+            let writer = Self::create(path, layout)?;
+            if path.exists() {
+                std::fs::remove_file(path)?;
+            }
+            return Ok(writer);
+        }
+        layout.check()?;
+        let plan = Plan::new(layout)?;
+        let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+        let other = || WriteError::NotContinued("its layout is that of another run".into());
+        if file.metadata()?.len() != plan.file_bytes {
+            return Err(other());
+        }
+        let mut found = vec![0; plan.skeleton.bytes().len()];
+        file.read_exact(&mut found)?;
+        // Only the number of steps may differ.
+        let page = PAGE as usize;
+        let held = (1..=layout.outputs).find(|&k| {
+            let own = plan.page(k as u64);
+            found[page..page + own.len()] == own
+        });
+        let ours = plan.skeleton.bytes();
+        let length = plan.page(1).len();
+        let same = found[..page] == ours[..page] && found[page + length..] == ours[page + length..];
+        let Some(held) = held.filter(|_| same) else {
+            return Err(other());
+        };
+        if held < outputs {
+            return Err(WriteError::NotContinued(format!(
+                "it holds {held} outputs; {outputs} are needed"
+            )));
+        }
+        let mut writer = Self::of(file, plan, layout);
+        writer.outputs = outputs;
+        writer.publish()?;
+        Ok(writer)
+    }
+
+    /// The number of outputs.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Writes an output: the time (s), and a component-major array for each field.
+    ///
+    /// # Errors
+    /// A file that cannot be written, arrays that do not fit together, more outputs than were announced.
+    pub fn append(&mut self, time: f64, values: &[&[f64]]) -> Result<(), WriteError> {
+        check_values(&self.fields, values, self.points)?;
+        if self.outputs == self.most {
+            return unsuitable(format!(
+                "the file has room for {} outputs, which are all written",
+                self.most
+            ));
+        }
+        let output = self.outputs as u64;
+        for ((field, values), place) in self.fields.iter().zip(values).zip(&self.plan.fields) {
+            let row = field.columns() as u64 * self.numbers.bytes();
+            let place = place + output * self.points as u64 * row;
+            write_rows(
+                &mut self.file,
+                self.numbers,
+                place,
+                field,
+                values,
+                self.points,
+            )?;
+        }
+        self.file
+            .seek(SeekFrom::Start(self.plan.values_place() + 8 * output))?;
+        self.file.write_all(&time.to_le_bytes())?;
+        self.outputs += 1;
+        self.publish()
+    }
+
+    /// Writes the number of steps, and gives the file its name after the first.
+    fn publish(&mut self) -> Result<(), WriteError> {
+        self.file.seek(SeekFrom::Start(PAGE))?;
+        self.file.write_all(&self.plan.page(self.outputs as u64))?;
+        if let Some((hidden, path)) = self.hidden.take() {
+            std::fs::rename(hidden, path)?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes a field point by point.
+fn write_rows(
+    file: &mut File,
+    numbers: Numbers,
+    place: u64,
+    field: &FieldSpec,
+    values: &[f64],
+    points: usize,
+) -> Result<(), WriteError> {
+    let columns = field.columns();
+    let number = |k: usize| match k % columns < field.components {
+        true => values[(k % columns) * points + k / columns],
+        false => 0.0,
+    };
+    numbers.write_at(file, place, columns * points, number)?;
+    Ok(())
+}
