@@ -36,12 +36,12 @@
 //! let bonds = BondList::new(&cloud, steel.horizon, steel.volume_correction)?;
 //! let force = BondForce::<BondStretch, 1>::new(
 //!     cloud.clone(), bonds, &steel, &constants, &[], DamageMeasure::default(),
-//! );
+//! )?;
 //! let system = System::new(cloud.clone(), Box::new(force), PointScalar::Uniform(steel.density))?;
 //! let mut start = State::at_rest(cloud.len());
 //! start.v[..100].fill(1.0);
 //! let dt = highest_frequency(&system, &start.u)?.stable_step(2.0, 0.95);
-//! let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, 500);
+//! let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, 500)?;
 //! run.run(|_| Control::Continue)?;
 //! let energies = run.snapshot().energies();
 //! assert!(energies.balance().abs() < 1e-6 * energies.initial);
@@ -51,6 +51,7 @@
 mod accounts;
 pub mod archive;
 pub mod bench;
+mod body;
 pub mod boundary;
 mod breaking;
 pub mod cache;
@@ -67,6 +68,7 @@ pub mod noise;
 pub mod observe;
 pub mod operator;
 pub mod parallel;
+pub mod prelude;
 pub mod round_trip;
 mod scalar;
 mod simulation;
@@ -82,12 +84,15 @@ pub mod units;
 
 pub use accounts::Ledger;
 pub use archive::{Archive, Saved, Values};
+pub use body::Body;
 pub use compatibility::{Need, Requirement, require};
 pub use error::{PericlesError, Result, positive};
 pub use guard::Cause;
 pub use interrupt::Interrupt;
 pub use scalar::PointScalar;
-pub use simulation::{Control, Outcome, Simulation, SimulationError, check_compatibility};
+pub use simulation::{
+    Control, Outcome, Simulation, SimulationBuilder, SimulationError, check_compatibility,
+};
 pub use step_end::{BreakingBond, Path, StepEnd};
 pub use step_kind::{StepKind, schemes_of};
 pub use stop::{Found, StopCondition, StopReason, StopWhen};

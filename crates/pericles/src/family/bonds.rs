@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::search::{bond_vector, distance, pairs_where, pairs_within};
 use super::{Crack, EndRule, VolumeCorrection};
-use crate::error::{PericlesError, Result};
+use crate::error::{PericlesError, Result, positive};
 use crate::lanes::LANES;
-use crate::space::{PointCloud, PointSet};
+use crate::space::{PointCloud, PointSet, check_length};
 
 /// What a crack removed.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,8 +58,9 @@ impl BondList {
     /// The families of a cloud.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour at all.
+    /// A horizon that is not positive, or that reaches no neighbour at all.
     pub fn new(cloud: &PointCloud, horizon: f64, correction: VolumeCorrection) -> Result<Self> {
+        positive("the horizon", horizon)?;
         let reach = correction.reach(horizon, cloud.spacing());
         let (row_start, pairs) = pairs_within(cloud, reach);
         if pairs.is_empty() {
@@ -80,16 +81,16 @@ impl BondList {
     /// The families of a cloud whose points have different horizons: a bond exists if it is within reach of one of its ends.
     ///
     /// # Errors
-    /// Horizons that reach no neighbour at all.
-    ///
-    /// # Panics
-    /// If there is not one horizon for each point.
+    /// Horizons that are not positive, not one for each point, or that reach no neighbour at all.
     pub fn with_horizons(
         cloud: &PointCloud,
         horizons: Vec<f64>,
         correction: VolumeCorrection,
     ) -> Result<Self> {
-        assert_eq!(horizons.len(), cloud.len(), "one horizon for each point");
+        check_length("the horizons of the points", horizons.len(), cloud.len())?;
+        for &horizon in &horizons {
+            positive("the horizon", horizon)?;
+        }
         let largest = horizons.iter().copied().fold(0.0, f64::max);
         let wanted = |i: usize, j: usize, distance: f64| {
             let cell = mean_cell(cloud, i, j);

@@ -10,7 +10,7 @@ use crate::material::{
     BondConstants, BondMaterial, BondStretch, CubicLaw, GreenBond, LinearBond, LiteralBond,
     PairLaw, SecondOrder, Trapezoidal, Treated, Treatment,
 };
-use crate::space::PointCloud;
+use crate::space::{PointCloud, check_length};
 
 /// A body of one bond-based material: all that its operator is made of.
 #[derive(Debug, Clone)]
@@ -166,7 +166,10 @@ impl BondBody<'_> {
         }
     }
 
-    fn operator_of<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+    pub(super) fn operator_of<L: FastLaw, const D: usize>(
+        &self,
+        form: BondForm,
+    ) -> Result<AssembledBonds> {
         let form = match form {
             BondForm::Fastest => self.fastest_form(),
             chosen => chosen,
@@ -214,8 +217,20 @@ impl BondBody<'_> {
         )
     }
 
+    fn check_stiffness(&self) -> Result<()> {
+        match self.stiffness {
+            [] => Ok(()),
+            given => check_length(
+                "the stiffnesses of the points",
+                given.len(),
+                self.cloud.len(),
+            ),
+        }
+    }
+
     /// The families without the bonds that pre-cracks cut, and what each crack removed.
     pub(super) fn families(&self) -> Result<(BondList, Vec<Cut>)> {
+        self.check_stiffness()?;
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self
@@ -250,7 +265,7 @@ impl BondBody<'_> {
                 no_fail: self.no_fail,
             },
             self.damage,
-        );
+        )?;
         Ok((list, cuts))
     }
 }

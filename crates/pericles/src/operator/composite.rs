@@ -7,6 +7,7 @@ use crate::material::{
     BondStretch, GreenBond, LinearBond, LiteralBond, PairClasses, PairLaw, SurfaceCorrection,
 };
 use crate::operator::fast_law::FastLaw;
+use crate::space::check_length;
 
 /// A body of several materials, or with corrected surfaces; always kept as a list.
 ///
@@ -90,7 +91,7 @@ impl CompositeBody<'_> {
         }
     }
 
-    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
+    pub(super) fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
         let BondBody {
             cloud,
             material,
@@ -98,6 +99,13 @@ impl CompositeBody<'_> {
             stiffness,
             ..
         } = self.body;
+        if let Some(classes) = self.classes {
+            check_length(
+                "the materials of the points",
+                classes.of_point().len(),
+                cloud.len(),
+            )?;
+        }
         let (bonds, cuts) = self.body.families()?;
         let factors = self.correction.factors(cloud, &bonds, material);
         let inclusion = |i: usize, j: usize| match stiffness {
@@ -124,7 +132,7 @@ impl CompositeBody<'_> {
             &stiffness_of_pair,
             breaking,
             self.body.damage,
-        );
+        )?;
         let list = match self.classes {
             Some(classes) => list.with_critical_stretches(classes.clone()),
             None => list,

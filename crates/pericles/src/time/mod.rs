@@ -59,7 +59,12 @@ pub struct State {
 }
 
 impl State {
-    /// A body at rest in its reference position at t = 0.
+    /// The body of a system, undeformed and at rest at t = 0.
+    pub fn of(system: &System) -> Self {
+        Self::at_rest(system.dimension() * system.points())
+    }
+
+    /// The same of a body with so many entries, dimension times points.
     pub fn at_rest(entries: usize) -> Self {
         Self {
             t: 0.0,
