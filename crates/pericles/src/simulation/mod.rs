@@ -93,7 +93,7 @@ impl Simulation {
     /// A run of `steps` steps of length `dt` from the given state, which is prepared by the integrator. [`Simulation::builder`] finds steps and scheme by itself.
     ///
     /// # Errors
-    /// A state of another body, a step that is not positive.
+    /// A state or an integrator of another body, a step that is not positive.
     pub fn new(
         mut system: System,
         mut integrator: Box<dyn Integrator>,
@@ -109,6 +109,10 @@ impl Simulation {
             ("the acceleration of the state", &state.a),
         ] {
             check_length(what, given.len(), entries)?;
+        }
+        if let Some(made_for) = integrator.vector_length() {
+            let what = "the vectors of a time integrator that was made for another system";
+            check_length(what, made_for, entries)?;
         }
         integrator.start(&mut system, &mut state);
         let start = StartEnergy {

@@ -124,6 +124,11 @@ pub trait Integrator: Saved + Send {
     /// Name as in decks.
     fn name(&self) -> &'static str;
 
+    /// Entries of the vectors that it was made for, dimension times points; none if it steps any body. A run of another body refuses it.
+    fn vector_length(&self) -> Option<usize> {
+        None
+    }
+
     /// Where within a step it takes the forces: what boundaries with a memory depend on.
     fn step_kind(&self) -> StepKind {
         StepKind::Stages

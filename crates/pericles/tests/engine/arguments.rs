@@ -8,7 +8,7 @@ use pericles::material::{BondStretch, PairClasses};
 use pericles::observe::Probe;
 use pericles::operator::{BondForce, Breaking, DamageMeasure, GridForce};
 use pericles::prelude::*;
-use pericles::time::{highest_frequency, highest_frequency_on};
+use pericles::time::{RungeKutta, Tableau, highest_frequency, highest_frequency_on};
 use pericles::{PointScalar, StopCondition, StopWhen};
 
 fn cloud(cells: usize) -> Arc<PointCloud> {
@@ -216,6 +216,10 @@ fn states_and_steps_must_fit_the_system() {
     state.v.pop();
     let run = Simulation::new(system(), Box::new(VelocityVerlet), state.clone(), 0.1, 5);
     refused(run, "the velocity of the state: 9 entries");
+    let other = Body::new(cloud(9), material()).build().unwrap();
+    let scheme = RungeKutta::new(&Tableau::rk4(), &other);
+    let run = Simulation::new(system(), Box::new(scheme), State::at_rest(10), 0.1, 5);
+    refused(run, "made for another system: 9 entries");
     let build = || Simulation::builder(system());
     refused(build().state(state), "the velocity of the state");
     refused(build().velocity_of(&vec![10], [1.0; 3]), "point 10");
