@@ -84,7 +84,7 @@ fn lattice<const D: usize>(
                 |_| 1.0,
                 breaking,
                 DamageMeasure::default(),
-            );
+            ).unwrap();
             group.bench_function(BenchmarkId::new("bond list", m), |b| {
                 b.iter(|| list.apply_into(black_box(&u), &mut out));
             });

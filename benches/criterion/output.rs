@@ -14,7 +14,7 @@ fn output(criterion: &mut Criterion) {
     let case = Case::new("", vec![60; 3], BondForm::Grid);
     let (system, state) = case.system().expect("the case is sound");
     let points = system.points() as u64;
-    let simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 1e-9, 1);
+    let simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 1e-9, 1).unwrap();
     let mut group = criterion.benchmark_group("output");
     group
         .sample_size(10)

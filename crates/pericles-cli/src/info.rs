@@ -78,9 +78,16 @@ pub(crate) fn status(results: &Results) -> String {
 fn origin(results: &Results) -> Vec<(&'static str, String)> {
     let overrides = results.texts("/deck/overrides");
     let overrides: String = overrides.map(|set| format!(" --set {set}")).collect();
+    let source = match results.value("/deck") {
+        Some(_) => ("deck", format!("{}{overrides}", results.text("/deck/file"))),
+        None => (
+            "model",
+            "written by a program; run.json has it under model_data".into(),
+        ),
+    };
     let used = results.count("/program/threads");
     vec![
-        ("deck", format!("{}{overrides}", results.text("/deck/file"))),
+        source,
         (
             "program",
             format!(

@@ -67,22 +67,7 @@ fn page(results: &Results) -> Result<String, CliError> {
         page.heading("Audit of energy and momentum (SI units)");
         page.values(results.value("/audit"));
     }
-    page.heading("Deck");
-    let overrides: Vec<&str> = results.texts("/deck/overrides").collect();
-    page.text(format_args!(
-        "<p>{}</p>\n",
-        escaped(results.text("/deck/file"))
-    ));
-    if !overrides.is_empty() {
-        page.text(format_args!(
-            "<p>Changed on the command line: {}</p>\n",
-            escaped(&overrides.join(", "))
-        ));
-    }
-    page.text(format_args!(
-        "<pre>{}</pre>\n",
-        escaped(results.text("/deck/source"))
-    ));
+    page.source(results);
     page.heading("Machine");
     page.values(results.value("/program"));
     page.values(results.value("/progress"));
@@ -97,6 +82,34 @@ struct Page {
 }
 
 impl Page {
+    /// The deck as it was given, or the model as JSON.
+    fn source(&mut self, results: &Results) {
+        if let Some(model) = results.value("/model_data/model") {
+            self.heading("Model data");
+            self.text(format_args!(
+                "<pre>{}</pre>\n",
+                escaped(&format!("{model:#}"))
+            ));
+            return;
+        }
+        self.heading("Deck");
+        let overrides: Vec<&str> = results.texts("/deck/overrides").collect();
+        self.text(format_args!(
+            "<p>{}</p>\n",
+            escaped(results.text("/deck/file"))
+        ));
+        if !overrides.is_empty() {
+            self.text(format_args!(
+                "<p>Changed on the command line: {}</p>\n",
+                escaped(&overrides.join(", "))
+            ));
+        }
+        self.text(format_args!(
+            "<pre>{}</pre>\n",
+            escaped(results.text("/deck/source"))
+        ));
+    }
+
     fn text(&mut self, text: std::fmt::Arguments<'_>) {
         // A string takes any text.
         let _ = self.html.write_fmt(text);

@@ -2,7 +2,7 @@
 
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
-use pericles_run::{Assembled, Deadline, DeckText, Run};
+use pericles_run::{Assembled, Deadline, Run, Source};
 
 use crate::args::{ResumeArgs, RunArgs};
 use crate::charts;
@@ -28,17 +28,18 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let deadline = Deadline::from_now(args.options.limits.wall_time);
     args.options.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let text = DeckText::of(&deck, args.deck.display().to_string());
+    let file = args.deck.display().to_string();
     let quiet = args.options.execution.quiet;
     if !quiet {
-        console::note(format_args!("{}: building the model", text.file));
+        console::note(format_args!("{file}: building the model"));
     }
+    let source = Source::of_deck(deck, file);
     // The folder is made once nothing in the deck can be wrong any more.
     let mut screen = Screen::new(quiet);
     let means = args.options.means();
-    let assembled = Assembled::of(&deck, &means, &mut |event| screen.show(event))?;
+    let assembled = Assembled::of(&source, &means, &mut |event| screen.show(event))?;
     let folder = output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")?;
-    let run = Run::begin(&deck, text, assembled, folder)?;
+    let run = Run::begin(&source, assembled, folder)?;
     drive(run, deadline, quiet, args.chart)
 }
 

@@ -1,18 +1,18 @@
 //! From a deck or a model to its assembly, with the means that a machine has: a cache, memory, readers of files beside the deck.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use pericles::cache::{Cache, NoCache};
-use pericles_deck::{Deck, Model};
 use pericles_io::{
     DiskCache, IoError, MeshError, PointsError, RowsError, read_points, read_rows, read_surface,
 };
 
-use crate::build::{Assembly, FileError, Resources, assemble, build, discretise};
+use crate::build::{Assembly, FileError, Resources, assemble, discretise};
 use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
 use crate::machine;
+use crate::source::Source;
 
 /// What a model may be made with.
 #[derive(Debug, Clone)]
@@ -64,35 +64,25 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Discretises and assembles the model of a deck; what takes long to compute comes from the cache if it is there.
+    /// Discretises and assembles the model of a source. Results that take long to compute are read from the cache if it has them.
     ///
     /// # Errors
-    /// A deck that is refused.
-    pub fn of(deck: &Deck, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
-        let assembly = means.with_resources(tell, |resources| build(deck, resources))?;
-        let facts = Facts::of_deck(deck, &assembly);
-        Ok(Self { assembly, facts })
-    }
-
-    /// Discretises and assembles a model without a deck; `folder` is where its relative paths start.
-    ///
-    /// # Errors
-    /// A model that is refused.
-    pub fn of_model(
-        model: &Model,
-        folder: &Path,
-        means: &Means,
-        tell: Tell<'_>,
-    ) -> Result<Self, RunError> {
+    /// A deck or model that is refused.
+    pub fn of(source: &Source, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
+        let model = source.model();
         let assembly = means.with_resources(tell, |resources| {
             let resources = Resources {
-                folder,
+                folder: source.folder(),
                 ..*resources
             };
             let discretisation = discretise(model, &resources)?;
             assemble(model, discretisation, &resources)
-        })?;
-        let facts = Facts::of(model, &assembly);
+        });
+        let assembly = assembly.map_err(|error| source.refusal(error))?;
+        let facts = match source {
+            Source::Deck { deck, .. } => Facts::of_deck(deck, &assembly),
+            Source::Model(_) => Facts::of(model, &assembly),
+        };
         Ok(Self { assembly, facts })
     }
 }

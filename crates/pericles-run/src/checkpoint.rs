@@ -13,8 +13,8 @@ use pericles_deck::Checkpoint;
 use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
-use crate::deck_text::DeckText;
 use crate::error::RunError;
+use crate::source::SourceRecord;
 
 /// The state of a run that became unstable.
 pub const FAILED: &str = "failed.chk";
@@ -30,15 +30,16 @@ pub struct Metadata {
     pub instruction_set: String,
     /// Steps taken.
     pub step: u64,
-    /// The deck.
-    pub deck: DeckText,
+    /// The deck or the model.
+    #[serde(flatten)]
+    pub source: SourceRecord,
 }
 
 /// The checkpoints of one run.
 pub struct Checkpoints {
     folder: CheckpointFolder,
     schedule: Checkpoint,
-    deck: DeckText,
+    source: SourceRecord,
     last: Instant,
     /// How long the last one took to write.
     cost: Duration,
@@ -46,11 +47,11 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// The checkpoints of a run in its output folder.
-    pub fn new(folder: &OutputFolder, schedule: Checkpoint, deck: DeckText) -> Self {
+    pub fn new(folder: &OutputFolder, schedule: Checkpoint, source: SourceRecord) -> Self {
         Self {
             folder: CheckpointFolder::new(folder.file("checkpoints")),
             schedule,
-            deck,
+            source,
             last: Instant::now(),
             cost: Duration::ZERO,
         }
@@ -123,7 +124,7 @@ impl Checkpoints {
             version: env!("CARGO_PKG_VERSION").into(),
             instruction_set: operator.instruction_set().name().into(),
             step: simulation.state().step,
-            deck: self.deck.clone(),
+            source: self.source.clone(),
         };
         let mut archive = Archive::default();
         simulation.save(&mut archive);

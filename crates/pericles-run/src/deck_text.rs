@@ -24,7 +24,7 @@ impl DeckText {
     /// The text of a deck that was read from `file`.
     pub fn of(deck: &Deck, file: String) -> Self {
         Self {
-            inputs: Inputs::of(deck, &file),
+            inputs: Inputs::of(&deck.model, deck.folder()),
             file,
             source: deck.source().to_owned(),
             overrides: deck.overrides().map(str::to_owned).collect(),
@@ -38,7 +38,7 @@ impl DeckText {
     pub fn read(&self) -> Result<Deck, RunError> {
         let file = self.inputs.located(&self.file);
         let deck = Deck::parse(&self.source, &file, &self.overrides)?;
-        self.inputs.check(&deck)?;
+        self.inputs.check(deck.folder())?;
         Ok(deck)
     }
 }

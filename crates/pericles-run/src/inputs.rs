@@ -1,19 +1,19 @@
-//! The files that a deck names: what a run was begun with, so that nothing goes on with other content.
+//! The files that a deck or model names, with their digests, so that no run continues with other content.
 
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use pericles_deck::Deck;
+use pericles_deck::Model;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::error::RunError;
 
-/// The files that a deck names, as they were when the run began. Empty for decks without files, and for runs of versions that did not record them.
+/// The files that a model names, as they were when the run began. Empty for models without files, and for runs of versions that did not record them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    /// The folder of the deck, where relative paths start; absolute.
+    /// The folder where relative paths start; absolute.
     folder: Option<PathBuf>,
     files: Vec<Input>,
 }
@@ -21,29 +21,28 @@ pub struct Inputs {
 /// A file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Input {
-    /// As the deck names it.
+    /// As the model names it.
     file: PathBuf,
     /// Its content's SHA-256 in hexadecimal digits.
     sha256: String,
 }
 
 impl Inputs {
-    /// The files of a deck that was read from `file`. Those that cannot be read are left out: they are refused where they are needed.
-    pub fn of(deck: &Deck, file: &str) -> Self {
-        let inputs: Vec<Input> = deck
-            .model
+    /// The files of a model whose relative paths start at `folder`. Those that cannot be read are left out: they are refused where they are needed.
+    pub fn of(model: &Model, folder: &Path) -> Self {
+        let inputs: Vec<Input> = model
             .files()
             .into_iter()
             .filter_map(|named| {
                 Some(Input {
                     file: named.to_path_buf(),
-                    sha256: digest(&deck.beside(named)).ok()?,
+                    sha256: digest(&folder.join(named)).ok()?,
                 })
             })
             .collect();
         Self {
             // A folder whose name is no text has no JSON; the deck's own path then serves alone.
-            folder: folder_of(file)
+            folder: folder_of(&folder.join("deck"))
                 .filter(|folder| !inputs.is_empty() && folder.to_str().is_some()),
             files: inputs,
         }
@@ -54,12 +53,17 @@ impl Inputs {
         self.files.is_empty()
     }
 
-    /// The deck's path, by which its files are found: as it was given, or absolute if it was given from another folder than the present one.
+    /// The folder where relative paths of a model start; empty for the present folder and for models without files.
+    pub fn folder(&self) -> &Path {
+        self.folder.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// A deck's path, by which its files are found: as it was given, or absolute if it was given from another folder than the present one.
     pub fn located(&self, file: &str) -> String {
         let name = Path::new(file).file_name();
         match (&self.folder, name) {
             (Some(folder), Some(name))
-                if folder.is_dir() && folder_of(file).as_ref() != Some(folder) =>
+                if folder.is_dir() && folder_of(Path::new(file)).as_ref() != Some(folder) =>
             {
                 folder.join(name).display().to_string()
             }
@@ -67,13 +71,13 @@ impl Inputs {
         }
     }
 
-    /// Refuses files that are not what they were.
+    /// Refuses files that have changed since the run began; relative paths start at `folder`.
     ///
     /// # Errors
-    /// The first file that is gone, or whose content is another.
-    pub fn check(&self, deck: &Deck) -> Result<(), RunError> {
+    /// The first file that no longer exists, or whose content has changed.
+    pub fn check(&self, folder: &Path) -> Result<(), RunError> {
         for input in &self.files {
-            let path = deck.beside(&input.file);
+            let path = folder.join(&input.file);
             let reason = match digest(&path) {
                 Ok(found) if found == input.sha256 => continue,
                 Ok(_) => "its content has changed since the run began".to_owned(),
@@ -89,7 +93,7 @@ impl Inputs {
 }
 
 /// The folder of a file, absolute.
-fn folder_of(file: &str) -> Option<PathBuf> {
+fn folder_of(file: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(file).ok()?;
     Some(path.parent()?.to_path_buf())
 }

@@ -2,9 +2,10 @@
 //!
 //! * [`discretise`] and [`assemble`] – from a [`Model`](pericles_deck::Model) to its points and sets ([`Discretisation`]), and on to the equation of
 //!   motion with state, scheme and time step ([`Assembly`]); [`build`] does both for a deck, with [`Resources`].
-//! * [`Assembled`] – the assembly of a deck with the facts about it ([`Facts`]), made with the [`Means`] of the machine.
+//! * [`Source`] – what a run is made of: a deck, or a [`Model`](pericles_deck::Model) that a program made. `run.json` and checkpoints keep it.
+//! * [`Assembled`] – the assembly of a source with the facts about it ([`Facts`]), made with the [`Means`] of the machine.
 //! * [`Run`] – a run in its folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last checkpoint, then [`drive`](Run::drive) with
-//!   a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It writes what the deck asks for, checkpoints, and [`Report`] as `run.json`.
+//!   a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It writes what the model asks for, checkpoints, and [`Report`] as `run.json`.
 //! * [`Results`] – the results of a run, read back from its folder.
 //! * [`sweep`] – one deck at several values of its keys; [`convergence`] – how a number of such runs converges.
 //! * [`refinement`] – whether two time steps pay; [`dispersion`] – what a lattice does to waves, as files.
@@ -14,16 +15,16 @@
 //! ```no_run
 //! use pericles_deck::Deck;
 //! use pericles_io::OutputFolder;
-//! use pericles_run::{Assembled, Cancel, DeckText, Ending, Event, Means, Run};
+//! use pericles_run::{Assembled, Cancel, Ending, Event, Means, Run, Source};
 //!
-//! let source = std::fs::read_to_string("plate.toml")?;
-//! let deck = Deck::parse(&source, "plate.toml", &[])?;
-//! let text = DeckText::of(&deck, "plate.toml".into());
+//! let deck = Deck::read("plate.toml".as_ref(), &[])?;
+//! let source = Source::of_deck(deck, "plate.toml".into());
+//! // or, of a model: Source::of_model(model, "folder of its files".as_ref())
 //!
-//! // The folder is made once nothing in the deck can be wrong any more.
-//! let assembled = Assembled::of(&deck, &Means::default(), &mut |_| {})?;
+//! // The folder is created after the model has been checked.
+//! let assembled = Assembled::of(&source, &Means::default(), &mut |_| {})?;
 //! let folder = OutputFolder::create("plate", false)?;
-//! let mut run = Run::begin(&deck, text, assembled, folder)?;
+//! let mut run = Run::begin(&source, assembled, folder)?;
 //!
 //! let cancel = Cancel::new();
 //! let ending = run.drive(None, &cancel, &mut |event| {
@@ -60,6 +61,7 @@ pub mod refinement;
 mod report;
 mod results;
 mod run;
+mod source;
 pub mod sweep;
 pub mod units;
 mod watch;
@@ -83,3 +85,4 @@ pub use observers::picture_of;
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};
+pub use source::{ModelData, Source, SourceRecord};

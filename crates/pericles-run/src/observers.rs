@@ -35,7 +35,7 @@ pub fn simulation(
     let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
     let exact = assembly.exact.take();
     let surface = assembly.surface.clone();
-    let mut simulation = assembly.simulation();
+    let mut simulation = assembly.simulation()?;
     let mut names = [
         "run.json",
         "report.html",
@@ -74,7 +74,7 @@ pub fn simulation(
     }
     if can_break && !cracks.is_empty() {
         names.push("cracks.csv".into());
-        let tracker = CrackTracker::new(&cloud, cracks, output.cracks().threshold);
+        let tracker = CrackTracker::new(&cloud, cracks, output.cracks().threshold)?;
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
         simulation.observe(output.cracks().schedule, Box::new(cracks));
     }

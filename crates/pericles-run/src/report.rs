@@ -4,7 +4,6 @@ use std::io::Write;
 use std::path::Path;
 
 use pericles::Simulation;
-use pericles_deck::Deck;
 use pericles_io::write_atomically;
 use serde::Serialize;
 
@@ -13,6 +12,7 @@ use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::facts::Facts;
 use crate::machine;
+use crate::source::{ModelData, Source};
 
 /// How a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -37,7 +37,7 @@ pub struct Report {
     pub error: Option<String>,
     /// The stop condition that ended a finished run before its last step.
     pub stop_reason: Option<String>,
-    /// The title of the deck.
+    /// The title of the model.
     pub title: Option<String>,
     program: Program,
     /// What is known of the model.
@@ -46,7 +46,8 @@ pub struct Report {
     pub progress: Span,
     /// The account at the end; none of a run that has not come to rest.
     pub audit: Option<Audit>,
-    deck: DeckRecord,
+    #[serde(flatten)]
+    source: Given,
 }
 
 #[derive(Debug, Serialize)]
@@ -74,21 +75,39 @@ pub struct Span {
     pub peak_memory: Option<u64>,
 }
 
+/// What was given, a deck with the values that were read from it, or a model.
 #[derive(Debug, Serialize)]
-struct DeckRecord {
-    #[serde(flatten)]
-    text: DeckText,
-    values: serde_json::Value,
+enum Given {
+    #[serde(rename = "deck")]
+    Deck {
+        #[serde(flatten)]
+        text: DeckText,
+        values: serde_json::Value,
+    },
+    #[serde(rename = "model_data")]
+    Model(Box<ModelData>),
+}
+
+impl Given {
+    fn of(source: &Source) -> Self {
+        match source {
+            Source::Deck { deck, text } => Self::Deck {
+                text: text.clone(),
+                values: deck.to_json().clone(),
+            },
+            Source::Model(data) => Self::Model(data.clone()),
+        }
+    }
 }
 
 impl Report {
     /// A report of a run that begins at `first_step`.
-    pub(crate) fn new(deck: &Deck, text: DeckText, facts: Facts, first_step: u64) -> Self {
+    pub(crate) fn new(source: &Source, facts: Facts, first_step: u64) -> Self {
         Self {
             status: Status::Running,
             error: None,
             stop_reason: None,
-            title: deck.model.title.clone(),
+            title: source.model().title.clone(),
             program: Program {
                 name: "pericles",
                 version: env!("CARGO_PKG_VERSION"),
@@ -102,10 +121,7 @@ impl Report {
                 ..Span::default()
             },
             audit: None,
-            deck: DeckRecord {
-                text,
-                values: deck.to_json().clone(),
-            },
+            source: Given::of(source),
         }
     }
 

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use pericles_io::{FieldData, IoError, PvdSeries, read_fields};
 use serde_json::Value;
 
-use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::machine;
+use crate::source::SourceRecord;
 
 /// The folder of a run that was started once.
 pub struct Results {
@@ -105,13 +105,17 @@ impl Results {
         list.into_iter().flatten().filter_map(Value::as_str)
     }
 
-    /// The deck, as it was given.
+    /// What the run was made of: the deck as it was given, or the model.
     ///
     /// # Errors
-    /// A `run.json` without one.
-    pub fn deck(&self) -> Result<DeckText, RunError> {
-        let deck = self.value("/deck").cloned().unwrap_or_default();
-        serde_json::from_value(deck).map_err(|error| self.damaged("run.json", error.to_string()))
+    /// A `run.json` that holds neither.
+    pub fn source(&self) -> Result<SourceRecord, RunError> {
+        let kept = ["deck", "model_data"].into_iter().filter_map(|key| {
+            let value = self.report.get(key)?;
+            Some((key.to_owned(), value.clone()))
+        });
+        let kept = Value::Object(kept.collect());
+        serde_json::from_value(kept).map_err(|error| self.damaged("run.json", error.to_string()))
     }
 
     /// A file of the folder that cannot be used.

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
-use pericles_deck::Deck;
+use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
@@ -14,12 +14,12 @@ use crate::audit::{Audit, Start};
 use crate::cancel::Cancel;
 use crate::checkpoint::{Checkpoints, Stored};
 use crate::deadline::Deadline;
-use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
 use crate::observers;
 use crate::report::{Report, Status};
+use crate::source::Source;
 use crate::units::quantity;
 use crate::watch::{self, Breakage};
 
@@ -35,7 +35,7 @@ pub struct Run {
 /// How a run came to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
-    /// It reached its end: its last step, or a stop condition of the deck.
+    /// It reached its end: its last step, or a stop condition of the model.
     Finished,
     /// It was asked to stop; it can be resumed.
     Cancelled,
@@ -44,23 +44,23 @@ pub enum Ending {
 }
 
 impl Run {
-    /// A run at its start, with the observers that the deck asks for. `text` is what `run.json` and checkpoints keep of the deck.
+    /// A run at its start, with the observers that its model asks for. `run.json` and checkpoints keep the source, from which `assembled` was made.
     ///
     /// # Errors
     /// Sub-folders that cannot be made, files of an earlier run that cannot be claimed.
     pub fn begin(
-        deck: &Deck,
-        text: DeckText,
+        source: &Source,
         assembled: Assembled,
         folder: OutputFolder,
     ) -> Result<Self, RunError> {
         let Assembled { assembly, facts } = assembled;
-        let simulation = observers::simulation(&deck.model, assembly, &folder)?;
+        let model = source.model();
+        let simulation = observers::simulation(model, assembly, &folder)?;
         Ok(Self {
-            checkpoints: Checkpoints::new(&folder, deck.model.checkpoint, text.clone()),
+            checkpoints: Checkpoints::new(&folder, model.checkpoint, source.record()),
             start: Start::of(&simulation),
             simulation,
-            report: Report::new(deck, text, facts, 0),
+            report: Report::new(source, facts, 0),
             folder,
         })
     }
@@ -78,14 +78,15 @@ impl Run {
             return Ok(None);
         }
         let stored = Stored::latest(&folder, means.memory)?;
-        let deck = stored.metadata.deck.read()?;
+        let source = stored.metadata.source.clone().read()?;
+        let model = source.model();
         let Assembled {
             assembly,
             mut facts,
-        } = Assembled::of(&deck, means, tell)?;
-        facts.warnings.extend(doubts(&stored, &deck, &facts));
+        } = Assembled::of(&source, means, tell)?;
+        facts.warnings.extend(doubts(&stored, model, &facts));
         facts.warnings.extend(incomplete(&folder)?);
-        let mut simulation = observers::simulation(&deck.model, assembly, &folder)?;
+        let mut simulation = observers::simulation(model, assembly, &folder)?;
         // The state is still that of the start.
         let start = Start::of(&simulation);
         simulation
@@ -95,14 +96,13 @@ impl Run {
                 reason: error.to_string(),
             })?;
         let step = simulation.state().step;
-        let text = stored.metadata.deck;
-        let checkpoints = Checkpoints::new(&folder, deck.model.checkpoint, text.clone());
+        let checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record());
         checkpoints.forget_failed();
         Ok(Some(Self {
             checkpoints,
             start,
             simulation,
-            report: Report::new(&deck, text, facts, step),
+            report: Report::new(&source, facts, step),
             folder,
         }))
     }
@@ -277,7 +277,7 @@ fn is_finished(folder: &OutputFolder) -> bool {
 }
 
 /// What may make a resumed run differ from an uninterrupted one.
-fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
+fn doubts(stored: &Stored, model: &Model, facts: &Facts) -> Vec<String> {
     let mut doubts: Vec<String> = stored
         .refused
         .iter()
@@ -297,8 +297,8 @@ fn doubts(stored: &Stored, deck: &Deck, facts: &Facts) -> Vec<String> {
             metadata.instruction_set, facts.instruction_set
         ));
     }
-    let files = deck.model.files();
-    if let (Some(file), true) = (files.first(), metadata.deck.inputs.is_empty()) {
+    let files = model.files();
+    if let (Some(file), true) = (files.first(), metadata.source.inputs().is_empty()) {
         let file = file.display();
         doubts.push(format!(
             "the version that began the run did not record the content of {file}: whether it has changed since is not known"

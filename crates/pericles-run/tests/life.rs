@@ -1,14 +1,14 @@
 //! The life of a run as other programs see it: begun, cancelled, resumed on another thread, finished.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::thread;
 
-use pericles_deck::Deck;
+use pericles_deck::{Deck, Model};
 use pericles_io::OutputFolder;
 use pericles_run::{
-    Assembled, Caching, Cancel, Deadline, DeckText, Ending, Event, Means, Results, Run, RunError,
-    Status,
+    Assembled, Caching, Cancel, Deadline, Ending, Event, FieldFile, Means, Results, Run, RunError,
+    Source, SourceRecord, Status,
 };
 
 const PLATE: &str = r#"
@@ -44,12 +44,18 @@ fn means() -> Means {
     }
 }
 
+fn plate(overrides: &[String]) -> Deck {
+    Deck::parse(PLATE, "plate.toml", overrides).unwrap()
+}
+
 fn begun(folder: &Path) -> Run {
-    let deck = Deck::parse(PLATE, "plate.toml", &[]).unwrap();
-    let text = DeckText::of(&deck, "plate.toml".into());
-    let assembled = Assembled::of(&deck, &means(), &mut |_| {}).unwrap();
+    begun_of(&Source::of_deck(plate(&[]), "plate.toml".into()), folder)
+}
+
+fn begun_of(source: &Source, folder: &Path) -> Run {
+    let assembled = Assembled::of(source, &means(), &mut |_| {}).unwrap();
     let folder = OutputFolder::create(folder, false).unwrap();
-    Run::begin(&deck, text, assembled, folder).unwrap()
+    Run::begin(source, assembled, folder).unwrap()
 }
 
 fn history(folder: &Path) -> String {
@@ -123,4 +129,95 @@ fn a_folder_without_a_run_cannot_be_resumed() {
     let place = tempfile::tempdir().unwrap();
     let resumed = Run::resume(place.path(), &means(), &mut |_| {});
     assert!(matches!(resumed.err(), Some(RunError::NoRun { .. })));
+}
+
+/// The names of the files of fields with their contents, in order.
+fn fields(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let states = Results::open(folder).unwrap().fields().unwrap();
+    let content = |state: FieldFile| {
+        let name = state.path.file_name().unwrap().into();
+        (name, fs::read(&state.path).unwrap())
+    };
+    states.into_iter().map(content).collect()
+}
+
+#[test]
+fn a_model_without_a_deck_is_stopped_and_resumed_and_gives_the_bytes_of_the_run_of_its_deck() {
+    let place = tempfile::tempdir().unwrap();
+    let (of_deck, of_model) = (place.path().join("deck"), place.path().join("model"));
+    // Numbers without a short decimal form, and a title that the folder must return.
+    let overrides = [
+        "output.fields={ every = 10 }".to_owned(),
+        format!(
+            "crack.0.segment=[[0, {}], [8e-3, {}]]",
+            0.018 / 3.0,
+            0.1 * 0.06
+        ),
+        format!("material.density={}", 7319.0 / 3.0),
+    ];
+    let deck = plate(&overrides);
+    let json = serde_json::to_string(&deck.model).unwrap();
+    let source = Source::of_deck(deck, "plate.toml".into());
+    let ending = begun_of(&source, &of_deck).drive(None, &Cancel::new(), &mut |_| {});
+    assert_eq!(ending.unwrap(), Ending::Finished);
+
+    let model: Model = serde_json::from_str(&json).unwrap();
+    let source = Source::of_model(model.clone(), Path::new(""));
+    let mut run = begun_of(&source, &of_model);
+    let cancel = Cancel::new();
+    let token = cancel.clone();
+    let ending = run.drive(None, &cancel, &mut |event| {
+        if let Event::Step { step: 17, .. } = event {
+            token.cancel();
+        }
+    });
+    assert_eq!(ending.unwrap(), Ending::Cancelled);
+    drop(run);
+    let folder = of_model.clone();
+    let resumed = thread::spawn(move || {
+        let mut run = Run::resume(&folder, &means(), &mut |_| {})?.expect("it has not finished");
+        run.drive(None, &Cancel::new(), &mut |_| {})
+    });
+    assert_eq!(resumed.join().unwrap().unwrap(), Ending::Finished);
+
+    let results = Results::open(&of_model).unwrap();
+    assert!(
+        results.count("/progress/first_step") == 17 && results.count("/audit/broken_bonds") > 0
+    );
+    assert_eq!(results.text("/title"), "Torn plate");
+    assert_eq!(history(&of_deck), history(&of_model));
+    let written = fields(&of_model);
+    assert_eq!(written.len(), 5);
+    assert_eq!(fields(&of_deck), written);
+    // The folder returns the model, of which points and pictures are made again.
+    let SourceRecord::Model(data) = results.source().unwrap() else {
+        panic!("the folder of a model holds a deck");
+    };
+    assert_eq!(data.model, model);
+}
+
+#[test]
+fn a_model_whose_file_has_changed_is_not_resumed() {
+    let place = tempfile::tempdir().unwrap();
+    let table = place.path().join("start.txt");
+    let rows: String = (0..24 * 12)
+        .map(|k| format!("0 0 {} 0\n", 1e-3 * f64::from(k)))
+        .collect();
+    fs::write(&table, &rows).unwrap();
+    let mut model = plate(&[]).model;
+    let initial = r#"{ "set": "all", "file": "start.txt" }"#;
+    model.initial.push(serde_json::from_str(initial).unwrap());
+    let folder = place.path().join("run");
+    let mut run = begun_of(&Source::of_model(model, place.path()), &folder);
+    let over = Deadline::from_now(Some(std::time::Duration::ZERO));
+    let ending = run.drive(over, &Cancel::new(), &mut |_| {});
+    assert_eq!(ending.unwrap(), Ending::Deadline);
+    drop(run);
+    let resumed = || Run::resume(&folder, &means(), &mut |_| {});
+    assert!(resumed().unwrap().is_some());
+    fs::write(&table, rows.replace('9', "8")).unwrap();
+    match resumed().err() {
+        Some(RunError::InputChanged { path, .. }) => assert_eq!(path, table),
+        other => panic!("{other:?}"),
+    }
 }

@@ -354,6 +354,10 @@ impl Integrator for Trigonometric {
         NAME
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.next[0].len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         Self::REQUIREMENTS
     }

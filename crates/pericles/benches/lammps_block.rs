@@ -93,15 +93,18 @@ fn fracture(cells: usize, steps: usize, form: BondForm) -> pericles::Result<()> 
         ("left", layer(0, 3), -5.0),
         ("right", layer(cells - 3, cells), 5.0),
     ] {
-        system.add_motion(PrescribedMotion::new(
-            name.to_owned(),
-            points,
-            MotionKind::Velocity,
-            [Some(speed), Some(0.0), Some(0.0)],
-            TimeFunction::Constant,
-            &state.u,
-            n,
-        ))?;
+        system.add_motion(
+            PrescribedMotion::new(
+                name.to_owned(),
+                points,
+                MotionKind::Velocity,
+                [Some(speed), Some(0.0), Some(0.0)],
+                TimeFunction::Constant,
+                &state.u,
+                n,
+            )
+            .unwrap(),
+        )?;
     }
     let bonds = system.operator().directed_bonds();
     let mut verlet = VelocityVerlet;

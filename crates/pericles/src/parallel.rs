@@ -29,6 +29,15 @@ impl On<'_> {
         }
     }
 
+    /// Calls `visit(point)` for every point that is wanted, of a body of `points`, ascending.
+    pub fn for_each(&self, points: usize, visit: impl FnMut(usize)) {
+        match self {
+            Self::All => (0..points).for_each(visit),
+            Self::Range(range) => range.clone().for_each(visit),
+            Self::Set(set) => set.iter().map(|&i| i as usize).for_each(visit),
+        }
+    }
+
     /// Calls `visit(place in the list, point)` for every point of an ascending list that is wanted.
     pub fn common(&self, list: &[u32], mut visit: impl FnMut(usize, usize)) {
         match self {

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::archive::{Archive, Saved, Values};
-use crate::error::Result;
-use crate::space::PointSet;
+use crate::error::{PericlesError, Result};
+use crate::space::{PointSet, check_points};
 use crate::system::System;
 
 /// What a set of points must have come to.
@@ -97,6 +97,26 @@ impl StopWhen {
             condition,
             peak: 0.0,
             broken: 0,
+        }
+    }
+
+    /// Refuses a condition on motions or points that a system does not have.
+    pub(crate) fn check(&self, system: &System) -> Result<()> {
+        match &self.condition {
+            StopCondition::ReactionBelow { motions, .. } => {
+                let count = system.motions().len();
+                match motions.iter().find(|&&motion| motion >= count) {
+                    Some(&motion) => Err(PericlesError::OutOfRange {
+                        quantity: "the number of a motion in a stop condition",
+                        value: motion as f64,
+                        allowed: "places of motions in the list of the system, from 0",
+                    }),
+                    None => Ok(()),
+                }
+            }
+            StopCondition::DamageAbove { points, .. } => {
+                check_points("the points of a stop condition", points, system.points())
+            }
         }
     }
 

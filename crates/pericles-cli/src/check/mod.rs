@@ -11,7 +11,7 @@ use pericles::observe::Probe;
 use pericles_deck::{Body, Model, Scheme};
 use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
-use pericles_run::{Assembled, Assembly, Facts, Means};
+use pericles_run::{Assembled, Assembly, Facts, Means, Source};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -37,13 +37,14 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         caching: args.caching.wanted(),
         memory: args.memory.bytes(),
     };
+    let source = Source::of_deck(deck, args.deck.display().to_string());
     let mut screen = Screen::new(false);
     let Assembled { assembly, facts } =
-        Assembled::of(&deck, &means, &mut |event| screen.show(event))?;
+        Assembled::of(&source, &means, &mut |event| screen.show(event))?;
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
     }
-    let model = &deck.model;
+    let model = source.model();
     let mut lines = body(model, &facts);
     lines.extend(neighbours(&assembly));
     match (&model.body, &assembly.constants) {

@@ -1,4 +1,4 @@
-//! Fields of written states as pictures. The points come from the deck in `run.json`, so that cells, triangles and all else are those of the run's own
+//! Fields of written states as pictures. The points come from the deck or model in `run.json`, so that cells, triangles and all else are those of the run's own
 //! pictures.
 
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use pericles_deck::Model;
 use pericles_io::observers::{DrawnState, PictureOf};
 use pericles_io::{FieldData, write_animation};
 use pericles_run::{
-    DeckText, FieldFile, Resources, Results, RunError, body_points, machine, picture_of, readers,
+    FieldFile, Resources, Results, RunError, body_points, machine, picture_of, readers,
 };
 
 use crate::args::{Format, PlotArgs};
@@ -29,32 +29,31 @@ pub(super) fn draw(
         }
         return Err(results.damaged("fields.pvd", "the run wrote no fields".into()));
     };
-    let deck: DeckText = results.deck()?;
-    let deck = deck.read()?;
+    let source = results.source()?.read()?;
+    let model = source.model();
     let resources = Resources {
-        folder: deck.folder(),
+        folder: source.folder(),
         memory: machine::memory(),
         ..readers()
     };
-    let points = body_points(&deck.model, &resources);
-    let (cloud, surface) = points.map_err(|error| deck.refusal(error))?;
+    let points = body_points(model, &resources);
+    let (cloud, surface) = points.map_err(|error| source.refusal(error))?;
     let body = Body {
         rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
         cloud,
     };
     let surface = surface.map(Arc::new);
-    let mut pictures: Vec<PictureOf> =
-        wanted(&deck.model, args, &last.read()?, body.cloud.dimension())?
-            .into_iter()
-            .map(|what| PictureOf {
-                surface: surface.clone(),
-                steady: args.animation,
-                width: args.width,
-                view: args.view.map(|view| view.vector()).or(what.view),
-                scale: args.scale.unwrap_or(what.scale),
-                ..what
-            })
-            .collect();
+    let mut pictures: Vec<PictureOf> = wanted(model, args, &last.read()?, body.cloud.dimension())?
+        .into_iter()
+        .map(|what| PictureOf {
+            surface: surface.clone(),
+            steady: args.animation,
+            width: args.width,
+            view: args.view.map(|view| view.vector()).or(what.view),
+            scale: args.scale.unwrap_or(what.scale),
+            ..what
+        })
+        .collect();
     let all = Frames::All;
     let frames = match &args.time {
         Some(frames) => frames,

@@ -273,7 +273,7 @@ fn swing(
         state,
         run.dt,
         run.steps.max(1) as u64,
-    );
+    )?;
     simulation.run(|simulation| {
         record(&simulation.state().u);
         Control::Continue

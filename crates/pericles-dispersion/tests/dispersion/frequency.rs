@@ -124,7 +124,8 @@ fn small_bodies_are_known_to_a_thousandth() {
         TimeFunction::Constant,
         &vec![0.0; 2 * n],
         n,
-    );
+    )
+    .unwrap();
     held.add_motion(motion).unwrap();
     let rest = vec![0.0; 2 * n];
     assert_encloses(

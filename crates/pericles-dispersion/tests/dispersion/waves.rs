@@ -88,7 +88,8 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         &constants,
         &[],
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     let body = BondBody::new(&cloud, material, &constants);
     let grid = body.operator(BondForm::Grid).unwrap().operator;
     let lattice = BondLattice::of_body(&cloud, material, &constants).unwrap();

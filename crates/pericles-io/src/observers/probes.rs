@@ -43,7 +43,7 @@ impl Observer for Probes {
         let state = snapshot.state();
         let mut row = vec![whole(state.step), state.t.into()];
         for probe in &self.probes {
-            let reading = probe.read(snapshot);
+            let reading = probe.read(snapshot)?;
             for vector in [reading.displacement, reading.velocity] {
                 row.extend(vector[..self.dimension].iter().map(|&x| Cell::Real(x)));
             }

@@ -51,7 +51,8 @@ fn simulation(folder: &Path) -> Simulation {
         &|_| 1.0,
         breaking,
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     let mut system =
         System::new(cloud.clone(), Box::new(force), PointScalar::Uniform(1.0)).unwrap();
     let state = State::at_rest(2 * cloud.len());
@@ -68,12 +69,14 @@ fn simulation(folder: &Path) -> Simulation {
             TimeFunction::Constant,
             &state.u,
             cloud.len(),
-        );
+        )
+        .unwrap();
         system.add_motion(motion).unwrap();
     }
     let reactions = Reactions::new(folder.join("reactions.csv"), system.motions());
-    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 0.2, STEPS);
-    let tracker = CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35);
+    let mut simulation =
+        Simulation::new(system, Box::new(VelocityVerlet), state, 0.2, STEPS).unwrap();
+    let tracker = CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35).unwrap();
     let probe = Probe {
         name: "corner".into(),
         points: vec![0],

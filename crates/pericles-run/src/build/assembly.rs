@@ -6,7 +6,7 @@ use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::space::PointCloud;
 use pericles::time::{HighestFrequency, Integrator, State};
-use pericles::{Simulation, StopWhen, System};
+use pericles::{PericlesError, Simulation, StopWhen, System};
 use pericles_deck::ModelWarning;
 use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
@@ -76,7 +76,10 @@ impl Assembly {
     }
 
     /// The run; observers are still to be added.
-    pub fn simulation(self) -> Simulation {
+    ///
+    /// # Errors
+    /// An assembly that was changed so that its parts no longer fit each other.
+    pub fn simulation(self) -> Result<Simulation, PericlesError> {
         let (frequency, allow_unstable) = (self.frequency, self.allow_unstable);
         let mut simulation = Simulation::new(
             self.system,
@@ -84,9 +87,9 @@ impl Assembly {
             self.state,
             self.dt,
             self.steps,
-        );
+        )?;
         for stop in self.stops {
-            simulation.stop_when(stop);
+            simulation.stop_when(stop)?;
         }
         if let Some(frequency) = frequency {
             simulation = simulation.with_frequency(frequency);
@@ -94,6 +97,6 @@ impl Assembly {
         if allow_unstable {
             simulation = simulation.allowing_instability();
         }
-        simulation
+        Ok(simulation)
     }
 }

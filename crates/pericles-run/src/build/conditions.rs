@@ -14,7 +14,7 @@ use pericles_deck::{
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::at_path;
+use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
@@ -130,7 +130,7 @@ impl Assembler<'_> {
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             self.refuse_second_motion(k, &points, sets)?;
             let along = self.axis_motions(&path, motion, system.cloud(), &points)?;
-            let mut prescribed = PrescribedMotion::along(
+            let prescribed = PrescribedMotion::along(
                 name,
                 points,
                 motion.kind,
@@ -139,10 +139,11 @@ impl Assembler<'_> {
                 &state.u,
                 system.points(),
             );
+            let mut prescribed = prescribed.map_err(|error| at(&path, error))?;
             prescribed.until = motion.until;
             system
                 .add_motion(prescribed)
-                .map_err(|error| at_path(&path, error.into()))?;
+                .map_err(|error| at(&path, error))?;
         }
         Ok(())
     }

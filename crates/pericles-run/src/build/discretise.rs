@@ -41,7 +41,7 @@ use super::resources::Resources;
 /// points.set_mut("left").unwrap().extend([1, 2, 3]);
 /// let assembly = assemble(&deck.model, points, &resources).unwrap();
 /// assert_eq!(assembly.state.v.iter().sum::<f64>(), 4.0);
-/// let simulation = assembly.simulation();
+/// let simulation = assembly.simulation().unwrap();
 /// ```
 ///
 /// # Errors

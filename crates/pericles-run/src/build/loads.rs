@@ -10,7 +10,7 @@ use pericles_deck::{
 use super::area;
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::at_path;
+use super::refusal::{at, at_path};
 use super::step::Steps;
 
 /// What a load comes to.
@@ -63,12 +63,13 @@ impl Assembler<'_> {
             };
             areas.push(area);
             let density = self.load_density(&path, field, factor, cloud, &points)?;
-            system.add_load(BodyLoad {
+            let load = BodyLoad {
                 points,
                 density,
                 function,
                 window: load.window(),
-            });
+            };
+            system.add_load(load).map_err(|error| at(&path, error))?;
         }
         Ok(areas)
     }

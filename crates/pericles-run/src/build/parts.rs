@@ -91,7 +91,8 @@ impl Assembler<'_> {
         let mut classes = PairClasses::new(of_point, &all, material.interface.rule)
             .map_err(|error| at("material.part", error))?;
         for &(pair, stretch) in &material.interface.critical_stretches {
-            classes.set_critical_stretch(pair, stretch);
+            let set = classes.set_critical_stretch(pair, stretch);
+            set.map_err(|error| at("material.part", error))?;
         }
         all.remove(0);
         Ok(Composition {

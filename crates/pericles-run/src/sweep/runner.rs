@@ -18,6 +18,7 @@ use crate::error::RunError;
 use crate::event::Event;
 use crate::results::Results;
 use crate::run::{Ending, Run};
+use crate::source::SourceRecord;
 
 const RECORD: &str = "sweep.json";
 
@@ -238,9 +239,9 @@ fn run_member(
         } else {
             // A run that died before its first checkpoint begins again.
             let folder = OutputFolder::create(path, path.exists())?;
-            let deck = member.deck.read()?;
-            let assembled = Assembled::of(&deck, means, &mut tell)?;
-            Run::begin(&deck, member.deck.clone(), assembled, folder)?
+            let source = SourceRecord::Deck(member.deck.clone()).read()?;
+            let assembled = Assembled::of(&source, means, &mut tell)?;
+            Run::begin(&source, assembled, folder)?
         };
         run.drive(deadline, cancel, &mut tell)
     })

@@ -95,7 +95,7 @@ fn after(mut run: Simulation, steps: u64) -> Vec<u64> {
 fn run_of(model: &Model, resources: &Resources<'_>) -> Simulation {
     let points = discretise(model, resources).unwrap_or_else(|error| panic!("{error}"));
     let assembly = assemble(model, points, resources).unwrap_or_else(|error| panic!("{error}"));
-    assembly.simulation()
+    assembly.simulation().unwrap()
 }
 
 /// A bar in a file.
@@ -144,7 +144,10 @@ fn a_model_read_from_json_runs_like_its_deck() {
         let deck = Deck::parse(text, "decks/deck.toml", &[]).unwrap();
         let built = pericles_run::build(&deck, &resources).unwrap();
         let json = run_of(&reread(&deck.model), &resources);
-        assert_eq!(after(json, steps), after(built.simulation(), steps));
+        assert_eq!(
+            after(json, steps),
+            after(built.simulation().unwrap(), steps)
+        );
     }
 }
 
@@ -184,7 +187,7 @@ fn a_program_chooses_sets_and_points() {
     placed.grids = Grids::one(20);
     let assembly = assemble(&model, placed, &resources).unwrap();
     assert!((0..20).any(|i| assembly.cloud.point(i)[0] == 0.0));
-    after(assembly.simulation(), 3);
+    after(assembly.simulation().unwrap(), 3);
     // What does not belong together is refused.
     let mut wrong = points.clone();
     wrong.set_mut("left").unwrap().push(20);

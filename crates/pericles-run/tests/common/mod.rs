@@ -30,7 +30,7 @@ impl Built {
 
     /// The run; observers are still to be added.
     pub fn simulation(self) -> Simulation {
-        self.assembly.simulation()
+        self.assembly.simulation().unwrap()
     }
 }
 

@@ -181,7 +181,7 @@ impl Bar {
             &stiffness,
             breaking,
             damage,
-        );
+        )?;
         let density = PointScalar::Uniform(1.0);
         let mut system = System::new(Arc::clone(&cloud), Box::new(force), density)?;
         let mut state = State::at_rest(cloud.len());
@@ -201,7 +201,7 @@ impl Bar {
                     TimeFunction::Course(Arc::new(WAVELET)),
                     &state.u,
                     cloud.len(),
-                );
+                )?;
                 system.add_motion(motion)?;
             }
         }
@@ -231,7 +231,7 @@ impl Bar {
             state,
             dt,
             steps,
-        ))
+        )?)
     }
 
     /// Runs and shows every state but the first.

@@ -134,7 +134,7 @@ impl Case {
             &|xi| micromodulus(xi[0].abs()) * xi[0].abs(),
             breaking,
             DamageMeasure::default(),
-        );
+        )?;
         let density = PointScalar::Uniform(1.0);
         let system = System::new(Arc::clone(&cloud), Box::new(force), density)?;
         let mut state = State::at_rest(cloud.len());
@@ -164,7 +164,7 @@ impl Case {
             state,
             self.dt,
             steps as u64,
-        );
+        )?;
         let began = Instant::now();
         simulation
             .run(|_| Control::Continue)

@@ -44,7 +44,7 @@ fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, RunErro
         system.add_boundary(Box::new(end.map_err(PericlesError::from)?));
     }
     let scheme = Implicit::new(ImplicitRule::Midpoint, &system)?;
-    let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps);
+    let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps)?;
     simulation
         .run(|_| Control::Continue)
         .map_err(|error| RunError::of_run(error, String::new))?;

@@ -77,7 +77,8 @@ fn run(
     (system, state): (System, State),
     every: usize,
 ) -> Result<(Vec<(State, f64)>, f64), RunError> {
-    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, DT, STEPS as u64);
+    let mut simulation =
+        Simulation::new(system, Box::new(VelocityVerlet), state, DT, STEPS as u64)?;
     let began = Instant::now();
     let mut states = Vec::new();
     let mut note = |now: &Simulation| {

@@ -115,7 +115,8 @@ fn cross(lattice: &BondLattice) -> Result<f64, RunError> {
     )?;
     let mut state = State::at_rest(2 * cloud.len());
     state.u = continuum(0.0, speed);
-    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps as u64);
+    let mut simulation =
+        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps as u64)?;
     simulation
         .run(|_| Control::Continue)
         .map_err(|error| RunError::of_run(error, String::new))?;

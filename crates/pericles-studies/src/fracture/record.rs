@@ -138,12 +138,12 @@ pub(super) fn record(
     let assembly = build(deck, &Resources::default())?;
     let facts = Facts::of_deck(deck, &assembly);
     let recorder = Recorder {
-        tracker: CrackTracker::new(&assembly.cloud, assembly.cracks.clone(), THRESHOLD),
+        tracker: CrackTracker::new(&assembly.cloud, assembly.cracks.clone(), THRESHOLD)?,
         symmetry: symmetry(&assembly.cloud),
         looks: Arc::default(),
     };
     let looks = Arc::clone(&recorder.looks);
-    let mut simulation = assembly.simulation();
+    let mut simulation = assembly.simulation()?;
     simulation.observe(Schedule::Interval(LOOK), Box::new(recorder));
     (context.tell)(Event::LoopBegins {
         first: 0,

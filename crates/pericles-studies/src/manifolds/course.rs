@@ -58,7 +58,7 @@ pub(super) fn run(
 ) -> Result<(Simulation, Course), RunError> {
     let assembly = build(&preset.deck(changes)?, &Resources::default())?;
     let measure = assembly.surface.clone().map(SurfaceMeasure::new);
-    let mut simulation = assembly.simulation();
+    let mut simulation = assembly.simulation()?;
     let mut course = Course::default();
     let mut note = |run: &Simulation| {
         let energies = run.snapshot().energies();

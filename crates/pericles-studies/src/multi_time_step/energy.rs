@@ -46,7 +46,7 @@ fn keep(method: Method, omega_dt: f64, steps: u64, changes: &[String]) -> Result
     assembly.dt = omega_dt / omega;
     assembly.steps = steps;
     let momentum = assembly.system.momentum(&assembly.state.v);
-    let mut run = assembly.simulation();
+    let mut run = assembly.simulation()?;
     let at_start = run.start_energy().energy;
     let evaluated = run.system().evaluated_points();
     let mut largest = [0.0f64; 2];

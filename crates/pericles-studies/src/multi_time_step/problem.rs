@@ -119,7 +119,7 @@ impl Problem {
         let end = Deck::parse(self.text, self.file, changes)?.model.time.end;
         let mut all = vec![format!("time.dt={:?}", end / steps as f64)];
         all.extend_from_slice(changes);
-        let mut simulation = self.assembly(method, &all)?.simulation();
+        let mut simulation = self.assembly(method, &all)?.simulation()?;
         finish(&mut simulation)?;
         Ok(simulation)
     }

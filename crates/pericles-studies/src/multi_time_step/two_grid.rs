@@ -204,7 +204,7 @@ fn conservation() -> Result<Vec<Row>, RunError> {
     // Half the stable step.
     assembly.dt *= 0.5;
     let momentum = assembly.system.momentum(&assembly.state.v);
-    let mut run = assembly.simulation();
+    let mut run = assembly.simulation()?;
     let at_start = run.start_energy().energy;
     let mut worst = [0.0f64; 2];
     run.run(|run| {

@@ -161,7 +161,7 @@ fn loaded(method: Method, h: f64, dt: f64, end: f64) -> Result<Loaded, RunError>
         start: 0.0,
         duration: 4.0,
     };
-    body.add_load(Load::new(middle.collect(), [0.5, 0.0, 0.0], pulse_of_load));
+    body.add_load(Load::new(middle.collect(), [0.5, 0.0, 0.0], pulse_of_load))?;
     let mut scheme = integrator(method, h, &body)?;
     let mut state = pulse(&Arc::clone(&cloud), 1.0);
     let mut inequality = EnergyInequality::new(1.0 / end);

@@ -324,6 +324,7 @@ fn bond_force<const D: usize>(
         &[],
         DamageMeasure::default(),
     )
+    .unwrap()
 }
 
 fn convolution<const D: usize>(

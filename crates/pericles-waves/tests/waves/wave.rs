@@ -425,7 +425,8 @@ fn loads_and_supports_are_of_the_order_promised() {
             (n as u32 - 5..n as u32).collect(),
             [0.3, 0.0, 0.0],
             pulse.clone(),
-        ));
+        ))
+        .unwrap();
         let motion = PrescribedMotion::new(
             "left".into(),
             (0..3).collect(),
@@ -434,7 +435,8 @@ fn loads_and_supports_are_of_the_order_promised() {
             pulse,
             &vec![0.0; n],
             n,
-        );
+        )
+        .unwrap();
         body.add_motion(motion).unwrap();
         let mut scheme: Box<dyn Integrator> = match rule {
             Some(load_rule) => {
@@ -476,7 +478,8 @@ fn constant_loads_are_exact() {
             (0..4).collect(),
             [0.3, 0.0, 0.0],
             TimeFunction::Constant,
-        ));
+        ))
+        .unwrap();
         let mut scheme = trigonometric(FunctionMethod::Fastest, &body);
         let state = start(&body, 0.1);
         let end = steps(&mut body, &mut *scheme, state, 6.0 / count as f64, count);
@@ -659,7 +662,8 @@ fn schemes_say_what_they_cannot_do() {
         TimeFunction::Constant,
         &vec![0.0; cloud.len()],
         cloud.len(),
-    );
+    )
+    .unwrap();
     motion.until = Some(1.0);
     let_go.add_motion(motion).unwrap();
     let released = Implicit::new(ImplicitRule::Midpoint, &let_go)
@@ -690,7 +694,8 @@ fn driven_bar(form: ForceForm) -> System {
         pulse,
         &vec![0.0; n],
         n,
-    );
+    )
+    .unwrap();
     body.add_motion(motion).unwrap();
     body
 }
@@ -766,7 +771,7 @@ fn runs_go_on_where_they_stopped() {
         let make = || {
             let body = driven_bar(form);
             let (scheme, state) = (scheme(&body), start(&body, 0.1));
-            Simulation::new(body, scheme, state, 0.1 + 1.0 / 3.0, 20)
+            Simulation::new(body, scheme, state, 0.1 + 1.0 / 3.0, 20).unwrap()
         };
         let name = make().integrator().name();
         let checked = check_resume(make, [7]);

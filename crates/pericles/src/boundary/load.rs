@@ -4,8 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::TimeFunction;
+use crate::error::{PericlesError, Result, positive};
 use crate::operator::On;
-use crate::space::{PointCloud, PointSet};
+use crate::space::{PointCloud, PointSet, check_length, check_set};
 
 /// A vector field in place and time.
 pub trait FieldFunction: fmt::Debug + Send + Sync {
@@ -65,15 +66,43 @@ impl Load {
     }
 
     /// A traction (force per area, Pa) that acts on `area` (m²) of a layer, spread over the layer's volume: b = traction · area / ΣV.
+    ///
+    /// # Errors
+    /// A layer without points or with points that the cloud does not have; an area that is not positive.
     pub fn traction(
         cloud: &PointCloud,
         points: PointSet,
         traction: [f64; 3],
         area: f64,
         function: TimeFunction,
-    ) -> Self {
-        let factor = area / volume(cloud, &points);
-        Self::new(points, traction.map(|c| c * factor), function)
+    ) -> Result<Self> {
+        const WHAT: &str = "the points of a traction";
+        check_set(WHAT, &points, cloud.len())?;
+        if points.is_empty() {
+            return Err(PericlesError::BadSet {
+                what: WHAT,
+                reason: "no points are given; at least one is needed",
+            });
+        }
+        let factor = positive("the area of a traction", area)? / volume(cloud, &points);
+        Ok(Self::new(points, traction.map(|c| c * factor), function))
+    }
+
+    /// Refuses a load that does not fit a body of `points` points: numbers of points, one amplitude or place for each.
+    pub(crate) fn check(&self, dimension: usize, points: usize) -> Result<()> {
+        check_set("the points of a load", &self.points, points)?;
+        let loaded = self.points.len();
+        match &self.density {
+            LoadDensity::Uniform(_) => Ok(()),
+            LoadDensity::PerPoint(densities) => check_length(
+                "the amplitudes of a load",
+                densities.len(),
+                dimension * loaded,
+            ),
+            LoadDensity::Field { places, .. } => {
+                check_length("the places of a load", places.len(), loaded)
+            }
+        }
     }
 
     /// Whether it never has a component along axis c.

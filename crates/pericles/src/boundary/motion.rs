@@ -5,8 +5,11 @@ use std::sync::Arc;
 
 use super::TimeFunction;
 use crate::domain::Domain;
+use crate::error::{PericlesError, Result};
 use crate::operator::On;
-use crate::space::{PointCloud, PointSet};
+use crate::space::{PointCloud, PointSet, check_length, check_set};
+
+const WHAT: &str = "the points of a prescribed motion";
 
 /// What is prescribed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +65,60 @@ pub struct PrescribedMotion {
 }
 
 impl PrescribedMotion {
+    /// Points that stay where they are, along all axes of a body of this dimension.
+    pub fn fixed(points: PointSet, dimension: usize) -> Self {
+        let amplitude = std::array::from_fn(|c| (c < dimension).then_some(0.0));
+        Self::displacement(points, amplitude, TimeFunction::Constant)
+    }
+
+    /// Points with the displacement amplitude · g(t), m; free along axes without an amplitude.
+    pub fn displacement(
+        points: PointSet,
+        amplitude: [Option<f64>; 3],
+        function: TimeFunction,
+    ) -> Self {
+        Self::from_rest(points, MotionKind::Displacement, amplitude, function)
+    }
+
+    /// Points with the velocity amplitude · g(t), m/s; free along axes without an amplitude. They start at zero displacement, or at that of the
+    /// state with which [`Simulation::builder`](crate::Simulation::builder) starts.
+    pub fn velocity(points: PointSet, amplitude: [Option<f64>; 3], function: TimeFunction) -> Self {
+        Self::from_rest(points, MotionKind::Velocity, amplitude, function)
+    }
+
+    fn from_rest(
+        points: PointSet,
+        kind: MotionKind,
+        amplitude: [Option<f64>; 3],
+        function: TimeFunction,
+    ) -> Self {
+        let along = amplitude.map(|amplitude| amplitude.map(AxisMotion::Uniform));
+        let slots = along.iter().flatten().count() * points.len();
+        Self {
+            name: "support".into(),
+            start: vec![0.0; slots],
+            reaction: vec![0.0; slots],
+            points,
+            kind,
+            along,
+            function,
+            until: None,
+        }
+    }
+
+    /// The same under a name for reports.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
+
     /// A motion with the same amplitudes (m or m/s) for all points, for a body whose initial displacement is `u`.
+    ///
+    /// # Errors
+    /// As [`PrescribedMotion::along`].
     pub fn new(
         name: String,
         points: PointSet,
@@ -71,12 +127,15 @@ impl PrescribedMotion {
         function: TimeFunction,
         u: &[f64],
         cloud_len: usize,
-    ) -> Self {
+    ) -> Result<Self> {
         let along = amplitude.map(|amplitude| amplitude.map(AxisMotion::Uniform));
         Self::along(name, points, kind, along, function, u, cloud_len)
     }
 
     /// A motion along the axes given, for a body whose initial displacement is `u`.
+    ///
+    /// # Errors
+    /// Points that a body of `cloud_len` points does not have; a displacement that does not have `cloud_len` entries for every axis along which the velocity is prescribed.
     pub fn along(
         name: String,
         points: PointSet,
@@ -85,24 +144,68 @@ impl PrescribedMotion {
         function: TimeFunction,
         u: &[f64],
         cloud_len: usize,
-    ) -> Self {
-        let axes = (0..3).filter(|&c| along[c].is_some());
-        let start: Vec<f64> = match kind {
-            MotionKind::Displacement => axes.flat_map(|_| points.iter().map(|_| 0.0)).collect(),
-            MotionKind::Velocity => axes
-                .flat_map(|c| points.iter().map(move |&i| u[c * cloud_len + i as usize]))
-                .collect(),
-        };
-        Self {
-            reaction: vec![0.0; start.len()],
-            start,
+    ) -> Result<Self> {
+        check_set(WHAT, &points, cloud_len)?;
+        let axes = along.iter().flatten().count();
+        let mut motion = Self {
+            start: vec![0.0; axes * points.len()],
+            reaction: vec![0.0; axes * points.len()],
             name,
             points,
             kind,
             along,
             function,
             until: None,
+        };
+        let last = motion.axes().last();
+        if let (MotionKind::Velocity, Some(last)) = (kind, last) {
+            let needed = (last + 1) * cloud_len;
+            check_length(
+                "the initial displacement of a body",
+                u.len().min(needed),
+                needed,
+            )?;
+            motion.start_from(u, cloud_len);
         }
+        Ok(motion)
+    }
+
+    /// Takes `u` as the displacement at the start, to which prescribed velocities add.
+    pub(crate) fn start_from(&mut self, u: &[f64], cloud_len: usize) {
+        if self.kind == MotionKind::Displacement {
+            return;
+        }
+        let entries = self.axes().flat_map(|c| {
+            let of_point = move |&i: &u32| u[c * cloud_len + i as usize];
+            self.points.iter().map(of_point)
+        });
+        self.start = entries.collect();
+    }
+
+    /// Refuses a motion that does not fit a body: numbers of points, axes, one amplitude or place for each point.
+    pub(crate) fn check(&self, dimension: usize, points: usize) -> Result<()> {
+        check_set(WHAT, &self.points, points)?;
+        let held = self.points.len();
+        for (c, along) in self.along.iter().enumerate() {
+            let given = match along {
+                Some(_) if c >= dimension => {
+                    return Err(PericlesError::WrongDimension {
+                        what: "a motion along this axis",
+                        needed: ["1, 2 or 3", "2 or 3", "3"][c],
+                        dimension,
+                    });
+                }
+                None | Some(AxisMotion::Uniform(_)) => held,
+                Some(AxisMotion::PerPoint(amplitudes)) => amplitudes.len(),
+                Some(AxisMotion::Trajectory { places, .. }) => places.len(),
+            };
+            check_length("the amplitudes or places of a motion", given, held)?;
+        }
+        check_length(
+            "the numbers of a motion whose points or axes were changed after it was made",
+            self.start.len(),
+            self.axes().count() * held,
+        )
     }
 
     /// Numbers of the prescribed axes.

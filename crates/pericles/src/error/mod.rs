@@ -408,6 +408,48 @@ pub enum PericlesError {
         /// A step below dt that converges in as many iterations, s; none if the step is not the reason.
         safe: Option<f64>,
     },
+    /// An array of another length than the body needs.
+    #[error("{what}: {length} entries are given, {needed} are needed")]
+    WrongLength {
+        /// What the array holds.
+        what: &'static str,
+        /// Entries given.
+        length: usize,
+        /// Entries needed.
+        needed: usize,
+    },
+    /// A set that names a point that the body does not have.
+    #[error("{what}: point {point} is named, the points of the body are 0 to {}", points - 1)]
+    NoSuchPoint {
+        /// What the set is for.
+        what: &'static str,
+        /// The number given.
+        point: u32,
+        /// Points of the body.
+        points: usize,
+    },
+    /// A set of points that cannot be used.
+    #[error("{what}: {reason}")]
+    BadSet {
+        /// What the set is for.
+        what: &'static str,
+        /// Why, and what is allowed.
+        reason: &'static str,
+    },
+    /// A name that no face of a body has.
+    #[error("`{name}` is not a face of a body; allowed: -x, +x, -y, +y, -z and +z")]
+    UnknownFace {
+        /// The name given.
+        name: String,
+    },
+    /// A value without a default that was not given.
+    #[error("{what} is not given: {allowed}")]
+    NotGiven {
+        /// What is missing.
+        what: &'static str,
+        /// What to give.
+        allowed: &'static str,
+    },
     /// Two conditions prescribe the motion of the same point and component.
     #[error("the motion of point {point} along {axis} is prescribed twice")]
     PrescribedTwice {

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use super::search::{bond_vector, distance, pairs_of};
 use super::{Crack, EndRule, VolumeCorrection};
-use crate::error::{PericlesError, Result};
+use crate::error::{PericlesError, Result, positive};
 use crate::lanes::LANES;
-use crate::space::{PointCloud, PointSet, Sites};
+use crate::space::{PointCloud, PointSet, Sites, check_length};
 
 /// What a crack removed.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,12 +71,13 @@ impl BondList {
     /// The families of a cloud.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour at all.
+    /// A horizon that is not positive, or that reaches no neighbour at all.
     pub fn new(
         cloud: &Arc<PointCloud>,
         horizon: f64,
         correction: VolumeCorrection,
     ) -> Result<Self> {
+        positive("the horizon", horizon)?;
         let reach = correction.reach(horizon, cloud.spacing());
         let sites = Sites::new(cloud, reach);
         let horizons = Horizons::Uniform(horizon);
@@ -86,16 +87,16 @@ impl BondList {
     /// The families of a cloud whose points have different horizons: a bond exists if it is within reach of one of its ends.
     ///
     /// # Errors
-    /// Horizons that reach no neighbour at all.
-    ///
-    /// # Panics
-    /// If there is not one horizon for each point.
+    /// Horizons that are not positive, not one for each point, or that reach no neighbour at all.
     pub fn with_horizons(
         cloud: &Arc<PointCloud>,
         horizons: Vec<f64>,
         correction: VolumeCorrection,
     ) -> Result<Self> {
-        assert_eq!(horizons.len(), cloud.len(), "one horizon for each point");
+        check_length("the horizons of the points", horizons.len(), cloud.len())?;
+        for &horizon in &horizons {
+            positive("the horizon", horizon)?;
+        }
         let largest = horizons.iter().copied().fold(0.0, f64::max);
         let reach = correction.reach(cloud.domain().max(largest), cloud.spacing());
         let sites = Sites::new(cloud, reach);

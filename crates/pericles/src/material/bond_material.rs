@@ -49,6 +49,71 @@ pub struct BondMaterial {
     pub fracture: Fracture,
 }
 
+impl BondMaterial {
+    /// A material that never breaks, of density `density` (kg/m³) and horizon `horizon` (m): bond-stretch law, constant influence function, partial
+    /// volumes of all cells that reach into the horizon, constants of the continuum.
+    ///
+    /// ```
+    /// use pericles::material::{BondMaterial, ElasticModulus};
+    ///
+    /// let glass = BondMaterial::new(ElasticModulus::Young(72e9), 2440.0, 0.75e-3).with_fracture_energy(3.8);
+    /// ```
+    pub fn new(modulus: ElasticModulus, density: f64, horizon: f64) -> Self {
+        Self {
+            law: PairLaw::BondStretch,
+            density,
+            modulus: Modulus {
+                value: modulus,
+                calibration: Calibration::Continuum,
+            },
+            horizon,
+            influence: Influence::default(),
+            volume_correction: VolumeCorrection::default(),
+            fracture: Fracture::Unbreakable,
+        }
+    }
+
+    /// The same with another pair law.
+    #[must_use]
+    pub fn with_law(self, law: PairLaw) -> Self {
+        Self { law, ..self }
+    }
+
+    /// The same with another influence function.
+    #[must_use]
+    pub fn with_influence(self, influence: Influence) -> Self {
+        Self { influence, ..self }
+    }
+
+    /// The same with constants from other moments.
+    #[must_use]
+    pub fn with_calibration(mut self, calibration: Calibration) -> Self {
+        self.modulus.calibration = calibration;
+        self
+    }
+
+    /// The same with bonds that break beyond a stretch.
+    #[must_use]
+    pub fn with_critical_stretch(self, stretch: f64) -> Self {
+        Self {
+            fracture: Fracture::CriticalStretch(stretch),
+            ..self
+        }
+    }
+
+    /// The same with bonds that break such that a unit area of crack costs `energy` (J/m²).
+    #[must_use]
+    pub fn with_fracture_energy(self, energy: f64) -> Self {
+        Self {
+            fracture: Fracture::Energy {
+                energy,
+                calibration: FractureCalibration::default(),
+            },
+            ..self
+        }
+    }
+}
+
 /// From which moments the constant c follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Calibration {

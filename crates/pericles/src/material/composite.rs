@@ -84,16 +84,21 @@ impl PairClasses {
 
     /// Gives bonds between two materials a critical stretch of their own; infinite: they never break.
     ///
-    /// # Panics
-    /// If a material is not one of those given.
-    pub fn set_critical_stretch(&mut self, [a, b]: [u8; 2], stretch: f64) {
-        let (a, b) = (usize::from(a), usize::from(b));
-        assert!(
-            a < self.count && b < self.count,
-            "a pair of materials given"
-        );
+    /// # Errors
+    /// A number that is not one of the materials given.
+    pub fn set_critical_stretch(&mut self, pair: [u8; 2], stretch: f64) -> Result<()> {
+        let [a, b] = pair.map(usize::from);
+        let last = a.max(b);
+        if last >= self.count {
+            return Err(PericlesError::OutOfRange {
+                quantity: "the number of a material of a pair",
+                value: last as f64,
+                allowed: "numbers of the materials given, from 0",
+            });
+        }
         self.critical_stretch[a * self.count + b] = stretch;
         self.critical_stretch[b * self.count + a] = stretch;
+        Ok(())
     }
 
     /// The same by the sites that bonds lead to.
@@ -170,7 +175,8 @@ mod tests {
         assert_eq!(classes.micromodulus(1, 2), 6.0);
         assert_eq!(classes.critical_stretch(2, 0), 0.01);
         assert_eq!(classes.critical_stretch(1, 2), f64::INFINITY);
-        classes.set_critical_stretch([1, 0], 0.002);
+        classes.set_critical_stretch([1, 0], 0.002).unwrap();
+        assert!(classes.set_critical_stretch([0, 3], 0.002).is_err());
         assert_eq!(classes.critical_stretch(0, 1), 0.002);
         assert_eq!(classes.critical_stretch(2, 0), 0.002);
         assert_eq!(classes.smallest_critical_stretch(), 0.002);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::error::{PericlesError, Result, positive};
 use crate::kernel::{ActsOn, Influence};
-use crate::space::PointCloud;
+use crate::space::{PointCloud, check_length};
 
 use super::bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration};
 use super::crack_planes::CrackPlane;
@@ -95,10 +95,7 @@ impl BondMaterial {
     /// The constants for bonds of a lattice whose cells have these sides (m, one per axis) and section (m² in 1D, m in 2D, 1 in 3D).
     ///
     /// # Errors
-    /// Those of [`BondMaterial::constants`].
-    ///
-    /// # Panics
-    /// If there is not one side for each axis.
+    /// Those of [`BondMaterial::constants`]; sides that are not one for each axis, or not positive.
     pub fn constants_on(
         &self,
         sides: &[f64],
@@ -106,7 +103,10 @@ impl BondMaterial {
         state: StressState,
     ) -> Result<BondConstants> {
         let dimension = state.dimension();
-        assert_eq!(sides.len(), dimension, "one side for each axis");
+        check_length("the sides of the cells", sides.len(), dimension)?;
+        for &side in sides {
+            positive("a side of the cells", side)?;
+        }
         let cells = Cells::new(sides);
         let sums = self.checked_sums(cells)?;
         let young = self.modulus.value.young(state)?;

@@ -77,15 +77,6 @@ impl PairForce for BondStretch {
         let along = dot(y, d) / (square + q) * (T::splat(1.0) / reference - factor);
         vector(|c| factor * d[c] + along * y[c])
     }
-
-    #[inline(always)]
-    fn stretch_measure<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T) {
-        (growth(xi, eta), dot(xi, xi))
-    }
-
-    fn threshold(stretch: f64) -> f64 {
-        stretch * (2.0 + stretch)
-    }
 }
 
 impl PairForce for LinearBond {

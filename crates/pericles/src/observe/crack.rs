@@ -1,7 +1,8 @@
 //! Crack tips.
 
+use crate::error::Result;
 use crate::family::{Crack, pairs_within};
-use crate::space::{Point, PointCloud, PointSet};
+use crate::space::{Point, PointCloud, PointSet, check_points};
 
 /// A pre-crack with the points that lost bonds to it.
 #[derive(Debug, Clone)]
@@ -35,15 +36,21 @@ pub struct CrackTracker {
 
 impl CrackTracker {
     /// A tracker for the pre-cracks of a body.
-    pub fn new(cloud: &PointCloud, cracks: Vec<TrackedCrack>, threshold: f64) -> Self {
+    ///
+    /// # Errors
+    /// A pre-crack with points that the cloud does not have.
+    pub fn new(cloud: &PointCloud, cracks: Vec<TrackedCrack>, threshold: f64) -> Result<Self> {
+        for crack in &cracks {
+            check_points("the points of a pre-crack", &crack.points, cloud.len())?;
+        }
         let diagonal = 1.01 * (cloud.dimension() as f64).sqrt() * cloud.spacing();
         let (start, neighbours) = pairs_within(cloud, diagonal);
-        Self {
+        Ok(Self {
             cracks,
             threshold,
             start,
             neighbours,
-        }
+        })
     }
 
     /// The pre-cracks.
@@ -117,7 +124,8 @@ mod tests {
             to: [2.0, 1.5],
         };
         let points = vec![10, 11];
-        let tracker = CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35);
+        let tracker =
+            CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35).unwrap();
         let mut damage = vec![0.0; 30];
         assert_eq!(tracker.tips(&cloud, &damage), [None]);
         for i in [11, 12, 23, 24, 26, 27] {

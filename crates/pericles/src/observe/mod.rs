@@ -7,6 +7,7 @@ mod crack;
 mod fragments;
 mod probe;
 mod schedule;
+mod shared;
 mod snapshot;
 mod tensors;
 

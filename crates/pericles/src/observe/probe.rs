@@ -1,7 +1,8 @@
 //! Readings at points and means over sets.
 
 use super::Snapshot;
-use crate::space::PointSet;
+use crate::error::{PericlesError, Result};
+use crate::space::{PointSet, check_points};
 
 /// A place where displacement and velocity are read.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +24,19 @@ pub struct ProbeReading {
 
 impl Probe {
     /// Reads the probe.
-    pub fn read(&self, snapshot: &Snapshot<'_>) -> ProbeReading {
+    ///
+    /// # Errors
+    /// A probe without points, or with points that the body does not have.
+    pub fn read(&self, snapshot: &Snapshot<'_>) -> Result<ProbeReading> {
+        const WHAT: &str = "the points of a probe";
         let n = snapshot.system().points();
+        check_points(WHAT, &self.points, n)?;
+        if self.points.is_empty() {
+            return Err(PericlesError::BadSet {
+                what: WHAT,
+                reason: "no points are given; at least one is needed",
+            });
+        }
         let mean = |field: &[f64]| -> [f64; 3] {
             std::array::from_fn(|c| {
                 if c >= snapshot.system().dimension() {
@@ -34,9 +46,9 @@ impl Probe {
                 sum / self.points.len() as f64
             })
         };
-        ProbeReading {
+        Ok(ProbeReading {
             displacement: mean(&snapshot.state().u),
             velocity: mean(&snapshot.state().v),
-        }
+        })
     }
 }

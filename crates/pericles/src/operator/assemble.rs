@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::family::{BondList, Crack, Cut, EndRule};
 use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial};
-use crate::space::PointCloud;
+use crate::space::{PointCloud, check_length};
 
 /// A body of one bond-based material: all that its operator is made of.
 #[derive(Debug, Clone)]
@@ -100,6 +100,14 @@ impl BondBody<'_> {
         )
     }
 
+    /// The operator for a pair law that every form of bonds computes.
+    pub(super) fn operator_of<L: FastLaw, const D: usize>(
+        &self,
+        form: BondForm,
+    ) -> Result<AssembledBonds> {
+        OfBody(self, form).any_form::<L, D>()
+    }
+
     /// The grid operator, of the material itself everywhere.
     ///
     /// # Errors
@@ -115,8 +123,20 @@ impl BondBody<'_> {
         )
     }
 
+    fn check_stiffness(&self) -> Result<()> {
+        match self.stiffness {
+            [] => Ok(()),
+            given => check_length(
+                "the stiffnesses of the points",
+                given.len(),
+                self.cloud.len(),
+            ),
+        }
+    }
+
     /// The families without the bonds that pre-cracks cut, and what each crack removed.
     pub(super) fn families(&self) -> Result<(BondList, Vec<Cut>)> {
+        self.check_stiffness()?;
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
         let cuts = self
@@ -152,7 +172,7 @@ impl BondBody<'_> {
                 no_fail: self.no_fail,
             },
             self.damage,
-        );
+        )?;
         Ok((list, cuts))
     }
 }

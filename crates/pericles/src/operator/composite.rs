@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::family::BondList;
 use crate::material::{PairClasses, SurfaceCorrection};
 use crate::operator::fast_law::FastLaw;
+use crate::space::check_length;
 
 /// A body of several materials, or with corrected surfaces; always kept as a list.
 ///
@@ -76,7 +77,7 @@ impl CompositeBody<'_> {
         by_law(self.body.material.law, dimension, Listed(self))
     }
 
-    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
+    pub(super) fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
         let BondBody {
             cloud,
             material,
@@ -84,6 +85,13 @@ impl CompositeBody<'_> {
             stiffness,
             ..
         } = self.body;
+        if let Some(classes) = self.classes {
+            check_length(
+                "the materials of the points",
+                classes.of_point().len(),
+                cloud.len(),
+            )?;
+        }
         let (bonds, cuts) = self.body.families()?;
         let sites = bonds.shared_sites();
         let factors = self.correction.factors(&bonds, material);
@@ -113,7 +121,7 @@ impl CompositeBody<'_> {
             &stiffness_of_pair,
             breaking,
             self.body.damage,
-        );
+        )?;
         let list = match self.classes {
             Some(classes) => list.with_critical_stretches(classes.clone()),
             None => list,

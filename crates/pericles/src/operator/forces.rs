@@ -26,17 +26,27 @@ impl Forces {
     /// # Errors
     /// A force on another number of points, or in another dimension.
     pub fn add(&mut self, force: Box<dyn Force>) -> Result<()> {
-        let (points, dimension) = (force.points(), force.dimension());
-        if points != self.points() || dimension != self.dimension() {
-            return Err(PericlesError::ForceOfAnotherBody {
-                points,
-                dimension,
-                needed_points: self.points(),
-                needed_dimension: self.dimension(),
-            });
-        }
+        Self::check_body(&*force, self.points(), self.dimension())?;
         self.list.push(force);
         Ok(())
+    }
+
+    /// Refuses a force that was not made for a body of so many points in a dimension.
+    pub(crate) fn check_body(
+        force: &dyn Force,
+        needed_points: usize,
+        needed_dimension: usize,
+    ) -> Result<()> {
+        let (points, dimension) = (force.points(), force.dimension());
+        if points == needed_points && dimension == needed_dimension {
+            return Ok(());
+        }
+        Err(PericlesError::ForceOfAnotherBody {
+            points,
+            dimension,
+            needed_points,
+            needed_dimension,
+        })
     }
 
     /// The sum of all forces; a force that is alone stands for itself.

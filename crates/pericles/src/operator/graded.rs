@@ -134,7 +134,7 @@ impl GradedBody<'_> {
                 no_fail: self.no_fail,
             },
             self.damage,
-        );
+        )?;
         let operator: Box<dyn Force> = Box::new(force);
         Ok(AssembledBonds {
             operator,

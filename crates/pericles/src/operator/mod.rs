@@ -25,6 +25,7 @@ mod grid;
 mod limits;
 mod linearisation;
 mod list;
+mod own_law;
 pub mod pool;
 pub mod prefetch;
 pub mod records;
@@ -48,6 +49,7 @@ pub use grid::GridForce;
 pub use limits::{Feature, Features, Limit};
 pub use linearisation::Linearisation;
 pub use list::BondForce;
+pub use own_law::PlainLaw;
 pub use springs::{LatticeSpring, LatticeSprings};
 pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
 pub use view::{BondAt, BondView};
@@ -91,8 +93,10 @@ pub trait Force: Saved + Send + Sync {
         self.add_force(step.t, step.u, on, out);
     }
 
-    /// What it can do beside computing forces.
-    fn capabilities(&self) -> Capabilities<'_>;
+    /// What it can do beside computing forces; nothing unless it says so.
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities::default()
+    }
 
     /// The same as [`Capabilities::breaking`], to be changed.
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
@@ -115,14 +119,20 @@ pub trait Force: Saved + Send + Sync {
         None
     }
 
-    /// Family entries that the loops run over: each bond counts twice.
-    fn directed_bonds(&self) -> u64;
+    /// Family entries that the loops run over: each bond counts twice. Zero of forces without bonds.
+    fn directed_bonds(&self) -> u64 {
+        0
+    }
 
-    /// Memory, bytes.
-    fn bytes(&self) -> usize;
+    /// Memory beside that of the points, bytes.
+    fn bytes(&self) -> usize {
+        0
+    }
 
     /// What the loops are compiled for.
-    fn instruction_set(&self) -> InstructionSet;
+    fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::Baseline
+    }
 
     /// Runs the loops with another instruction set, if the operator has loops for it and the machine has it; for tests and benchmarks.
     fn use_instruction_set(&mut self, set: InstructionSet) {

@@ -1,17 +1,20 @@
 //! The loop over time, written once.
 
+mod builder;
 mod failure;
 
 use std::sync::OnceLock;
 
+pub use builder::SimulationBuilder;
 pub use failure::SimulationError;
 
 use crate::archive::{Archive, Saved};
 use crate::compatibility::require;
-use crate::error::PericlesError;
+use crate::error::{PericlesError, positive};
 use crate::guard::{Alarm, Watched};
 use crate::interrupt::Interrupt;
 use crate::observe::{Observer, Schedule, Snapshot, StartEnergy};
+use crate::space::check_length;
 use crate::stop::{StopReason, StopWhen};
 use crate::system::System;
 use crate::time::{HighestFrequency, Integrator, State, highest_frequency};
@@ -87,20 +90,36 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A run of `steps` steps of length `dt` from the given state, which is prepared by the integrator.
+    /// A run of `steps` steps of length `dt` from the given state, which is prepared by the integrator. [`Simulation::builder`] finds steps and scheme by itself.
+    ///
+    /// # Errors
+    /// A state or an integrator of another body, a step that is not positive.
     pub fn new(
         mut system: System,
         mut integrator: Box<dyn Integrator>,
         mut state: State,
         dt: f64,
         steps: u64,
-    ) -> Self {
+    ) -> Result<Self, PericlesError> {
+        positive("the time step", dt)?;
+        let entries = system.dimension() * system.points();
+        for (what, given) in [
+            ("the displacement of the state", &state.u),
+            ("the velocity of the state", &state.v),
+            ("the acceleration of the state", &state.a),
+        ] {
+            check_length(what, given.len(), entries)?;
+        }
+        if let Some(made_for) = integrator.vector_length() {
+            let what = "the vectors of a time integrator that was made for another system";
+            check_length(what, made_for, entries)?;
+        }
         integrator.start(&mut system, &mut state);
         let start = StartEnergy {
             energy: system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u),
             scheme: integrator.energy_correction(&system, &state, dt),
         };
-        Self {
+        Ok(Self {
             system,
             integrator,
             state,
@@ -114,7 +133,7 @@ impl Simulation {
             step_ratio: OnceLock::new(),
             allow_unstable: false,
             instability: None,
-        }
+        })
     }
 
     /// The same where the frequency that limits the step is known, which the guard would look for otherwise.
@@ -146,8 +165,13 @@ impl Simulation {
     }
 
     /// Adds a condition that ends the run before its last step.
-    pub fn stop_when(&mut self, condition: StopWhen) {
+    ///
+    /// # Errors
+    /// Motions or points that the system does not have.
+    pub fn stop_when(&mut self, condition: StopWhen) -> Result<(), PericlesError> {
+        condition.check(&self.system)?;
         self.stops.push(condition);
+        Ok(())
     }
 
     /// The condition that ended the run, if one did.
@@ -192,6 +216,14 @@ impl Simulation {
             .energy_correction(&self.system, &self.state, self.dt);
         Snapshot::new(&self.system, &self.state, self.start, scheme)
             .with_inner(self.integrator.inner_iterations())
+    }
+
+    /// Runs to the end.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn run_to_end(&mut self) -> Result<Outcome, SimulationError> {
+        self.run(|_| Control::Continue)
     }
 
     /// Runs to the end, or until `control` says stop; `control` is asked after every step.

@@ -44,15 +44,18 @@ pub enum Shape {
 ///
 /// ```
 /// use pericles::space::{Grid, Shape};
-/// let plate = Grid {
-///     shape: Shape::Box { origin: [0.0; 3], size: vec![0.1, 0.04] },
+/// let disc = Grid {
+///     shape: Shape::Disc { centre: [0.0; 3], radius: 0.1 },
 ///     spacing: 0.01,
 ///     section: 1.0,
 ///     holes: vec![],
 /// };
-/// let points = plate.points().unwrap();
-/// assert_eq!(points.len(), 40);
-/// assert_eq!(points.point(0), [0.005, 0.005, 0.0]);
+/// let area: f64 = disc.points()?.volumes().iter().sum();
+/// assert!((area / (std::f64::consts::PI * 0.01) - 1.0).abs() < 0.02);
+/// let plate = Grid::plate([0.1, 0.04], 0.01, 1.0).points()?;
+/// assert_eq!(plate.len(), 40);
+/// assert_eq!(plate.point(0), [0.005, 0.005, 0.0]);
+/// # Ok::<(), pericles::PericlesError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
@@ -110,6 +113,33 @@ fn fitting_spacings(sides: &[f64], spacing: f64) -> Vec<f64> {
 }
 
 impl Grid {
+    /// A bar from x = 0 to `length` (m) with cells of `spacing` (m) and a section of `area` (m²).
+    pub fn bar(length: f64, spacing: f64, area: f64) -> Self {
+        Self::from_origin(vec![length], spacing, area)
+    }
+
+    /// A rectangular plate with a corner at the origin: `sides`, `spacing` and `thickness` in m.
+    pub fn plate(sides: [f64; 2], spacing: f64, thickness: f64) -> Self {
+        Self::from_origin(sides.into(), spacing, thickness)
+    }
+
+    /// A block with a corner at the origin: `sides` and `spacing` in m.
+    pub fn block(sides: [f64; 3], spacing: f64) -> Self {
+        Self::from_origin(sides.into(), spacing, 1.0)
+    }
+
+    fn from_origin(size: Vec<f64>, spacing: f64, section: f64) -> Self {
+        Self {
+            shape: Shape::Box {
+                origin: [0.0; 3],
+                size,
+            },
+            spacing,
+            section,
+            holes: Vec::new(),
+        }
+    }
+
     /// Dimension of the body.
     pub fn dimension(&self) -> usize {
         match &self.shape {
@@ -154,6 +184,13 @@ impl Grid {
                 radius,
                 height,
             } => {
+                if *axis > 2 {
+                    return Err(PericlesError::OutOfRange {
+                        quantity: "the axis of the cylinder",
+                        value: *axis as f64,
+                        allowed: "0, 1 or 2",
+                    });
+                }
                 let radius = positive("the radius of the cylinder", *radius)?;
                 let (mut corner, mut side) = centred(base, radius, 3);
                 corner[*axis] = base[*axis];
@@ -166,6 +203,9 @@ impl Grid {
     }
 
     /// Makes the cloud, x fastest.
+    ///
+    /// # Errors
+    /// Lengths that are not positive, sides that are not whole numbers of cells, too many cells, a body without points.
     pub fn points(&self) -> Result<PointCloud> {
         let cells = self.cells()?;
         let shape = cells.shape;

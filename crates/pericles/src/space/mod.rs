@@ -14,6 +14,7 @@ mod listed;
 mod quadrature;
 mod rectangular;
 mod region;
+mod set;
 mod sites;
 
 pub use cloud::{Lattice, PointCloud, PointSet};
@@ -24,6 +25,7 @@ pub use listed::ListedPoints;
 pub use quadrature::gauss_bar;
 pub use rectangular::{idle_holes, rectangular_cells};
 pub use region::{Face, Region};
+pub use set::{check_length, check_points, check_set};
 pub use sites::Sites;
 
 /// A point or vector in space; components beyond the body's dimension are zero.

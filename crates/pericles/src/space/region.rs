@@ -1,6 +1,7 @@
 //! Regions of space, from which holes, sets and layers are made.
 
 use super::Point;
+use crate::error::{PericlesError, Result};
 
 /// A face of a body's bounding box, named by its outward normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,6 +87,16 @@ pub enum Region {
 }
 
 impl Region {
+    /// The layer of a body within `depth` (m) of its face with this outward normal: `-x`, `+x`, `-y`, `+y`, `-z` or `+z`.
+    ///
+    /// # Errors
+    /// Another name.
+    pub fn layer(face: &str, depth: f64) -> Result<Self> {
+        let face =
+            Face::named(face).ok_or_else(|| PericlesError::UnknownFace { name: face.into() })?;
+        Ok(Self::Layer { face, depth })
+    }
+
     /// Whether `point` lies in the region of a body whose bounding box (of its cells) is `bounds`. Points on the boundary count
     /// as inside, up to `tolerance` (m).
     pub fn contains(&self, point: Point, bounds: &[Point; 2], tolerance: f64) -> bool {
@@ -116,11 +127,18 @@ impl Region {
                 height <= tolerance * length
             }
             Self::Layer { face, depth } => {
-                let c = face.axis;
+                // Space has no other axes, and no layers along them.
+                let [Some(low), Some(high), Some(place)] = [
+                    bounds[0].get(face.axis),
+                    bounds[1].get(face.axis),
+                    point.get(face.axis),
+                ] else {
+                    return false;
+                };
                 let inward = if face.upper {
-                    bounds[1][c] - point[c]
+                    high - place
                 } else {
-                    point[c] - bounds[0][c]
+                    place - low
                 };
                 inward <= depth + tolerance
             }

@@ -13,7 +13,7 @@ use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Force, Forces, On};
 use crate::parallel::{for_each_chunk, for_each_entry};
 use crate::scalar::PointScalar;
-use crate::space::PointCloud;
+use crate::space::{PointCloud, check_length};
 use crate::step_end::{Path, StepEnd};
 
 /// ρ u_tt = f(u) + b(t) with prescribed motions and boundaries.
@@ -36,17 +36,19 @@ impl System {
     /// A free body.
     ///
     /// # Errors
-    /// Densities that are not positive.
+    /// A force made for another body; densities that are not positive, or not one a point.
     pub fn new(
         cloud: Arc<PointCloud>,
         operator: Box<dyn Force>,
         density: PointScalar,
     ) -> Result<Self> {
+        Forces::check_body(&*operator, cloud.len(), cloud.dimension())?;
         match &density {
             PointScalar::Uniform(value) => {
                 positive("the density", *value)?;
             }
             PointScalar::PerPoint(values) => {
+                check_length("the densities of the points", values.len(), cloud.len())?;
                 for &value in values {
                     positive("the density", value)?;
                 }
@@ -66,8 +68,13 @@ impl System {
     }
 
     /// Adds a load.
-    pub fn add_load(&mut self, load: Load) {
+    ///
+    /// # Errors
+    /// Points that the body does not have, numbers that are not one for each loaded point and axis.
+    pub fn add_load(&mut self, load: Load) -> Result<()> {
+        load.check(self.dimension(), self.points())?;
         self.loads.push(load);
+        Ok(())
     }
 
     /// Adds a boundary.
@@ -78,8 +85,9 @@ impl System {
     /// Adds a prescribed motion.
     ///
     /// # Errors
-    /// A point and axis whose motion is prescribed already.
+    /// Points or axes that the body does not have, numbers that are not one for each point; a point and axis whose motion is prescribed already.
     pub fn add_motion(&mut self, motion: PrescribedMotion) -> Result<()> {
+        motion.check(self.dimension(), self.points())?;
         for other in &self.motions {
             for c in 0..3 {
                 if motion.along[c].is_none() || other.along[c].is_none() {
@@ -99,6 +107,14 @@ impl System {
         }
         self.motions.push(motion);
         Ok(())
+    }
+
+    /// Takes `u` as the displacement at the start, to which prescribed velocities add.
+    pub(crate) fn start_from(&mut self, u: &[f64]) {
+        let n = self.points();
+        for motion in &mut self.motions {
+            motion.start_from(u, n);
+        }
     }
 
     /// The points.

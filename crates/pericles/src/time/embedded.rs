@@ -159,6 +159,10 @@ impl Integrator for AdaptiveRungeKutta {
         NAME
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.next[0].len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         Self::REQUIREMENTS
     }

@@ -2,7 +2,7 @@
 
 use crate::error::{PericlesError, Result};
 use crate::operator::LocalForce;
-use crate::space::{PointCloud, PointSet};
+use crate::space::{PointCloud, PointSet, check_points};
 
 /// The points that take the fine step.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +92,7 @@ pub(super) fn mark_regions(
         if points.is_empty() {
             return Err(PericlesError::FineRegionEmpty { region });
         }
+        check_points("the points of a fine region", points, cloud.len())?;
         for &i in points {
             if std::mem::replace(&mut is_fine[i as usize], true) {
                 let first = regions

@@ -59,7 +59,12 @@ pub struct State {
 }
 
 impl State {
-    /// A body at rest in its reference position at t = 0.
+    /// The body of a system, undeformed and at rest at t = 0.
+    pub fn of(system: &System) -> Self {
+        Self::at_rest(system.dimension() * system.points())
+    }
+
+    /// The same of a body with so many entries, dimension times points.
     pub fn at_rest(entries: usize) -> Self {
         Self {
             t: 0.0,
@@ -118,6 +123,11 @@ crate::saved! {
 pub trait Integrator: Saved + Send {
     /// Name as in decks.
     fn name(&self) -> &'static str;
+
+    /// Entries of the vectors that it was made for, dimension times points; none if it steps any body. A run of another body refuses it.
+    fn vector_length(&self) -> Option<usize> {
+        None
+    }
 
     /// Where within a step it takes the forces: what boundaries with a memory depend on.
     fn step_kind(&self) -> StepKind {

@@ -123,6 +123,10 @@ impl Integrator for MultiTimeStep {
         self.name
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.work.stage.len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         Self::REQUIREMENTS
     }

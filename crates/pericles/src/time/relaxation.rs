@@ -299,6 +299,10 @@ impl Integrator for Relaxation {
         NAME
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.free.len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         Self::REQUIREMENTS
     }

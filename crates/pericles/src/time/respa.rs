@@ -127,6 +127,10 @@ impl Integrator for Respa {
         NAME
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.mean.len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         Self::REQUIREMENTS
     }

@@ -119,6 +119,10 @@ impl Integrator for RungeKutta {
         self.name
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.next[0].len())
+    }
+
     fn order(&self) -> u32 {
         self.order
     }
@@ -136,6 +140,10 @@ impl Integrator for RungeKutta {
     ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
         let (dt, n) = (t_next - *t, system.points());
+        // Boundaries, which alone look at the velocity of a stage, may have come after the scheme.
+        if system.has_boundaries() {
+            self.stage[1].resize(u.len(), 0.0);
+        }
         for i in 1..self.form.len() {
             let (before, later) = self.a.split_at_mut(i - 1);
             let known = Stages {

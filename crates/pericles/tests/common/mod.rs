@@ -69,6 +69,7 @@ pub fn listed<L: FastLaw, const D: usize>(
         no_fail,
         DamageMeasure::default(),
     )
+    .unwrap()
 }
 
 /// A free body of uniform density.

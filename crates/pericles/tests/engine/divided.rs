@@ -108,7 +108,7 @@ fn run(comm: Arc<dyn Comm>, make: Make) -> (Vec<usize>, End) {
         state.v[n + i] = -0.3;
     }
     let scheme = make(&system);
-    let mut run = Simulation::new(system, scheme, state, 0.05, 60);
+    let mut run = Simulation::new(system, scheme, state, 0.05, 60).unwrap();
     run.run(|_| Control::Continue).unwrap();
     let (system, state) = (run.system(), run.state());
     let sums = [

@@ -189,7 +189,7 @@ fn run(cloud: PointCloud, make: Make, scheme: MakeScheme) -> End {
         state.v[n + i] = 0.06 * (cloud.point(i)[1] - 6.0).signum() + 0.01 * (3.0 * number).cos();
     }
     let scheme = scheme(&system);
-    let mut run = Simulation::new(system, scheme, state, 0.2, 40);
+    let mut run = Simulation::new(system, scheme, state, 0.2, 40).unwrap();
     run.run(|_| Control::Continue).unwrap();
     let (system, state) = (run.system(), run.state());
     let operator = system.operator();

@@ -66,7 +66,9 @@ fn breaking_plate(steps: u64) -> Simulation {
         start: 0.0,
         duration: 2e-6,
     };
-    system.add_load(Load::new(layer("+y"), [0.0, 2e11, 0.0], ramp));
+    system
+        .add_load(Load::new(layer("+y"), [0.0, 2e11, 0.0], ramp))
+        .unwrap();
     let start = State::at_rest(2 * cloud.len());
     let support = PrescribedMotion::new(
         "support".into(),
@@ -76,9 +78,10 @@ fn breaking_plate(steps: u64) -> Simulation {
         TimeFunction::Constant,
         &start.u,
         cloud.len(),
-    );
+    )
+    .unwrap();
     system.add_motion(support).unwrap();
-    Simulation::new(system, Box::new(VelocityVerlet), start, 2e-8, steps)
+    Simulation::new(system, Box::new(VelocityVerlet), start, 2e-8, steps).unwrap()
 }
 
 #[test]
@@ -103,7 +106,8 @@ fn second_order_in_time() {
             start,
             end / steps as f64,
             steps,
-        );
+        )
+        .unwrap();
         simulation.run(|_| Control::Continue).unwrap();
         simulation.state().u.clone()
     };
@@ -152,7 +156,8 @@ fn the_stable_step_is_sharp() {
             start,
             dt,
             4000,
-        );
+        )
+        .unwrap();
         matches!(
             simulation.run(|_| Control::Continue),
             Err(SimulationError::Unstable { .. })
@@ -218,7 +223,8 @@ fn a_free_linear_body_keeps_its_discrete_energy_and_momentum() {
         * highest_frequency(&system, &start.u)
             .unwrap()
             .stable_step(2.0, 1.0);
-    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), start, dt, 2000);
+    let mut simulation =
+        Simulation::new(system, Box::new(VelocityVerlet), start, dt, 2000).unwrap();
     simulation.run(|_| Control::Continue).unwrap();
     let energies = simulation.snapshot().energies();
     // The plain energy oscillates by far more than the discrete one at 0.9 of the limit.
@@ -288,7 +294,7 @@ fn torn_plate(part: f64, grid_form: bool) -> (Energies, [f64; 2], u64) {
         .unwrap()
         .stable_step(2.0, 0.95 * part);
     let steps = (40e-6 / dt) as u64;
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps).unwrap();
     let (mut before, mut changes) = (0.0, [f64::INFINITY, f64::NEG_INFINITY]);
     run.run(|run| {
         let now = run.system().operator().dissipated();
@@ -370,7 +376,8 @@ fn supports_move_exactly_and_report_their_force() {
             ramp.clone(),
             &start.u,
             cloud.len(),
-        );
+        )
+        .unwrap();
         system.add_motion(motion).unwrap();
     }
     let twice = PrescribedMotion::new(
@@ -381,14 +388,16 @@ fn supports_move_exactly_and_report_their_force() {
         ramp.clone(),
         &start.u,
         cloud.len(),
-    );
+    )
+    .unwrap();
     assert!(system.add_motion(twice).is_err());
     let dt = 0.5
         * highest_frequency(&system, &start.u)
             .unwrap()
             .stable_step(2.0, 1.0);
     let steps = (40.0 * transit / dt) as u64;
-    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps);
+    let mut simulation =
+        Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps).unwrap();
     simulation.run(|_| Control::Continue).unwrap();
     let state = simulation.state();
     for &i in &layer("+x") {
@@ -596,7 +605,8 @@ fn no_fail_sets_do_not_break() {
         &constants,
         &held,
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     let n = cloud.len();
     let stretched: Vec<f64> = cloud.positions().iter().map(|x| 0.01 * x).collect();
     plate.end_step(

@@ -303,7 +303,7 @@ fn breaking_run(cloud: &Arc<PointCloud>, operator: Box<dyn Force>, steps: u64) -
             start.v[c * cloud.len() + i] = 2e3 * (cloud.point(i)[c] - cloud.point(middle)[c]);
         }
     }
-    Simulation::new(system, Box::new(VelocityVerlet), start, 4e-7, steps)
+    Simulation::new(system, Box::new(VelocityVerlet), start, 4e-7, steps).unwrap()
 }
 
 fn archive(simulation: &Simulation) -> Archive {

@@ -39,7 +39,7 @@ fn run(
     let dt = highest_frequency(&system, &start.u)
         .unwrap()
         .stable_step(2.0, part);
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps).unwrap();
     run.run(|_| Control::Continue).map(|_| ())
 }
 
@@ -96,7 +96,7 @@ fn slightly_unstable() -> Simulation {
     }
     let frequency = highest_frequency(&system, &start.u).unwrap();
     let dt = 1.0001 * frequency.unstable_step(2.0);
-    Simulation::new(system, Box::new(VelocityVerlet), start, dt, 4000)
+    Simulation::new(system, Box::new(VelocityVerlet), start, dt, 4000).unwrap()
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn the_energy_of_rounding_is_no_alarm() {
     let dt = highest_frequency(&system, &start.u)
         .unwrap()
         .stable_step(2.0, 0.95);
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, 4000);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, 4000).unwrap();
     run.run(|_| Control::Continue).unwrap();
     let energies = run.snapshot().energies();
     assert!(energies.kinetic < 1e-24, "{energies:?}");
@@ -183,6 +183,7 @@ fn a_body_that_becomes_stiffer_than_its_step_allows_is_told_so() {
             &vec![0.0; cloud.len()],
             cloud.len(),
         )
+        .unwrap()
     };
     system.add_motion(end("-x", -0.05)).unwrap();
     system.add_motion(end("+x", 0.05)).unwrap();

@@ -47,17 +47,20 @@ pub enum Action {
 pub fn loaded(action: Action) -> System {
     let (cloud, mut body) = plate(Fracture::Unbreakable);
     let right = points(&cloud, |x, _, _| x > 0.02 - 3.0 * DX);
-    let pull = |function| Load::traction(&cloud, right.clone(), [1e6, 0.0, 0.0], 1e-5, function);
+    let pull =
+        |function| Load::traction(&cloud, right.clone(), [1e6, 0.0, 0.0], 1e-5, function).unwrap();
     let ramp = TimeFunction::Ramp {
         start: 0.0,
         duration: 3e-6,
     };
     match action {
-        Action::Ramp => body.add_load(pull(ramp)),
-        Action::Late => body.add_load(Load {
-            window: [0.55e-6, ALWAYS[1]],
-            ..pull(TimeFunction::Constant)
-        }),
+        Action::Ramp => body.add_load(pull(ramp)).unwrap(),
+        Action::Late => body
+            .add_load(Load {
+                window: [0.55e-6, ALWAYS[1]],
+                ..pull(TimeFunction::Constant)
+            })
+            .unwrap(),
         Action::Support => {
             let still = vec![0.0; 2 * cloud.len()];
             let motion = PrescribedMotion::new(
@@ -68,7 +71,8 @@ pub fn loaded(action: Action) -> System {
                 ramp,
                 &still,
                 cloud.len(),
-            );
+            )
+            .unwrap();
             body.add_motion(motion).unwrap();
         }
     }
@@ -98,7 +102,7 @@ pub fn newmark(solver: InnerSolver) -> Box<MakeScheme> {
 pub fn from_rest(body: System, scheme: &MakeScheme, dt: f64, steps: u64) -> Simulation {
     let scheme = scheme(&body);
     let state = State::at_rest(body.dimension() * body.points());
-    Simulation::new(body, scheme, state, dt, steps)
+    Simulation::new(body, scheme, state, dt, steps).unwrap()
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
@@ -166,7 +170,8 @@ fn a_prestressed_body_at_rest_stays_at_rest() {
             TimeFunction::Constant,
             &state.u,
             cloud.len(),
-        );
+        )
+        .unwrap();
         body.add_motion(hold).unwrap();
         let before = state.u.clone();
         let scheme = rule(which)(&body);
@@ -175,7 +180,7 @@ fn a_prestressed_body_at_rest_stays_at_rest() {
             * highest_frequency(&body, &before)
                 .unwrap()
                 .stable_step(2.0, 1.0);
-        let mut run = Simulation::new(body, scheme, state, dt, 5);
+        let mut run = Simulation::new(body, scheme, state, dt, 5).unwrap();
         run.run(|_| Control::Continue).unwrap();
         assert!(distance(&run.state().u, &before) < 1e-12, "{which:?}");
     }
@@ -204,7 +209,8 @@ pub fn torn() -> System {
             },
             &still,
             cloud.len(),
-        );
+        )
+        .unwrap();
         body.add_motion(motion).unwrap();
     }
     body

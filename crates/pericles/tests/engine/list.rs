@@ -221,7 +221,8 @@ fn neighbours_far_apart_in_number() {
             no_fail: &[],
         },
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     // u = 1e-6 x²: a pair of opposite bonds gives 2e-6 |ξ|, 12e-6 in all; u of 2e4 has digits to 4e-12.
     let u: Vec<f64> = cloud.axis(0).iter().map(|x| 1e-6 * x * x).collect();
     let f = force(&list, &u);

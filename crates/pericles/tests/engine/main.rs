@@ -1,5 +1,7 @@
 //! Tests of the engine in one program: the generic loops are compiled once for all of them.
 
+mod arguments;
+mod builder;
 #[path = "../common/mod.rs"]
 mod common;
 mod divided;

@@ -121,7 +121,8 @@ fn operator<L: FastLaw, const D: usize>(
         &constants,
         &[],
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     (Box::new(operator), constants)
 }
 
@@ -522,6 +523,7 @@ fn all_subsets_give_the_same_bits_and_all_instruction_sets_the_same_force() {
             &[],
             DamageMeasure::default(),
         )
+        .unwrap()
         .with_instruction_set(set)
     };
     let n = cloud.len();

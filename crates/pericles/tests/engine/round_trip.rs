@@ -71,7 +71,7 @@ fn a_factor_belongs_to_the_same_step_after_a_resume() {
         let mut state = State::at_rest(cloud.len());
         state.v[..10].fill(1.0);
         // Differences of rounded times differ in their last digits.
-        Simulation::new(body, Box::new(scheme), state, 1e-6 * (0.1 + 1.0 / 3.0), 20)
+        Simulation::new(body, Box::new(scheme), state, 1e-6 * (0.1 + 1.0 / 3.0), 20).unwrap()
     };
     check_resume(make, [7]).unwrap();
 }
@@ -93,8 +93,10 @@ fn relaxation_with_conditions_to_stop_resumes() {
             damage: 0.99,
             points,
         };
-        run.stop_when(StopWhen::new("right".into(), reaction));
-        run.stop_when(StopWhen::new("right".into(), damage));
+        run.stop_when(StopWhen::new("right".into(), reaction))
+            .unwrap();
+        run.stop_when(StopWhen::new("right".into(), damage))
+            .unwrap();
         run
     };
     let end = check_resume(make, [3]).unwrap();

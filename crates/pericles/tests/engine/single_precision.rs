@@ -247,7 +247,7 @@ fn torn(form: BondForm) -> Simulation {
         state.v[n + i] = 30.0 * (cloud.point(i)[1] + 0.07) / 0.1;
     }
     let system = System::new(cloud, operator, PointScalar::Uniform(1000.0)).unwrap();
-    Simulation::new(system, Box::new(VelocityVerlet), state, 2e-6, 400)
+    Simulation::new(system, Box::new(VelocityVerlet), state, 2e-6, 400).unwrap()
 }
 
 #[test]

@@ -80,7 +80,8 @@ fn held(cloud: &Arc<PointCloud>, operator: Box<dyn Force>, pull: &Pull) -> Syste
             ramp(),
             &still,
             cloud.len(),
-        );
+        )
+        .unwrap();
         system.add_motion(motion).unwrap();
     };
     hold("left", &|x| x < 0.0, 0.0);
@@ -90,7 +91,9 @@ fn held(cloud: &Arc<PointCloud>, operator: Box<dyn Force>, pull: &Pull) -> Syste
         Pull::Force => {
             let layer = points(cloud, |x, _, _| end(x));
             let traction = [FORCE / AREA, 0.0, 0.0];
-            system.add_load(Load::traction(cloud, layer, traction, AREA, ramp()));
+            system
+                .add_load(Load::traction(cloud, layer, traction, AREA, ramp()).unwrap())
+                .unwrap();
         }
     }
     system
@@ -104,7 +107,7 @@ fn relaxed(
     let scheme = Relaxation::new(options, &system).unwrap();
     let state = State::at_rest(system.points());
     let dt = 1.0 / steps as f64;
-    let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps);
+    let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps).unwrap();
     simulation.run(|_| Control::Continue)?;
     Ok(simulation)
 }
@@ -183,7 +186,9 @@ fn a_load_without_support_has_no_equilibrium() {
         SurfaceCorrection::None,
     );
     let mut system = System::new(cloud.clone(), force, PointScalar::Uniform(1.0)).unwrap();
-    system.add_load(Load::new(vec![5], [1.0, 0.0, 0.0], TimeFunction::Constant));
+    system
+        .add_load(Load::new(vec![5], [1.0, 0.0, 0.0], TimeFunction::Constant))
+        .unwrap();
     let options = RelaxationOptions {
         iterations: 500,
         ..fine()
@@ -310,7 +315,7 @@ fn two_materials_in_a_row_are_two_springs_and_part_where_their_bond_is_weak() {
             "{rule:?}"
         );
         // Unbreakable halves that are hardly glued: only mixed bonds break, in all three times two of them.
-        classes.set_critical_stretch([0, 1], 1e-5);
+        classes.set_critical_stretch([0, 1], 1e-5).unwrap();
         let force = operator(&cloud, &hard, Some(&classes), SurfaceCorrection::None);
         let torn = relaxed(held(&cloud, force, &Pull::Move(1e-3)), fine(), 4).unwrap();
         assert_eq!(torn.system().operator().broken_bonds(), 6, "{rule:?}");
@@ -462,8 +467,9 @@ fn stop_conditions_end_static_and_dynamic_runs() {
         let scheme = Relaxation::new(fine(), &system).unwrap();
         let state = State::at_rest(system.points());
         let dt = 1.0 / STEPS as f64;
-        let mut run = Simulation::new(system, Box::new(scheme), state, dt, STEPS);
-        run.stop_when(StopWhen::new("right".into(), condition.clone()));
+        let mut run = Simulation::new(system, Box::new(scheme), state, dt, STEPS).unwrap();
+        run.stop_when(StopWhen::new("right".into(), condition.clone()))
+            .unwrap();
         let mut states = 0;
         let ended = run.run(|_| {
             states += 1;
@@ -496,14 +502,15 @@ fn stop_conditions_end_static_and_dynamic_runs() {
     for i in 0..n {
         state.v[i] = 20.0 * system.cloud().point(i)[0].max(0.0);
     }
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, dt, 2000);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, dt, 2000).unwrap();
     run.stop_when(StopWhen::new(
         "all".into(),
         StopCondition::DamageAbove {
             damage: 0.3,
             points: (0..n as u32).collect(),
         },
-    ));
+    ))
+    .unwrap();
     assert_eq!(run.run(|_| Control::Continue).unwrap(), Outcome::Finished);
     assert!(run.stop_reason().is_some() && run.state().step < 2000);
 }

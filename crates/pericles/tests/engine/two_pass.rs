@@ -249,7 +249,7 @@ fn run(system: System, make: Make, dt: f64) -> Simulation {
     let state = thrown(system.cloud());
     let steps = (END / dt).round() as u64;
     let scheme = make(&system);
-    let mut run = Simulation::new(system, scheme, state, dt, steps);
+    let mut run = Simulation::new(system, scheme, state, dt, steps).unwrap();
     run.run(|_| Control::Continue).unwrap();
     run
 }
@@ -308,6 +308,7 @@ fn a_run_with_two_forces_resumes_exactly() {
             0.02,
             steps,
         )
+        .unwrap()
     };
     let mut first = new();
     let stop = |run: &Simulation| match run.state().step {
@@ -334,7 +335,9 @@ fn a_block_rests_on_the_wall_with_its_weight() {
         duration: 1.0,
     };
     let weight = 2e-3;
-    system.add_load(Load::new(all, [0.0, -weight, 0.0], ramp));
+    system
+        .add_load(Load::new(all, [0.0, -weight, 0.0], ramp))
+        .unwrap();
     let options = RelaxationOptions {
         tolerance: 1e-9,
         ..RelaxationOptions::default()
@@ -343,7 +346,7 @@ fn a_block_rests_on_the_wall_with_its_weight() {
     let mut state = State::at_rest(2 * cloud.len());
     // Its lowest points touch the wall.
     state.u[cloud.len()..].fill(-0.3);
-    let mut run = Simulation::new(system, scheme, state, 0.5, 2);
+    let mut run = Simulation::new(system, scheme, state, 0.5, 2).unwrap();
     run.run(|_| Control::Continue).unwrap();
     let wall = run.system().forces().nth(1).unwrap();
     let mut push = vec![0.0; 2 * cloud.len()];

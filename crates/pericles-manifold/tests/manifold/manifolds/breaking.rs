@@ -21,7 +21,8 @@ fn bonds_break_once_and_dissipate_their_energy() {
             sphere.thrown(1.0),
             0.01,
             200,
-        );
+        )
+        .unwrap();
         run.run(|run| {
             if run.state().step == stop {
                 Control::Stop

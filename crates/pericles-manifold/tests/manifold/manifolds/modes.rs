@@ -97,7 +97,7 @@ type Scheme<'a> = &'a dyn Fn(&System) -> Box<dyn Integrator>;
 fn end(sphere: &Sphere, alpha: f64, scheme: Scheme<'_>, dt: f64, steps: u64) -> Vec<f64> {
     let system = sphere.system(&material(2.0, alpha));
     let scheme = scheme(&system);
-    let mut run = Simulation::new(system, scheme, start(sphere), dt, steps);
+    let mut run = Simulation::new(system, scheme, start(sphere), dt, steps).unwrap();
     run.run(|_| Control::Continue).unwrap();
     run.state().u.clone()
 }

@@ -57,9 +57,12 @@ fn the_energy_bound_is_met_with_equality_by_a_uniform_load() {
         ..material(3.0, 0.5)
     });
     let all = (0..n as u32).collect();
-    system.add_load(Load::new(all, [0.3, -0.1, 0.2], TimeFunction::Constant));
+    system
+        .add_load(Load::new(all, [0.3, -0.1, 0.2], TimeFunction::Constant))
+        .unwrap();
     let scheme = Newmark::new(newmark(InnerSolver::FixedPoint), &system).unwrap();
-    let mut run = Simulation::new(system, Box::new(scheme), State::at_rest(3 * n), 0.05, 40);
+    let mut run =
+        Simulation::new(system, Box::new(scheme), State::at_rest(3 * n), 0.05, 40).unwrap();
     let mut bound = EnergyBound::default();
     bound.margin(&run.snapshot());
     run.run(|run| {

@@ -126,7 +126,8 @@ fn the_inner_iteration_ends_where_explicit_schemes_do() {
         };
         let scheme = Newmark::new(options, &system).unwrap();
         let dt = part * 2.0 / 20.17;
-        let mut run = Simulation::new(system, Box::new(scheme), sphere.thrown(0.1), dt, 20);
+        let mut run =
+            Simulation::new(system, Box::new(scheme), sphere.thrown(0.1), dt, 20).unwrap();
         run.run(|_| Control::Continue)
             .map(|_| run.integrator().inner_iterations().unwrap().most)
     };
@@ -157,7 +158,8 @@ fn one_inner_iteration_is_not_answered_with_a_smaller_step() {
             ..NewmarkOptions::default()
         };
         let scheme = Newmark::new(options, &system).unwrap();
-        let mut run = Simulation::new(system, Box::new(scheme), sphere.thrown(0.1), dt, 20);
+        let mut run =
+            Simulation::new(system, Box::new(scheme), sphere.thrown(0.1), dt, 20).unwrap();
         run.run(|_| Control::Continue).unwrap_err().to_string()
     };
     let one = message(0.01, 1);
@@ -188,7 +190,7 @@ fn implicit_schemes_go_on_from_a_checkpoint() {
         let make = || {
             let system = sphere.system(&material);
             let integrator = scheme(&system);
-            Simulation::new(system, integrator, sphere.thrown(1.0), 0.05, 12)
+            Simulation::new(system, integrator, sphere.thrown(1.0), 0.05, 12).unwrap()
         };
         check_resume(make, [5]).unwrap();
     }

@@ -186,7 +186,7 @@ pub fn spread(
     dt: f64,
     steps: u64,
 ) -> (Simulation, f64) {
-    let mut run = Simulation::new(system, integrator, state, dt, steps);
+    let mut run = Simulation::new(system, integrator, state, dt, steps).unwrap();
     let first = run.snapshot().energies().initial;
     let (mut low, mut high) = (first, first);
     run.run(|run| {

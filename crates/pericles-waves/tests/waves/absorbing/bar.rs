@@ -68,7 +68,8 @@ fn bar_with(half: usize, beta: f64, critical_stretch: f64) -> System {
         },
         breaking,
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     System::new(cloud, Box::new(force), PointScalar::Uniform(1.0)).unwrap()
 }
 
@@ -103,7 +104,8 @@ pub(crate) fn add_ends(
 pub(crate) const BOTH: [Side; 2] = [Side::Left, Side::Right];
 
 pub(crate) fn run(system: System, state: State, dt: f64, steps: u64) -> Simulation {
-    let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps);
+    let mut simulation =
+        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps).unwrap();
     simulation.run(|_| Control::Continue).unwrap();
     simulation
 }

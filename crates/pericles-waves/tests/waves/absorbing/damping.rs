@@ -67,7 +67,7 @@ fn damping_is_resumed() {
     let make = || {
         let system = damped(layer(10.0, 0.01));
         let state = pulse(&system, 12.0);
-        Simulation::new(system, Box::new(VelocityVerlet), state, DT, 200)
+        Simulation::new(system, Box::new(VelocityVerlet), state, DT, 200).unwrap()
     };
     check_resume(make, [77]).unwrap();
 }

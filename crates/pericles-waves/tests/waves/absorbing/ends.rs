@@ -104,17 +104,20 @@ fn one_free_end_doubles_and_reflects() {
             &|xi| gaussian(xi[0].abs()) * xi[0].abs(),
             breaking,
             DamageMeasure::default(),
-        );
+        )
+        .unwrap();
         let mut system = System::new(cloud, Box::new(force), PointScalar::Uniform(1.0)).unwrap();
         // A push in the middle instead of an initial field.
-        system.add_load(Load::new(
-            vec![(half + margin) as u32],
-            [3.0, 0.0, 0.0],
-            TimeFunction::Pulse {
-                start: 0.0,
-                duration: 5.0,
-            },
-        ));
+        system
+            .add_load(Load::new(
+                vec![(half + margin) as u32],
+                [3.0, 0.0, 0.0],
+                TimeFunction::Pulse {
+                    start: 0.0,
+                    duration: 5.0,
+                },
+            ))
+            .unwrap();
         system
     };
     let large = right(1700);
@@ -159,7 +162,7 @@ fn stopped_and_resumed(history: fn(GhostKernels) -> Box<dyn History>) {
         let mut system = bar(60, 0.5);
         let state = pulse(&system, 0.0);
         add_ends(&mut system, &state, &BOTH, dt, steps, history);
-        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps)
+        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps).unwrap()
     };
     check_resume(make, [150]).unwrap();
 }
@@ -171,7 +174,7 @@ fn a_history_of_another_time_is_refused() {
         let mut system = bar(60, 0.5);
         let state = pulse(&system, 0.0);
         add_ends(&mut system, &state, &BOTH, dt, steps, blocked);
-        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps)
+        Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps).unwrap()
     };
     let mut first = make();
     first
@@ -235,11 +238,13 @@ fn what_cannot_be_continued_is_refused() {
         Err(E::NotAtRest { point: 114, .. })
     ));
     let mut loaded = bar(60, 1.0);
-    loaded.add_load(Load::new(
-        vec![3, 118],
-        [1.0, 0.0, 0.0],
-        TimeFunction::Constant,
-    ));
+    loaded
+        .add_load(Load::new(
+            vec![3, 118],
+            [1.0, 0.0, 0.0],
+            TimeFunction::Constant,
+        ))
+        .unwrap();
     let rest = State::at_rest(loaded.points());
     assert!(matches!(
         layer(&loaded, &rest),
@@ -248,7 +253,7 @@ fn what_cannot_be_continued_is_refused() {
     // More steps than the kernels have.
     let mut short = bar(60, 1.0);
     add_ends(&mut short, &rest, &BOTH, 0.1, 50, blocked);
-    let mut run = Simulation::new(short, Box::new(VelocityVerlet), rest, 0.1, 51);
+    let mut run = Simulation::new(short, Box::new(VelocityVerlet), rest, 0.1, 51).unwrap();
     assert!(matches!(
         run.run(|_| Control::Continue),
         Err(SimulationError::Misfit(PericlesError::BoundarySteps {

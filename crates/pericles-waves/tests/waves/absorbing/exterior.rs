@@ -44,7 +44,7 @@ fn with_ends() -> Simulation {
         }
         small.add_boundary(Box::new(end));
     }
-    Simulation::new(small, Box::new(VelocityVerlet), state, DT, STEPS)
+    Simulation::new(small, Box::new(VelocityVerlet), state, DT, STEPS).unwrap()
 }
 
 #[test]

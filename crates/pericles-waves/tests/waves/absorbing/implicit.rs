@@ -36,7 +36,8 @@ fn implicit(
     solver: LinearSolver,
 ) -> Simulation {
     let scheme = Implicit::with_solver(rule, solver, &system).unwrap();
-    let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps as u64);
+    let mut simulation =
+        Simulation::new(system, Box::new(scheme), state, dt, steps as u64).unwrap();
     simulation.run(|_| Control::Continue).unwrap();
     simulation
 }
@@ -100,7 +101,7 @@ fn stop_and_resume_gives_the_same_bits() {
             let state = pulse(&system, 0.0);
             add_ends(&mut system, &state, dt, steps, form);
             let scheme = Implicit::new(ImplicitRule::Midpoint, &system).unwrap();
-            Simulation::new(system, Box::new(scheme), state, dt, steps)
+            Simulation::new(system, Box::new(scheme), state, dt, steps).unwrap()
         };
         check_resume(make, [90]).unwrap();
     }
@@ -158,7 +159,7 @@ fn what_does_not_fit_is_refused() {
     let mut system = bar(60, 1.0);
     let rest = State::at_rest(system.points());
     add_ends(&mut system, &rest, 0.1, 10, HistoryForm::Direct);
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), rest.clone(), 0.1, 10);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), rest.clone(), 0.1, 10).unwrap();
     assert!(matches!(
         run.run(|_| Control::Continue),
         Err(SimulationError::Misfit(

@@ -67,7 +67,7 @@ fn with_ends(half: usize, steps: usize) -> Simulation {
         let end = StripEnd::new(lattice, side, state.u.len(), &kernels);
         system.add_boundary(Box::new(end));
     }
-    Simulation::new(system, Box::new(VelocityVerlet), state, DT, steps as u64)
+    Simulation::new(system, Box::new(VelocityVerlet), state, DT, steps as u64).unwrap()
 }
 
 #[test]
@@ -82,7 +82,8 @@ fn the_strip_equals_a_large_one() {
     // Nothing is faster than two columns per unit of time.
     let large = strip(half + steps * 2 * 35 / 200 + 60);
     let state = start(&large);
-    let mut large = Simulation::new(large, Box::new(VelocityVerlet), state, DT, steps as u64);
+    let mut large =
+        Simulation::new(large, Box::new(VelocityVerlet), state, DT, steps as u64).unwrap();
     large.run(|_| Control::Continue).unwrap();
     let place = |run: &Simulation, i: usize| {
         let at = run.system().cloud().point(i);

@@ -21,7 +21,7 @@ use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{BondForm, DamageMeasure, Feature, Features, Force, InstructionSet, On};
 use crate::parallel::{components_mut, for_each_part};
-use crate::space::{PointCloud, Sites};
+use crate::space::{PointCloud, Sites, check_points};
 use crate::step_end::StepEnd;
 
 /// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
@@ -95,7 +95,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     /// The operator of a material on a lattice body with pre-cracks; bonds of the points `no_fail` never break.
     ///
     /// # Errors
-    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack.
+    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
     pub fn new(
         cloud: Arc<PointCloud>,
         material: &BondMaterial,
@@ -116,6 +116,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
                 });
             }
         };
+        check_points("the points whose bonds never break", no_fail, cloud.len())?;
         let spacing = lattice.spacing;
         let correction = material.volume_correction;
         let volume = cloud.volumes()[0];

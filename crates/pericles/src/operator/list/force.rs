@@ -8,6 +8,7 @@ use super::kernels::accept_rows;
 use super::packed::{Packed, Reach};
 use super::stiffness::{Formula, Stiffness};
 use crate::domain::{Field, Letter};
+use crate::error::{PericlesError, Result};
 use crate::family::BondList;
 use crate::lanes::LANES;
 use crate::lanes::Row;
@@ -19,7 +20,7 @@ use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::{Force, InstructionSet, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block};
-use crate::space::PointCloud;
+use crate::space::{PointCloud, check_length, check_points};
 use crate::step_end::StepEnd;
 
 /// f(x_i) = Σ_j c α κ V_j s n over the bonds of a list: force density, N/m³.
@@ -60,8 +61,8 @@ crate::saved! {
 impl<L: FastLaw, const D: usize> BondForce<L, D> {
     /// The operator of a material on a body.
     ///
-    /// # Panics
-    /// If the cloud has another dimension than D; so do the other constructors.
+    /// # Errors
+    /// As of the other constructors: a cloud of another dimension than D, bonds of another cloud, points whose bonds never break that the cloud does not have.
     pub fn new(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -69,7 +70,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         constants: &BondConstants,
         no_fail: &[u32],
         damage: DamageMeasure,
-    ) -> Self {
+    ) -> Result<Self> {
         let breaking = Breaking {
             critical_stretch: constants.critical_stretch,
             no_fail,
@@ -95,7 +96,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         stiffness_of_bond: &(dyn Fn([f64; 3]) -> f64 + Sync),
         breaking: Breaking<'_>,
         damage: DamageMeasure,
-    ) -> Self {
+    ) -> Result<Self> {
         let of_pair = |_, _, xi| stiffness_of_bond(xi);
         Self::with_pair_stiffness(cloud, bonds, &of_pair, breaking, damage)
     }
@@ -108,7 +109,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         stiffness_of_pair: &(dyn Fn(usize, usize, [f64; 3]) -> f64 + Sync),
         breaking: Breaking<'_>,
         damage: DamageMeasure,
-    ) -> Self {
+    ) -> Result<Self> {
         let weighted = |bonds: &BondList, a: usize, b: usize| {
             let [i, j] = [a, b].map(|site| bonds.sites().point(site));
             stiffness_of_pair(i, j, bonds.vector(a, b)) * bonds.volume_factor(a, b)
@@ -123,7 +124,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         stiffness_of_pair: &(dyn Fn(&BondList, usize, usize) -> f64 + Sync),
         breaking: Breaking<'_>,
         damage: DamageMeasure,
-    ) -> Self {
+    ) -> Result<Self> {
+        check_length("the families of the bond list", bonds.len(), cloud.len())?;
         let stiffness = Stiffness::of_pairs(&bonds, &|i, b| {
             stiffness_of_pair(&bonds, bonds.site(i), b) * bonds.volume(b)
         });
@@ -136,9 +138,17 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         stiffness: Stiffness,
         breaking: Breaking<'_>,
         damage: DamageMeasure,
-    ) -> Self {
-        assert_eq!(cloud.dimension(), D, "an operator of the cloud's dimension");
+    ) -> Result<Self> {
         let n = cloud.len();
+        if cloud.dimension() != D {
+            return Err(PericlesError::WrongDimension {
+                what: "this list of bonds",
+                needed: ["1", "2", "3"][D - 1],
+                dimension: cloud.dimension(),
+            });
+        }
+        check_length("the families of the bond list", bonds.len(), n)?;
+        check_points("the points whose bonds never break", breaking.no_fail, n)?;
         let (reference, unit) = reference_rows(bonds.sites().places());
         let blocks = (0..n.div_ceil(BLOCK))
             .map(|block| {
@@ -152,7 +162,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             let places = cells.places();
             Packed::new((0..places.len()).map(|site| places.cell_size(site)))
         };
-        Self {
+        Ok(Self {
             reach: Reach::new(&bonds),
             packed: Pool::new(1, make),
             breakable: breakable(&bonds, breaking.no_fail),
@@ -167,7 +177,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             blocks,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
-        }
+        })
     }
 
     /// The same with critical stretches that depend on the materials of a bond's ends.

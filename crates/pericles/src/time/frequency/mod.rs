@@ -15,6 +15,7 @@ mod zone;
 use self::lanczos::{Lanczos, Problem};
 use self::zone::{PlaneWave, zone_maximum};
 use crate::error::{PericlesError, Result};
+use crate::space::{check_length, check_points};
 use crate::system::System;
 
 /// The highest angular frequency of the linearised free vibration.
@@ -95,8 +96,13 @@ const CHECK_EVERY: usize = 10;
 /// The highest frequency of M⁻¹K at displacement `u`, K being the tangent stiffness there.
 ///
 /// # Errors
-/// A body without any stiffness.
+/// A body without any stiffness, a displacement of another body.
 pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency> {
+    check_length(
+        "the displacement",
+        u.len(),
+        system.dimension() * system.points(),
+    )?;
     Search::new(system, u, &|vector| system.hold(vector)).run()
 }
 
@@ -108,12 +114,18 @@ pub fn frequency_from_below(system: &System, u: &[f64], applications: usize) -> 
 /// The same with all points held but those given, ascending.
 ///
 /// # Errors
-/// Points without any stiffness.
+/// Points without any stiffness, points or a displacement of another body.
 pub fn highest_frequency_on(
     system: &System,
     u: &[f64],
     points: &[u32],
 ) -> Result<HighestFrequency> {
+    check_length(
+        "the displacement",
+        u.len(),
+        system.dimension() * system.points(),
+    )?;
+    check_points("the free points", points, system.points())?;
     let mut held = vec![true; system.points()];
     points.iter().for_each(|&i| held[i as usize] = false);
     let hold = |vector: &mut [f64]| {

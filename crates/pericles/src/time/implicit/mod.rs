@@ -361,6 +361,10 @@ impl Integrator for Implicit {
         self.rule.name()
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.half.len())
+    }
+
     fn step_kind(&self) -> StepKind {
         StepKind::Middle
     }

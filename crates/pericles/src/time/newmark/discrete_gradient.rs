@@ -253,6 +253,10 @@ impl Integrator for DiscreteGradient {
         NAME
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.next.len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         Self::REQUIREMENTS
     }

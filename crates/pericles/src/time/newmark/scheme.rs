@@ -294,6 +294,10 @@ impl Integrator for Newmark {
         "newmark"
     }
 
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.next[0].len())
+    }
+
     fn requirements(&self) -> &'static [Requirement] {
         self.options.solver.requirements()
     }

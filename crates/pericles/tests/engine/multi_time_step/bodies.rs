@@ -41,7 +41,9 @@ pub fn plate_with<L: FastLaw>(load: f64) -> Problem {
         (points(&cloud, |x, _, _| x > 1.0 - spacing), 1.0),
     ] {
         let density = [sign * load * 200e6 / spacing, 0.0, 0.0];
-        system.add_load(Load::new(points, density, TimeFunction::Constant));
+        system
+            .add_load(Load::new(points, density, TimeFunction::Constant))
+            .unwrap();
     }
     let fine = points(&cloud, |x, y, _| {
         (x - 0.5).abs() < 0.15 && (y - 0.25).abs() < 0.1
@@ -113,7 +115,8 @@ pub fn crack<L: FastLaw>(cells: usize, speed: f64, critical_stretch: f64, end: f
             TimeFunction::Constant,
             &state.u,
             cloud.len(),
-        );
+        )
+        .unwrap();
         system.add_motion(motion).unwrap();
     }
     let fine = points(&cloud, |_, y, _| y.abs() < 0.005);
@@ -142,7 +145,8 @@ pub fn small_plate(stiffness: f64, core: f64) -> Problem {
         &pair,
         breaking,
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     let mut system = system(&cloud, operator, 8000.0);
     let mut state = State::at_rest(2 * cloud.len());
     let held = PrescribedMotion::new(
@@ -153,7 +157,8 @@ pub fn small_plate(stiffness: f64, core: f64) -> Problem {
         TimeFunction::Constant,
         &state.u,
         cloud.len(),
-    );
+    )
+    .unwrap();
     system.add_motion(held).unwrap();
     for (k, v) in state.v.iter_mut().enumerate() {
         *v = ((k * k) as f64).sin();
@@ -215,7 +220,9 @@ pub fn pushed_bar(kind: Option<MotionKind>) -> Problem {
     };
     let end = points(&cloud, |x, _, _| x < 0.015);
     match kind {
-        None => system.add_load(Load::new(end, [1e10, 0.0, 0.0], function)),
+        None => system
+            .add_load(Load::new(end, [1e10, 0.0, 0.0], function))
+            .unwrap(),
         Some(kind) => {
             let amplitude = match kind {
                 MotionKind::Displacement => 1e-3,
@@ -229,7 +236,8 @@ pub fn pushed_bar(kind: Option<MotionKind>) -> Problem {
                 function,
                 &state.u,
                 cloud.len(),
-            );
+            )
+            .unwrap();
             system.add_motion(motion).unwrap();
         }
     }

@@ -13,7 +13,8 @@ fn respa_keeps_energy_and_momentum(steps: u64) {
         let (system, state, fine, end) = steps_of(free_plate(), omega_dt, steps);
         let integrator = respa(4)(&system, &fine);
         let momentum = system.momentum(&state.v);
-        let mut simulation = Simulation::new(system, integrator, state, end / steps as f64, steps);
+        let mut simulation =
+            Simulation::new(system, integrator, state, end / steps as f64, steps).unwrap();
         let initial = simulation.start_energy().energy;
         let mut worst = [0.0f64; 2];
         simulation

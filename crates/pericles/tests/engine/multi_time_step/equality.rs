@@ -91,7 +91,7 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
         let start = || {
             let (system, state, fine, end) = cracking_plate();
             let integrator = scheme(&system, &fine);
-            Simulation::new(system, integrator, state, end / 64.0, 64)
+            Simulation::new(system, integrator, state, end / 64.0, 64).unwrap()
         };
         let name = start().integrator().name();
         let checked = check_resume(start, [1, 2, 41]);
@@ -137,7 +137,8 @@ fn evaluations_equal_the_model() {
             let (system, state, fine, end) = plate();
             let (n, f) = (system.points() as u64, fine.len() as u64);
             let integrator = two_steps(&system, order as u32, options(ratio, &fine));
-            let mut simulation = Simulation::new(system, integrator, state, end / 256.0, 10);
+            let mut simulation =
+                Simulation::new(system, integrator, state, end / 256.0, 10).unwrap();
             simulation.run(|_| Control::Continue).unwrap();
             let report = simulation.integrator().refinement().unwrap();
             let m = u64::from(ratio);
@@ -151,7 +152,7 @@ fn evaluations_equal_the_model() {
         }
         let (system, state, fine, end) = plate();
         let integrator = respa(ratio)(&system, &fine);
-        let mut simulation = Simulation::new(system, integrator, state, end / 256.0, 10);
+        let mut simulation = Simulation::new(system, integrator, state, end / 256.0, 10).unwrap();
         let at_start = simulation.system().evaluated_points();
         simulation.run(|_| Control::Continue).unwrap();
         let report = simulation.integrator().refinement().unwrap();

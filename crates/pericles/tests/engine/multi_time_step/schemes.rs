@@ -48,7 +48,8 @@ pub fn run(
     scheme: impl Fn(&System, &PointSet) -> Box<dyn Integrator>,
 ) -> Simulation {
     let integrator = scheme(&system, &fine);
-    let mut simulation = Simulation::new(system, integrator, state, end / steps as f64, steps);
+    let mut simulation =
+        Simulation::new(system, integrator, state, end / steps as f64, steps).unwrap();
     simulation.run(|_| Control::Continue).unwrap();
     simulation
 }

@@ -164,7 +164,7 @@ fn two_time_steps_on_two_grids_keep_momentum_and_energy() {
     assert!((2.4..3.1).contains(&ratio), "{ratio}");
     let momentum = system.momentum(&state.v);
     let dt = limiting.stable_step(2.0, 0.5);
-    let mut run = Simulation::new(system, Box::new(scheme), state, dt, 400);
+    let mut run = Simulation::new(system, Box::new(scheme), state, dt, 400).unwrap();
     let at_start = run.start_energy().energy;
     run.run(|_| Control::Continue).unwrap();
     let energies = run.snapshot().energies();

@@ -290,7 +290,7 @@ fn two_time_steps_on_the_grid_equal_those_on_the_list() {
                 };
                 let mut state = State::at_rest(u.len());
                 state.u.copy_from_slice(&u);
-                let mut simulation = Simulation::new(system, integrator, state, 3e-7, 12);
+                let mut simulation = Simulation::new(system, integrator, state, 3e-7, 12).unwrap();
                 simulation.run(|_| Control::Continue).unwrap();
                 (
                     simulation.state().u.clone(),

@@ -1,0 +1,227 @@
+//! Bodies step by step: points, material, cracks, loads and supports, from which a [`System`] is built.
+
+mod materials;
+
+use std::sync::Arc;
+
+use crate::boundary::{Boundary, Load, PrescribedMotion};
+use crate::error::{PericlesError, Result};
+use crate::family::{Crack, EndRule};
+use crate::material::{
+    BondConstants, BondMaterial, InterfaceRule, PairForce, StressState, SurfaceCorrection,
+};
+use crate::operator::{AssembledBonds, BondBody, BondForm, CompositeBody, DamageMeasure, Force};
+use crate::space::{PointCloud, PointSet, check_points};
+use crate::system::System;
+
+/// How the bonds of an own pair law are assembled.
+type Assemble = fn(&CompositeBody<'_>, BondForm) -> Result<AssembledBonds>;
+
+/// A bond-based body, given part by part; [`Body::build`] makes the [`System`] that integrators step.
+///
+/// Horizon, influence function, partial volumes, density and fracture come with the material. Everything else has a default: no cracks, bonds that may break everywhere, the faster
+/// of stencil and neighbour list, no loads, no supports.
+///
+/// ```
+/// use pericles::prelude::*;
+///
+/// // A plate of 40 mm × 20 mm with a crack from its left edge, pulled up and down.
+/// let plate = Grid::plate([0.04, 0.02], 0.5e-3, 1e-3).points()?;
+/// let top = plate.select(&Region::layer("+y", 0.5e-3)?);
+/// let bottom = plate.select(&Region::layer("-y", 0.5e-3)?);
+/// let glass = BondMaterial::new(ElasticModulus::Young(72e9), 2440.0, 1.5e-3).with_fracture_energy(3.8);
+///
+/// let system = Body::new(plate, glass)
+///     .stress_state(StressState::PlaneStress)
+///     .crack(Crack::Segment { from: [0.0, 0.01], to: [0.01, 0.01] })
+///     .motion(PrescribedMotion::velocity(top, [None, Some(1.0), None], TimeFunction::Constant))
+///     .motion(PrescribedMotion::velocity(bottom, [None, Some(-1.0), None], TimeFunction::Constant))
+///     .build()?;
+/// assert_eq!(system.points(), 3200);
+/// assert!(system.operator().can_break());
+/// # Ok::<(), PericlesError>(())
+/// ```
+#[must_use]
+pub struct Body {
+    cloud: Arc<PointCloud>,
+    material: BondMaterial,
+    state: Option<StressState>,
+    others: Vec<(PointSet, BondMaterial)>,
+    interface: InterfaceRule,
+    correction: SurfaceCorrection,
+    cracks: Vec<(Crack, EndRule)>,
+    no_fail: PointSet,
+    damage: DamageMeasure,
+    form: BondForm,
+    assemble: Assemble,
+    forces: Vec<Box<dyn Force>>,
+    loads: Vec<Load>,
+    motions: Vec<PrescribedMotion>,
+    boundaries: Vec<Box<dyn Boundary>>,
+}
+
+impl Body {
+    /// A free body of one material. Pass the points as an [`Arc`] where they are needed afterwards.
+    pub fn new(points: impl Into<Arc<PointCloud>>, material: BondMaterial) -> Self {
+        Self {
+            cloud: points.into(),
+            material,
+            state: None,
+            others: Vec::new(),
+            interface: InterfaceRule::default(),
+            correction: SurfaceCorrection::default(),
+            cracks: Vec::new(),
+            no_fail: Vec::new(),
+            damage: DamageMeasure::default(),
+            form: BondForm::default(),
+            assemble: |body, form| body.operator(form),
+            forces: Vec::new(),
+            loads: Vec::new(),
+            motions: Vec::new(),
+            boundaries: Vec::new(),
+        }
+    }
+
+    /// The stress state of a two-dimensional body, which must be given; bars and bodies in space have one each.
+    pub fn stress_state(mut self, state: StressState) -> Self {
+        self.state = Some(state);
+        self
+    }
+
+    /// Another material of some points. Density, modulus and fracture are its own; pair law, horizon, influence function and partial volumes are those of the body's first
+    /// material for all bonds, and must be the same. Where sets overlap, the last one counts.
+    pub fn material(mut self, points: PointSet, material: BondMaterial) -> Self {
+        self.others.push((points, material));
+        self
+    }
+
+    /// The constant of bonds between two materials; by default the harmonic mean.
+    pub fn interface(mut self, rule: InterfaceRule) -> Self {
+        self.interface = rule;
+        self
+    }
+
+    /// Corrects the stiffness of the bonds near surfaces.
+    pub fn surface_correction(mut self, correction: SurfaceCorrection) -> Self {
+        self.correction = correction;
+        self
+    }
+
+    /// A pre-crack, border included: no bond crosses it.
+    pub fn crack(mut self, crack: Crack) -> Self {
+        self.cracks.push((crack, EndRule::Closed));
+        self
+    }
+
+    /// Points whose bonds never break, beside those named before.
+    pub fn no_fail(mut self, points: PointSet) -> Self {
+        self.no_fail.extend(points);
+        self
+    }
+
+    /// How damage weighs bonds.
+    pub fn damage(mut self, measure: DamageMeasure) -> Self {
+        self.damage = measure;
+        self
+    }
+
+    /// How bonds are kept: as a list, as a stencil, or in the faster of these forms.
+    pub fn form(mut self, form: BondForm) -> Self {
+        self.form = form;
+        self
+    }
+
+    /// A pair law of the program's own, in place of the material's.
+    ///
+    /// The force of a bond is c α κ V_j L::force(ξ, η): the constant c follows from the material's modulus as for the built-in laws, so that a law whose force is ξ·η/|ξ|² for small η has this modulus.
+    pub fn pair_law<L: PairForce>(mut self) -> Self {
+        self.assemble = |body, form| body.operator_of_law::<L>(form);
+        self
+    }
+
+    /// Another force between the points of the body, beside that of its bonds.
+    pub fn force(mut self, force: Box<dyn Force>) -> Self {
+        self.forces.push(force);
+        self
+    }
+
+    /// A load.
+    pub fn load(mut self, load: Load) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// A prescribed displacement or velocity.
+    pub fn motion(mut self, motion: PrescribedMotion) -> Self {
+        self.motions.push(motion);
+        self
+    }
+
+    /// A boundary with a state of its own, such as a damping layer.
+    pub fn boundary(mut self, boundary: Box<dyn Boundary>) -> Self {
+        self.boundaries.push(boundary);
+        self
+    }
+
+    /// The constants of the bonds of the first material on this body: micromodulus, critical stretch.
+    ///
+    /// # Errors
+    /// A material that is refused ([`BondMaterial::constants`]), a two-dimensional body without a stress state.
+    pub fn constants(&self) -> Result<BondConstants> {
+        self.material.constants(&self.cloud, self.given_state()?)
+    }
+
+    /// The equation of motion of the body.
+    ///
+    /// # Errors
+    /// A two-dimensional body without a stress state; materials that are refused or do not go together; a horizon that reaches no neighbour; cracks that cut nothing or have no extent; a
+    /// form that does not fit the body; points that the body does not have; two motions of one point.
+    pub fn build(self) -> Result<System> {
+        let state = self.given_state()?;
+        let constants = self.material.constants(&self.cloud, state)?;
+        check_points(
+            "the points whose bonds never break",
+            &self.no_fail,
+            self.cloud.len(),
+        )?;
+        let mixture = self.mixture(&constants, state)?;
+        let body = BondBody {
+            cracks: &self.cracks,
+            no_fail: &self.no_fail,
+            damage: self.damage,
+            ..BondBody::new(&self.cloud, &self.material, &constants)
+        };
+        let composite = CompositeBody {
+            classes: mixture.classes.as_ref(),
+            correction: self.correction,
+            ..CompositeBody::from(body)
+        };
+        let bonds = (self.assemble)(&composite, self.form)?;
+        let mut system = System::new(self.cloud, bonds.operator, mixture.density)?;
+        for force in self.forces {
+            system.add_force(force)?;
+        }
+        for load in self.loads {
+            system.add_load(load)?;
+        }
+        for motion in self.motions {
+            system.add_motion(motion)?;
+        }
+        for boundary in self.boundaries {
+            system.add_boundary(boundary);
+        }
+        Ok(system)
+    }
+
+    fn given_state(&self) -> Result<StressState> {
+        match (self.state, self.cloud.dimension()) {
+            (Some(state), _) => Ok(state),
+            (None, 1) => Ok(StressState::Uniaxial),
+            (None, 3) => Ok(StressState::Spatial),
+            (None, _) => Err(PericlesError::NotGiven {
+                what: "the stress state of a two-dimensional body",
+                allowed: "give PlaneStress or PlaneStrain",
+            }),
+        }
+    }
+}

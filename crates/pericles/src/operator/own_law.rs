@@ -1,0 +1,70 @@
+//! Pair laws from outside of the engine.
+
+use super::fast_law::FastLaw;
+use super::{AssembledBonds, BondForm, CompositeBody};
+use crate::error::{PericlesError, Result};
+use crate::lanes::Real;
+use crate::material::PairForce;
+
+/// A pair law in the loops of lists and grids as it is written, without a faster form for small strains.
+///
+/// Whoever has a faster form implements [`FastLaw`] for the law itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PlainLaw<L>(std::marker::PhantomData<L>);
+
+impl<L: PairForce> PairForce for PlainLaw<L> {
+    const LINEAR: bool = L::LINEAR;
+
+    #[inline(always)]
+    fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
+        L::force(xi, eta)
+    }
+
+    #[inline(always)]
+    fn energy<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
+        L::energy(xi, eta)
+    }
+
+    #[inline(always)]
+    fn tangent<T: Real, const D: usize>(xi: [T; D], eta: [T; D], d: [T; D]) -> [T; D] {
+        L::tangent(xi, eta, d)
+    }
+
+    #[inline(always)]
+    fn stretch_measure<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T) {
+        L::stretch_measure(xi, eta)
+    }
+
+    fn threshold(stretch: f64) -> f64 {
+        L::threshold(stretch)
+    }
+}
+
+impl<L: PairForce> FastLaw for PlainLaw<L> {}
+
+impl CompositeBody<'_> {
+    /// The operator with a pair law from outside in place of the material's, in any form that the body allows.
+    ///
+    /// # Errors
+    /// Those of [`CompositeBody::operator`].
+    pub fn operator_of_law<L: PairForce>(&self, form: BondForm) -> Result<AssembledBonds> {
+        match self.body.cloud.dimension() {
+            1 => self.of_law::<PlainLaw<L>, 1>(form),
+            2 => self.of_law::<PlainLaw<L>, 2>(form),
+            3 => self.of_law::<PlainLaw<L>, 3>(form),
+            dimension => Err(PericlesError::WrongDimension {
+                what: "a bond-based material",
+                needed: "1, 2 or 3",
+                dimension,
+            }),
+        }
+    }
+
+    fn of_law<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+        if self.is_plain() {
+            return self.body.operator_of::<L, D>(form);
+        }
+        form.check(self.features())?;
+        self.list::<L, D>()
+    }
+}

@@ -1,0 +1,266 @@
+//! Arguments that do not fit each other are refused with an error: no panic by an index or a length.
+
+use std::sync::Arc;
+
+use pericles::boundary::{AxisMotion, LoadDensity, MotionKind};
+use pericles::family::BondList;
+use pericles::material::{BondStretch, PairClasses};
+use pericles::observe::Probe;
+use pericles::operator::{BondForce, Breaking, DamageMeasure, GridForce};
+use pericles::prelude::*;
+use pericles::time::{RungeKutta, Tableau, highest_frequency, highest_frequency_on};
+use pericles::{PointScalar, StopCondition, StopWhen};
+
+fn cloud(cells: usize) -> Arc<PointCloud> {
+    Arc::new(Grid::bar(cells as f64, 1.0, 1.0).points().unwrap())
+}
+
+fn material() -> BondMaterial {
+    BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0)
+}
+
+fn bonds(cloud: &Arc<PointCloud>) -> BondList {
+    BondList::new(cloud, 3.0, VolumeCorrection::Extended).unwrap()
+}
+
+fn system() -> System {
+    Body::new(cloud(10), material()).build().unwrap()
+}
+
+fn refused<T>(result: Result<T, PericlesError>, says: &str) {
+    let message = result.err().expect(says).to_string();
+    assert!(message.contains(says), "{message} does not say {says}");
+}
+
+#[test]
+fn forces_must_be_made_for_their_body() {
+    let (ten, nine) = (cloud(10), cloud(9));
+    let constants = material().constants(&ten, StressState::Uniaxial).unwrap();
+    let new = |cloud: &Arc<PointCloud>, no_fail: &[u32]| {
+        let (cloud, measure) = (cloud.clone(), DamageMeasure::default());
+        BondForce::<BondStretch, 1>::new(
+            cloud,
+            bonds(&nine),
+            &material(),
+            &constants,
+            no_fail,
+            measure,
+        )
+    };
+    refused(new(&ten, &[]), "the families of the bond list: 9 entries");
+    refused(
+        new(&nine, &[9]),
+        "point 9 is named, the points of the body are 0 to 8",
+    );
+    let never = Breaking {
+        critical_stretch: f64::INFINITY,
+        no_fail: &[],
+    };
+    let plane = BondForce::<BondStretch, 2>::with_stiffness(
+        nine.clone(),
+        bonds(&nine),
+        &|_| 1.0,
+        never,
+        DamageMeasure::default(),
+    );
+    refused(plane, "needs a body of dimension 2");
+    let grid = GridForce::<BondStretch, 1>::new(
+        ten.clone(),
+        &material(),
+        &constants,
+        &[],
+        &[10],
+        DamageMeasure::default(),
+    );
+    refused(grid, "point 10 is named");
+    let force = Box::new(new(&nine, &[]).unwrap());
+    let foreign = System::new(ten.clone(), force, PointScalar::Uniform(1.0));
+    refused(foreign, "the force acts on 9 points");
+    let force = Box::new(new(&nine, &[]).unwrap());
+    let densities = PointScalar::PerPoint(vec![1.0; 8]);
+    refused(
+        System::new(nine, force, densities),
+        "8 entries are given, 9 are needed",
+    );
+    refused(
+        BondList::new(&ten, f64::NAN, VolumeCorrection::None),
+        "the horizon",
+    );
+    refused(
+        BondList::with_horizons(&ten, vec![3.0; 9], VolumeCorrection::None),
+        "the horizons of the points: 9 entries",
+    );
+    refused(
+        material().constants_on(&[1.0, 1.0], 1.0, StressState::Uniaxial),
+        "the sides of the cells: 2 entries",
+    );
+    let classes = PairClasses::new(vec![0; 10], &[constants], InterfaceRule::Harmonic);
+    refused(
+        classes.unwrap().set_critical_stretch([0, 1], 0.1),
+        "material of a pair",
+    );
+}
+
+#[test]
+fn bodies_name_what_does_not_fit() {
+    let body = || Body::new(cloud(10), material());
+    refused(body().no_fail(vec![10]).build(), "point 10 is named");
+    refused(
+        body().material(vec![11], material()).build(),
+        "point 11 is named",
+    );
+    let wide = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 4.0);
+    refused(
+        body().material(vec![1], wide).build(),
+        "must be those of the first material",
+    );
+    refused(
+        body().stress_state(StressState::Spatial).build(),
+        "dimension",
+    );
+    let plate = Grid::plate([10.0, 10.0], 1.0, 1.0).points().unwrap();
+    refused(
+        Body::new(plate, material()).build(),
+        "give PlaneStress or PlaneStrain",
+    );
+    refused(Region::layer("top", 1.0), "`top` is not a face");
+    // An axis that space does not have has no layer.
+    let face = Face {
+        axis: 3,
+        upper: true,
+    };
+    assert!(
+        cloud(10)
+            .select(&Region::Layer { face, depth: 1.0 })
+            .is_empty()
+    );
+    let beam = Grid {
+        shape: Shape::Cylinder {
+            base: [0.0; 3],
+            axis: 3,
+            radius: 1.0,
+            height: 1.0,
+        },
+        spacing: 0.1,
+        section: 1.0,
+        holes: vec![],
+    };
+    refused(beam.points(), "the axis of the cylinder is 3");
+}
+
+#[test]
+fn loads_and_motions_must_fit_the_body() {
+    let constant = || TimeFunction::Constant;
+    let load = |points: Vec<u32>, density: LoadDensity| {
+        system().add_load(Load::new(points, density, constant()))
+    };
+    let unit = LoadDensity::Uniform([1.0, 0.0, 0.0]);
+    refused(
+        load(vec![10], unit.clone()),
+        "the points of a load: point 10",
+    );
+    refused(load(vec![2, 1], unit.clone()), "must be ascending");
+    refused(load(vec![1, 1], unit), "each may be named once");
+    let amplitudes = LoadDensity::PerPoint(vec![1.0]);
+    refused(
+        load(vec![1, 2], amplitudes),
+        "the amplitudes of a load: 1 entries",
+    );
+    let traction = |points, area| Load::traction(&cloud(10), points, [1.0; 3], area, constant());
+    refused(traction(vec![], 1.0), "no points are given");
+    refused(traction(vec![1], 0.0), "the area of a traction");
+
+    let fixed = |points| system().add_motion(PrescribedMotion::fixed(points, 1));
+    refused(
+        fixed(vec![12]),
+        "the points of a prescribed motion: point 12",
+    );
+    let across = PrescribedMotion::displacement(vec![1], [None, Some(0.0), None], constant());
+    refused(system().add_motion(across), "a motion along this axis");
+    let mut changed = PrescribedMotion::fixed(vec![1], 1);
+    changed.points.push(2);
+    refused(system().add_motion(changed), "after it was made");
+    let along = |u: &[f64], axis: AxisMotion| {
+        let along = [Some(axis), None, None];
+        let points = vec![1, 2];
+        PrescribedMotion::along(
+            "pull".into(),
+            points,
+            MotionKind::Velocity,
+            along,
+            constant(),
+            u,
+            10,
+        )
+    };
+    refused(
+        along(&[0.0; 9], AxisMotion::Uniform(1.0)),
+        "9 entries are given, 10 are needed",
+    );
+    let short = along(&[0.0; 10], AxisMotion::PerPoint(vec![1.0])).unwrap();
+    refused(
+        system().add_motion(short),
+        "1 entries are given, 2 are needed",
+    );
+}
+
+#[test]
+fn states_and_steps_must_fit_the_system() {
+    let new = |entries, dt| {
+        let state = State::at_rest(entries);
+        Simulation::new(system(), Box::new(VelocityVerlet), state, dt, 5)
+    };
+    refused(new(9, 0.1), "the displacement of the state: 9 entries");
+    refused(new(10, f64::NAN), "the time step");
+    let mut state = State::at_rest(10);
+    state.v.pop();
+    let run = Simulation::new(system(), Box::new(VelocityVerlet), state.clone(), 0.1, 5);
+    refused(run, "the velocity of the state: 9 entries");
+    let other = Body::new(cloud(9), material()).build().unwrap();
+    let scheme = RungeKutta::new(&Tableau::rk4(), &other);
+    let run = Simulation::new(system(), Box::new(scheme), State::at_rest(10), 0.1, 5);
+    refused(run, "made for another system: 9 entries");
+    let build = || Simulation::builder(system());
+    refused(build().state(state), "the velocity of the state");
+    refused(build().velocity_of(&vec![10], [1.0; 3]), "point 10");
+    refused(build().build(), "give end (s) or steps");
+    refused(build().end(-1.0).build(), "the end of the simulation");
+    refused(
+        build().safety(0.0).steps(1).build(),
+        "the part of the stable step",
+    );
+    refused(
+        highest_frequency(&system(), &[0.0; 9]),
+        "the displacement: 9 entries",
+    );
+    refused(
+        highest_frequency_on(&system(), &[0.0; 10], &[10]),
+        "the free points: point 10",
+    );
+    let mut run = new(10, 0.1).unwrap();
+    let reaction = StopCondition::ReactionBelow {
+        share: 0.5,
+        motions: vec![0],
+    };
+    refused(
+        run.stop_when(StopWhen::new("left".into(), reaction)),
+        "stop condition is 0",
+    );
+    let tracked = TrackedCrack {
+        crack: Crack::Section { x: 5.0 },
+        points: vec![10],
+    };
+    refused(
+        CrackTracker::new(&cloud(10), vec![tracked], 0.3).map(|_| ()),
+        "point 10",
+    );
+    let probe = |points| Probe {
+        name: "end".into(),
+        points,
+    };
+    refused(probe(vec![]).read(&run.snapshot()), "no points are given");
+    refused(
+        probe(vec![10]).read(&run.snapshot()),
+        "the points of a probe: point 10",
+    );
+}
