@@ -200,8 +200,9 @@ impl BondList {
                 removed
             })
             .collect();
+        let directed = removed.iter().map(|&count| u64::from(count)).sum();
         Ok(Cut {
-            bonds: removed.iter().map(|&count| u64::from(count)).sum::<u64>() / 2,
+            bonds: cloud.domain().count(directed) / 2,
             points: (0..removed.len() as u32)
                 .filter(|&i| removed[i as usize] > 0)
                 .collect(),

@@ -267,17 +267,21 @@ impl Cutter {
     /// Whether the bond between two sites, or one of its images beyond periodic faces, meets the crack. Both ends of a bond compute it from the same numbers.
     pub fn cuts_bond(&self, sites: &Sites, here: usize, there: usize) -> bool {
         let places = sites.places();
-        let shift = sites.shift(there);
-        if shift == [0; 3] {
+        if !sites.cloud().is_periodic() {
             return self.cuts(places.point(here), places.point(there));
         }
+        let shift = sites.shift(there);
         let periods = sites.periods();
         let unmoved = sites.of_point(sites.point(there));
         let [p, q] = [here, unmoved].map(|site| places.point(site));
         let moved = |x: Point, by: [i16; 3]| -> Point {
             std::array::from_fn(|c| x[c] + f64::from(by[c]) * periods[c])
         };
-        let steps = |c: usize| shift[c].min(0)..=shift[c].max(0);
+        // A crack may leave through a face and come in at the other.
+        let steps = |c: usize| match c < places.dimension() {
+            true => shift[c].min(0) - 1..=shift[c].max(0) + 1,
+            false => 0..=0,
+        };
         steps(2).any(|z| {
             steps(1).any(|y| {
                 steps(0).any(|x| {

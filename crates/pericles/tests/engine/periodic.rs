@@ -157,8 +157,7 @@ fn torn(shift: usize, stencil: bool) -> (Vec<f64>, u64, [f64; 3]) {
         start.v[n + i] = -0.03 * (std::f64::consts::TAU * (row + 0.5) / SIZE[1]).sin();
     }
     let before = system.momentum(&start.v);
-    let mut run =
-        Simulation::new(system, Box::new(VelocityVerlet), start, 0.1, 120).unwrap();
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, 0.1, 120).unwrap();
     run.run(|_| Control::Continue).unwrap();
     let energies = run.snapshot().energies();
     let after = run.system().momentum(&run.state().v);

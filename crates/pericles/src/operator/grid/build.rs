@@ -85,13 +85,9 @@ pub(super) fn cut<const D: usize>(
             removed
         })
         .collect();
+    let directed = removed.iter().flatten().map(|&(_, count)| count).sum();
     let mut cut = Cut {
-        bonds: removed
-            .iter()
-            .flatten()
-            .map(|&(_, count)| count)
-            .sum::<u64>()
-            / 2,
+        bonds: sites.cloud().domain().count(directed) / 2,
         points: removed.iter().flatten().map(|&(i, _)| i).collect(),
     };
     cut.points.sort_unstable();

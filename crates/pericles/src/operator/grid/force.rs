@@ -142,7 +142,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             .iter()
             .map(|crack| cut(&sites, &layout, &stencil, crack, &mut blocks))
             .collect::<Result<Vec<_>>>()?;
-        let precut = if cuts.iter().any(|cut| cut.bonds > 0) {
+        let precut = if cuts.iter().any(|cut| !cut.points.is_empty()) {
             precut_bonds(&layout, &stencil, &blocks)
         } else {
             Vec::new()
