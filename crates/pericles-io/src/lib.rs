@@ -7,6 +7,7 @@
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
+//! | meshes: all of these, Abaqus `.inp`, Exodus II | points and sets from elements, bodies in closed surfaces | [`read_mesh`] |
 //! | text `x y z block volume` | bodies whose points are listed | [`read_points`] |
 //! | text with a line of numbers for each point | initial states | [`read_rows`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
@@ -62,8 +63,8 @@ pub use csv::{Cell, Column, CsvData, CsvTable, csv_row, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;
 pub use mesh::{
-    FieldColumn, FieldData, MeshError, Place, SURFACE_ENDINGS, parse_fields, parse_surface,
-    read_fields, read_surface,
+    FieldColumn, FieldData, MESH_ENDINGS, MeshError, Place, SURFACE_ENDINGS, parse_fields,
+    parse_mesh, parse_surface, read_fields, read_mesh, read_surface,
 };
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,

@@ -277,6 +277,15 @@ fn elements_fill_a_box_without_gaps() {
         let owners = if of_tets { 2 * n * n } else { n * n };
         assert_eq!(left.points.len(), owners);
         assert!(points.warnings.is_empty(), "{:?}", points.warnings);
+        // A layer of two bricks: all points with x below it, for the face is the whole side of the box.
+        let depth = 0.4 * unit;
+        let near = points.near_faces(&mesh, unit, "left", depth).unwrap();
+        let expected = (0u32..)
+            .zip(&points.positions)
+            .filter(|(_, x)| x[0] <= depth);
+        assert_eq!(near, expected.map(|(point, _)| point).collect::<Vec<u32>>());
+        assert!(near.len() > left.points.len());
+        assert_eq!(points.near_faces(&mesh, unit, "right", depth), None);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use pericles_manifold::surface::SurfaceError;
-use pericles_mesh::{Fault, Place};
+use pericles_mesh::{Fault, Format, Place};
 
 use super::SURFACE_ENDINGS;
 use crate::IoError;
@@ -18,6 +18,12 @@ pub enum MeshError {
     /// An ending that belongs to no format.
     #[error("{}: surfaces are read from files that end in .{}", path.display(), SURFACE_ENDINGS.join(", ."))]
     UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An ending that belongs to no format of meshes.
+    #[error("{}: meshes are read from files that end in .{}", path.display(), Format::ENDINGS.join(", ."))]
+    UnknownMeshFormat {
         /// The file.
         path: PathBuf,
     },

@@ -50,6 +50,46 @@ pub fn read_surface(path: impl AsRef<Path>, memory: u64) -> Result<Surface, Mesh
     surface(format, path, &content, memory)
 }
 
+/// The endings of files of meshes.
+pub const MESH_ENDINGS: [&str; 13] = Format::ENDINGS;
+
+/// Reads a mesh with its sets, in the file's unit of length; the ending of the file's name tells the format. Files that an Abaqus file includes are read from its
+/// folder.
+///
+/// # Errors
+/// A file that cannot be read or needs more than `memory` bytes, an unknown ending, content that is not what the format says, with its place.
+pub fn read_mesh(path: impl AsRef<Path>, memory: u64) -> Result<RawMesh, MeshError> {
+    let path = path.as_ref();
+    let format =
+        Format::of(path).ok_or_else(|| MeshError::UnknownMeshFormat { path: path.into() })?;
+    let content = read_whole(path, EXPANSION, memory)?;
+    let include = |name: &str| {
+        let included = path.with_file_name(name);
+        read_whole(&included, EXPANSION, memory).map_err(|error| error.to_string())
+    };
+    format
+        .parse(&content, memory, &include)
+        .map_err(|fault| fault_of(fault, path, memory))
+}
+
+/// The mesh in the content of a file; its name tells the format, and is what messages call it. No other files are read.
+///
+/// # Errors
+/// As [`read_mesh`], but for a file that cannot be read.
+pub fn parse_mesh(
+    name: impl AsRef<Path>,
+    content: &[u8],
+    memory: u64,
+) -> Result<RawMesh, MeshError> {
+    let name = name.as_ref();
+    let format =
+        Format::of(name).ok_or_else(|| MeshError::UnknownMeshFormat { path: name.into() })?;
+    let alone = |included: &str| Err(format!("{included} is included, which is not read here"));
+    format
+        .parse(content, memory, &alone)
+        .map_err(|fault| fault_of(fault, name, memory))
+}
+
 /// The surface in the content of a file; its name tells the format, and is what messages call it.
 ///
 /// # Errors

@@ -156,15 +156,16 @@ impl Reading<'_> {
                     self.elements.push(None);
                     continue;
                 };
-                let corners = element[..kind.corners().min(element.len())]
-                    .iter()
-                    .map(|&node| self.node(node, &name))
-                    .collect::<Result<Vec<u32>, Fault>>()?;
+                let mut corners = [0; 8];
+                let corners = &mut corners[..kind.corners()];
+                for (corner, &node) in corners.iter_mut().zip(element) {
+                    *corner = self.node(node, &name)?;
+                }
                 let number = numbers
                     .get(place)
                     .map_or(place as u64 + 1, |n| n.unsigned_abs());
                 self.elements.push(Some(self.mesh.cells.len() as u32));
-                self.mesh.cells.push_numbered(number, kind, &corners);
+                self.mesh.cells.push_numbered(number, kind, corners);
             }
             let members: Vec<u32> = (begin..self.mesh.cells.len() as u32).collect();
             if kind == Some(CellKind::Point) {

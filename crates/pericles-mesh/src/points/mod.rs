@@ -11,6 +11,7 @@
 //!
 //! Names are unique: where two kinds of sets share one, elements keep it, and the others get ` (faces)` or ` (nodes)` at their end.
 
+mod near;
 mod problem;
 mod sets;
 mod summary;
@@ -18,6 +19,8 @@ mod summary;
 pub use problem::{ElementSize, Problem};
 pub use sets::{PointSet, SetKind};
 pub use summary::{SetSummary, Summary};
+
+use rayon::prelude::*;
 
 use crate::cell::CellKind;
 use crate::element::{Measure, is_folded, measure};
@@ -141,8 +144,9 @@ impl RawMesh {
         let scale = options.unit.powi(body_dimension as i32) * section;
         let (mut positions, mut volumes, mut sizes) = (vec![], vec![], vec![]);
         let mut empty: Option<(u64, usize)> = None;
-        for &cell in &cells {
-            let Measure { volume, centroid } = self.element(cell)?;
+        let elements: Vec<_> = cells.par_iter().map(|&cell| self.element(cell)).collect();
+        for (&cell, element) in cells.iter().zip(elements) {
+            let Measure { volume, centroid } = element?;
             if self.lacks_volume(cell, volume) {
                 let number = self.cells.number(cell as usize);
                 let (_, count) = empty.get_or_insert((number, 0));

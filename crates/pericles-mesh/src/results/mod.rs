@@ -15,6 +15,9 @@ mod vtkhdf;
 pub use exodus::{ExodusLayout, ExodusWriter, PointList};
 pub use vtkhdf::{VtkHdfLayout, VtkHdfWriter};
 
+#[cfg(test)]
+mod tests;
+
 use std::io::{self, Seek, SeekFrom, Write};
 
 /// A field on the points.

@@ -12,6 +12,9 @@ use std::path::{Path, PathBuf};
 use super::hdf5::{Kind, MOST_MEMBERS, Object, Skeleton, Type, Value, header_of};
 use super::{FieldSpec, Numbers, WriteError, check_fields, check_values, unsuitable};
 
+/// The largest number of outputs: several numbers for each are held in memory.
+const MOST_OUTPUTS: usize = 1 << 24;
+
 /// A page: headers that change are written in one piece of it.
 const PAGE: u64 = 4096;
 
@@ -51,8 +54,11 @@ impl VtkHdfLayout<'_> {
                 self.dimension
             ));
         }
-        if self.outputs == 0 {
-            return unsuitable("the number of outputs is 0; it must be 1 at least");
+        if !(1..=MOST_OUTPUTS).contains(&self.outputs) {
+            let outputs = self.outputs;
+            return unsuitable(format!(
+                "the number of outputs is {outputs}; allowed: 1 to {MOST_OUTPUTS}"
+            ));
         }
         let constants = self.constants.iter().map(|(field, _)| field);
         let all: Vec<&FieldSpec> = self.fields.iter().chain(constants).collect();

@@ -210,6 +210,43 @@ fn a_surface_written_by_our_own_writer_is_read_back() {
     assert_eq!(read.triangles(), sphere.triangles());
 }
 
+#[test]
+fn meshes_are_read_with_the_files_that_they_include() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bar.inp");
+    std::fs::write(
+        &path,
+        "*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=C3D4, ELSET=all\n1, 1, 2, 3, 4\n",
+    )
+    .unwrap();
+    let message = read_mesh(&path, u64::MAX).unwrap_err().to_string();
+    assert!(
+        message.contains("bar.inp:1: ") && message.contains("nodes.inp does not exist"),
+        "{message}"
+    );
+    let nodes = folder.path().join("nodes.inp");
+    std::fs::write(&nodes, "*NODE\n1, 0\n2, 1\n3, 0, 1\n4, 0, 0, 1\n").unwrap();
+    let mesh = read_mesh(&path, u64::MAX).unwrap();
+    assert_eq!(
+        (mesh.nodes.len(), mesh.cells.len(), mesh.groups.len()),
+        (4, 1, 1)
+    );
+    // A fault in an included file names that file.
+    std::fs::write(&nodes, "*NODE\n1, zero\n").unwrap();
+    let message = read_mesh(&path, u64::MAX).unwrap_err().to_string();
+    assert!(
+        message.contains("nodes.inp:2: \"zero\" is not a number"),
+        "{message}"
+    );
+    let message = parse_mesh("bar.stp", b"", u64::MAX)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        message,
+        "bar.stp: meshes are read from files that end in .obj, .ply, .stl, .off, .msh, .vtu, .vtp, .inp, .e, .exo, .ex2, .g, .gen"
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]

@@ -1,0 +1,227 @@
+//! Exodus II, output by output.
+//!
+//! The file is CDF-2: a header, values that do not change, then one record for each output. A record is appended first, then the number of records is
+//! written: a run that is killed leaves a whole file. To resume, the file is cut after a number of records.
+
+mod description;
+mod names;
+
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use self::description::{Description, write_fixed};
+use super::cdf::Places;
+use super::{FieldSpec, Numbers, WriteError, check_fields, check_values, unsuitable};
+
+/// A named list of points.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PointList {
+    /// The name.
+    pub name: String,
+    /// The points, from 0.
+    pub points: Vec<u32>,
+}
+
+/// What a file holds.
+#[derive(Debug, Clone)]
+pub struct ExodusLayout<'a> {
+    /// A title of at most 80 characters.
+    pub title: String,
+    /// Number of coordinates of a point.
+    pub dimension: usize,
+    /// Positions, component-major, m.
+    pub positions: &'a [f64],
+    /// Volumes of the points, m³.
+    pub volumes: &'a [f64],
+    /// Blocks, such as materials: every point is in exactly one.
+    pub blocks: Vec<PointList>,
+    /// Node sets.
+    pub sets: Vec<PointList>,
+    /// Names of numbers of the whole body.
+    pub globals: Vec<String>,
+    /// Fields on the points.
+    pub fields: Vec<FieldSpec>,
+    /// Whether fields are written with four bytes a number in place of eight.
+    pub is_single: bool,
+}
+
+impl ExodusLayout<'_> {
+    fn points(&self) -> usize {
+        self.volumes.len()
+    }
+
+    fn check(&self) -> Result<(), WriteError> {
+        check_fields(&self.fields)?;
+        let points = self.points();
+        if points == 0 {
+            return unsuitable("there are no points");
+        }
+        if !(1..=3).contains(&self.dimension) || self.positions.len() != self.dimension * points {
+            return unsuitable(format!(
+                "{} coordinates are given for {points} points of {} dimensions",
+                self.positions.len(),
+                self.dimension
+            ));
+        }
+        let mut seen = vec![false; points];
+        for &point in self.blocks.iter().flat_map(|block| &block.points) {
+            match seen.get_mut(point as usize) {
+                Some(seen) if !*seen => *seen = true,
+                Some(_) => return unsuitable(format!("point {point} is in two blocks")),
+                None => return unsuitable(format!("a block has the point {point} of {points}")),
+            }
+        }
+        if let Some(point) = seen.iter().position(|seen| !seen) {
+            return unsuitable(format!("point {point} is in no block"));
+        }
+        for set in &self.sets {
+            if let Some(point) = set.points.iter().find(|&&p| p as usize >= points) {
+                return unsuitable(format!(
+                    "the set {:?} has the point {point} of {points}",
+                    set.name
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A file that grows by one record for each output.
+#[derive(Debug)]
+pub struct ExodusWriter {
+    file: File,
+    places: Places,
+    points: usize,
+    globals: usize,
+    fields: Vec<FieldSpec>,
+    numbers: Numbers,
+    records: u32,
+}
+
+impl ExodusWriter {
+    /// Makes a file without outputs.
+    ///
+    /// # Errors
+    /// A file that cannot be written, arrays that do not fit together, a point that is not in exactly one block, more points than the format can hold.
+    pub fn create(path: impl AsRef<Path>, layout: &ExodusLayout<'_>) -> Result<Self, WriteError> {
+        layout.check()?;
+        let Description { header, fixed, .. } = Description::new(layout)?;
+        let places = header.places()?;
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(true)
+            .open(path)?;
+        file.write_all(&places.header)?;
+        for (variable, values) in &fixed {
+            write_fixed(&mut file, places.begins[*variable], values, layout)?;
+        }
+        file.set_len(places.first_record)?;
+        Ok(Self::of(file, places, layout, 0))
+    }
+
+    fn of(file: File, places: Places, layout: &ExodusLayout<'_>, records: u32) -> Self {
+        Self {
+            file,
+            places,
+            points: layout.points(),
+            globals: layout.globals.len(),
+            fields: layout.fields.clone(),
+            numbers: Numbers {
+                is_single: layout.is_single,
+                is_little: false,
+            },
+            records,
+        }
+    }
+
+    /// Continues a file after a number of outputs; what it holds beyond these is cut off.
+    ///
+    /// # Errors
+    /// A file that cannot be written, is of another layout, or holds fewer outputs.
+    pub fn resume(
+        path: impl AsRef<Path>,
+        layout: &ExodusLayout<'_>,
+        outputs: usize,
+    ) -> Result<Self, WriteError> {
+        layout.check()?;
+        let places = Description::new(layout)?.header.places()?;
+        let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+        let mut begin = vec![0; places.header.len()];
+        let other = || WriteError::NotContinued("its header is that of another run".into());
+        file.read_exact(&mut begin).map_err(|_| other())?;
+        if begin[..4] != places.header[..4] || begin[8..] != places.header[8..] {
+            return Err(other());
+        }
+        let found = u32::from_be_bytes([begin[4], begin[5], begin[6], begin[7]]);
+        let needed = u32::try_from(outputs).unwrap_or(u32::MAX);
+        let end = places.first_record + u64::from(needed) * places.record_bytes;
+        if found < needed || file.metadata()?.len() < end {
+            return Err(WriteError::NotContinued(format!(
+                "it holds {found} outputs; {needed} are needed"
+            )));
+        }
+        let mut writer = Self::of(file, places, layout, needed);
+        writer.publish()?;
+        writer.file.set_len(end)?;
+        Ok(writer)
+    }
+
+    /// The number of outputs.
+    pub fn outputs(&self) -> usize {
+        self.records as usize
+    }
+
+    /// Writes an output: the time (s), numbers of the whole body, and a component-major array for each field.
+    ///
+    /// # Errors
+    /// A file that cannot be written, arrays that do not fit together.
+    pub fn append(
+        &mut self,
+        time: f64,
+        globals: &[f64],
+        values: &[&[f64]],
+    ) -> Result<(), WriteError> {
+        check_values(&self.fields, values, self.points)?;
+        if globals.len() != self.globals {
+            return unsuitable(format!(
+                "{} global numbers are given; {} are needed",
+                globals.len(),
+                self.globals
+            ));
+        }
+        let mut place =
+            self.places.first_record + u64::from(self.records) * self.places.record_bytes;
+        let doubles = Numbers {
+            is_single: false,
+            is_little: false,
+        };
+        doubles.write_at(&mut self.file, place, 1, |_| time)?;
+        place += 8;
+        doubles.write_at(&mut self.file, place, globals.len(), |k| globals[k])?;
+        place += 8 * globals.len() as u64;
+        let points = self.points;
+        for (field, values) in self.fields.iter().zip(values) {
+            for column in 0..field.columns() {
+                let number = |i: usize| match column < field.components {
+                    true => values[column * points + i],
+                    false => 0.0,
+                };
+                self.numbers
+                    .write_at(&mut self.file, place, points, number)?;
+                place += self.numbers.bytes() * points as u64;
+            }
+        }
+        self.records += 1;
+        self.publish()
+    }
+
+    /// Writes the number of records into the header.
+    fn publish(&mut self) -> Result<(), WriteError> {
+        self.file.seek(SeekFrom::Start(4))?;
+        self.file.write_all(&self.records.to_be_bytes())?;
+        Ok(())
+    }
+}
