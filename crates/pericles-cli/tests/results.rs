@@ -5,6 +5,9 @@ mod common;
 use std::fs;
 
 use common::{fail, run, succeed, text, with_plate};
+use pericles_deck::Deck;
+use pericles_io::OutputFolder;
+use pericles_run::{Assembled, Cancel, Ending, Event, Means, Run, Source};
 use serde_json::Value;
 
 #[test]
@@ -353,4 +356,53 @@ fn more_threads_than_a_machine_can_use_are_refused() {
     let (status, message) = fail(place.path(), "check plate.toml --threads 8000");
     assert_eq!(status, 2, "{message}");
     assert!(message.contains("a whole number from 1 to"), "{message}");
+}
+
+#[test]
+fn commands_work_on_the_folder_of_a_model_without_a_deck() {
+    let place = with_plate();
+    let short = ["time.end=\"9 us\"".to_owned()];
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --set time.end=\"9us\"",
+    );
+    // A program begins the same run, and stops it.
+    let deck = Deck::read(place.path().join("plate.toml"), &short).unwrap();
+    let source = Source::of_model(deck.model, place.path());
+    let assembled = Assembled::of(&source, &Means::default(), &mut |_| {}).unwrap();
+    let folder = OutputFolder::create(place.path().join("model"), false).unwrap();
+    let mut run = Run::begin(&source, assembled, folder).unwrap();
+    let cancel = Cancel::new();
+    let ending = run.drive(None, &cancel.clone(), &mut |event| {
+        if let Event::Step { step: 40, .. } = event {
+            cancel.cancel();
+        }
+    });
+    assert_eq!(ending.unwrap(), Ending::Cancelled);
+    drop(run);
+
+    succeed(place.path(), "resume model --quiet");
+    let said = text(&succeed(place.path(), "info model").stdout);
+    for words in [
+        "model: Torn plate",
+        "finished; step 90 of 90",
+        "written by a program",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    succeed(place.path(), "diff plate model");
+    for (folder, plots) in [("plate", "a"), ("model", "b")] {
+        succeed(place.path(), &format!("plot {folder} --out {plots}"));
+    }
+    let drawn = |plots: &str| {
+        let picture = place.path().join(plots).join("Damage-000001.png");
+        fs::read(picture).unwrap()
+    };
+    assert_eq!(drawn("a"), drawn("b"));
+    succeed(place.path(), "report model");
+    let page = fs::read_to_string(place.path().join("model/report.html")).unwrap();
+    assert!(
+        page.contains("Model data") && page.contains("plane-stress"),
+        "{page}"
+    );
 }

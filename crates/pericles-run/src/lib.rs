@@ -17,9 +17,9 @@
 //! use pericles_io::OutputFolder;
 //! use pericles_run::{Assembled, Cancel, Ending, Event, Means, Run, Source};
 //!
-//! let deck = Deck::read("plate.toml".as_ref(), &[])?;
+//! let deck = Deck::read("plate.toml", &[])?;
 //! let source = Source::of_deck(deck, "plate.toml".into());
-//! // or, of a model: Source::of_model(model, "folder of its files".as_ref())
+//! // or, of a model: Source::of_model(model, Path::new("folder of its files"))
 //!
 //! // The folder is created after the model has been checked.
 //! let assembled = Assembled::of(&source, &Means::default(), &mut |_| {})?;

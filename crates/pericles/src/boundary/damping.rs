@@ -3,7 +3,7 @@
 use super::{Boundary, Exchange};
 use crate::error::{PericlesError, Result};
 use crate::scalar::PointScalar;
-use crate::space::{Face, PointCloud};
+use crate::space::{Face, PointCloud, check_length};
 use crate::step_end::StepEnd;
 use crate::step_kind::StepKind;
 
@@ -74,6 +74,9 @@ impl DampingLayer {
         dt: f64,
         frequency: Option<f64>,
     ) -> Result<Self> {
+        if let PointScalar::PerPoint(densities) = density {
+            check_length("the densities of the points", densities.len(), cloud.len())?;
+        }
         check(cloud, face, &profile, dt, frequency)
             .map_err(|reason| PericlesError::BadDampingLayer { reason })?;
         let depth = depths(cloud, face, profile.thickness);

@@ -123,7 +123,7 @@ impl CompositeBody<'_> {
             self.body.damage,
         )?;
         let list = match self.classes {
-            Some(classes) => list.with_critical_stretches(classes.clone()),
+            Some(classes) => list.with_critical_stretches(classes.clone())?,
             None => list,
         };
         Ok(AssembledBonds {

@@ -8,7 +8,7 @@ use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
 use crate::material::{BondMaterial, Fracture, StressState};
-use crate::space::PointCloud;
+use crate::space::{PointCloud, check_length};
 
 /// What one grid of a body adds to the bonds of its points.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +92,19 @@ impl GradedBody<'_> {
     fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
         let laws = self.laws()?;
         let cloud = self.cloud;
+        check_length(
+            "the grids of the points",
+            self.grid_of_point.len(),
+            cloud.len(),
+        )?;
+        let last = self.grid_of_point.iter().copied().max().unwrap_or(0);
+        if usize::from(last) >= laws.len() {
+            return Err(PericlesError::OutOfRange {
+                quantity: "the number of a point's grid",
+                value: f64::from(last),
+                allowed: "numbers of the grids given, from 0",
+            });
+        }
         let law_of = |grid: u8| &laws[usize::from(grid)];
         let grids = self.grid_of_point.iter();
         let horizons = grids.map(|&grid| law_of(grid).horizon).collect();

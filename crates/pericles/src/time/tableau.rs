@@ -1,6 +1,7 @@
 //! Runge–Kutta methods as data.
 
 use crate::error::{PericlesError, Result};
+use crate::space::check_length;
 
 /// A Runge–Kutta method y₁ = y₀ + dt Σ b_i k_i, k_i = F(t + c_i dt, y₀ + dt Σ_j a_ij k_j), explicit.
 ///
@@ -10,20 +11,80 @@ use crate::error::{PericlesError, Result};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tableau {
     /// Name as in decks.
-    pub name: &'static str,
+    pub(super) name: &'static str,
     /// Order.
-    pub order: u32,
+    pub(super) order: u32,
     /// c.
-    pub nodes: Vec<f64>,
+    pub(super) nodes: Vec<f64>,
     /// A, row by row; row i has i entries.
-    pub stages: Vec<Vec<f64>>,
+    pub(super) stages: Vec<Vec<f64>>,
     /// b.
-    pub weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     /// Weights of the embedded method of the order below.
-    pub embedded: Option<Vec<f64>>,
+    pub(super) embedded: Option<Vec<f64>>,
 }
 
 impl Tableau {
+    /// A method by its coefficients: `nodes` c, `stages` A row by row (row i has i entries), `weights` b. Its order is taken as given.
+    ///
+    /// ```
+    /// use pericles::time::Tableau;
+    ///
+    /// // Heun's method of order three.
+    /// let third = 1.0 / 3.0;
+    /// let stages = vec![vec![], vec![third], vec![0.0, 2.0 * third]];
+    /// let heun = Tableau::new("heun-3", 3, vec![0.0, third, 2.0 * third], stages, vec![0.25, 0.0, 0.75])?;
+    /// assert!((heun.stability_limit() - 3f64.sqrt()).abs() < 1e-6);
+    /// # Ok::<(), pericles::PericlesError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No stages; rows or weights of other lengths; nodes that are not the sums of their rows, from which the stages of second-order equations follow;
+    /// weights whose sum is not one.
+    pub fn new(
+        name: &'static str,
+        order: u32,
+        nodes: Vec<f64>,
+        stages: Vec<Vec<f64>>,
+        weights: Vec<f64>,
+    ) -> Result<Self> {
+        const ROUNDING: f64 = 1e-12;
+        let count = nodes.len();
+        check_length(
+            "the weights of a Runge–Kutta method",
+            weights.len(),
+            count.max(1),
+        )?;
+        check_length("the stages of a Runge–Kutta method", stages.len(), count)?;
+        for (i, (node, row)) in nodes.iter().zip(&stages).enumerate() {
+            check_length("a row of the stages of a Runge–Kutta method", row.len(), i)?;
+            let off = node - row.iter().sum::<f64>();
+            if off.is_nan() || off.abs() > ROUNDING {
+                return Err(PericlesError::SchemeParameter {
+                    parameter: "a node of the Runge–Kutta method less the sum of its row",
+                    value: off,
+                    allowed: "0",
+                });
+            }
+        }
+        let sum = weights.iter().sum::<f64>();
+        if sum.is_nan() || (sum - 1.0).abs() > ROUNDING {
+            return Err(PericlesError::SchemeParameter {
+                parameter: "the sum of the weights of the Runge–Kutta method",
+                value: sum,
+                allowed: "1",
+            });
+        }
+        Ok(Self {
+            name,
+            order,
+            nodes,
+            stages,
+            weights,
+            embedded: None,
+        })
+    }
+
     /// Two stages at 2/3: order three for every α but zero (Ascher & Petzold 1998, the one-parameter family of three-stage methods); α = 3/4 is Heun's method.
     ///
     /// # Errors

@@ -220,6 +220,27 @@ fn states_and_steps_must_fit_the_system() {
     let scheme = RungeKutta::new(&Tableau::rk4(), &other);
     let run = Simulation::new(system(), Box::new(scheme), State::at_rest(10), 0.1, 5);
     refused(run, "made for another system: 9 entries");
+    let tableau = |nodes: &[f64], stages: Vec<Vec<f64>>, weights: &[f64]| {
+        Tableau::new("own", 2, nodes.to_vec(), stages, weights.to_vec())
+    };
+    refused(
+        tableau(&[], vec![], &[]),
+        "the weights of a Runge–Kutta method: 0 entries",
+    );
+    let rows = || vec![vec![], vec![0.5]];
+    refused(
+        tableau(&[0.0, 0.5], rows(), &[1.0]),
+        "1 entries are given, 2 are needed",
+    );
+    refused(
+        tableau(&[0.0, 1.0], rows(), &[0.0, 1.0]),
+        "less the sum of its row",
+    );
+    refused(
+        tableau(&[0.0, 0.5], rows(), &[0.5, 1.0]),
+        "the sum of the weights",
+    );
+    assert!(tableau(&[0.0, 0.5], rows(), &[0.0, 1.0]).is_ok());
     let build = || Simulation::builder(system());
     refused(build().state(state), "the velocity of the state");
     refused(build().velocity_of(&vec![10], [1.0; 3]), "point 10");

@@ -181,14 +181,22 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     }
 
     /// The same with critical stretches that depend on the materials of a bond's ends.
-    pub fn with_critical_stretches(self, classes: PairClasses) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// Materials that are not one for each point.
+    pub fn with_critical_stretches(self, classes: PairClasses) -> Result<Self> {
+        check_length(
+            "the materials of the points",
+            classes.of_point().len(),
+            self.cloud.len(),
+        )?;
+        Ok(Self {
             critical_stretch: classes.smallest_critical_stretch(),
             pairs: Some(PairThresholds::of::<L>(
                 classes.on_sites(self.bonds.sites()),
             )),
             ..self
-        }
+        })
     }
 
     /// Runs the loops with another instruction set; for tests and benchmarks.
