@@ -76,7 +76,7 @@ pub const SCHEMES: [Scheme; 12] = [
     Scheme {
         words: "r-RESPA",
         names: &["respa"],
-        kind: StepKind::Stages,
+        kind: StepKind::Kicks,
         requirements: Respa::REQUIREMENTS,
     },
     Scheme {
@@ -177,7 +177,7 @@ impl Scheme {
         let kinds = condition.kinds();
         let kind_fits = kinds.is_empty() || kinds.contains(&self.kind);
         match unmet {
-            None if !kind_fits => Some(condition.wants_a_kind()),
+            None if !kind_fits => Some(OTHER_KERNELS),
             unmet => unmet,
         }
     }
@@ -246,11 +246,10 @@ impl Condition {
     /// Whether a system with it does not meet a need.
     fn breaks(self, need: Need) -> bool {
         match self {
-            Self::Supports => need == Need::NoSupports,
-            Self::ReleasedPoints => matches!(need, Need::NoSupports | Need::NoReleasedPoints),
+            Self::Supports | Self::ReleasedPoints => need == Need::NoSupports,
             Self::Breaking => need == Need::NothingBreaks,
-            Self::AbsorbingEnds => need == Need::NoBoundaries,
-            Self::DampingLayers => matches!(need, Need::NoBoundaries | Need::BoundariesWithinStep),
+            Self::AbsorbingEnds => matches!(need, Need::NoBoundaries | Need::NoMemory),
+            Self::DampingLayers => need == Need::NoBoundaries,
         }
     }
 
@@ -258,20 +257,13 @@ impl Condition {
     fn kinds(self) -> &'static [StepKind] {
         match self {
             Self::AbsorbingEnds => LatticeScheme::KINDS,
-            Self::DampingLayers => &[StepKind::EndOfStep],
-            Self::Supports | Self::ReleasedPoints | Self::Breaking => &[],
-        }
-    }
-
-    fn wants_a_kind(self) -> &'static str {
-        match self {
-            Self::AbsorbingEnds => {
-                "the kernels of an absorbing end are made for a scheme: velocity-verlet, implicit-midpoint or trapezoidal"
-            }
-            _ => "a damping layer damps the velocities of velocity-verlet",
+            Self::Supports | Self::ReleasedPoints | Self::Breaking | Self::DampingLayers => &[],
         }
     }
 }
+
+/// Why absorbing ends do not go with most kinds of steps.
+const OTHER_KERNELS: &str = "the kernels of an absorbing end are made for a scheme: velocity-verlet, implicit-midpoint or trapezoidal";
 
 /// The tables of schemes with forms and with conditions, and of features of bodies with forms, in Markdown, with the reasons of what is refused.
 pub fn tables() -> String {

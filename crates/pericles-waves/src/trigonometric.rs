@@ -89,6 +89,8 @@ pub struct TrigonometricOptions {
 pub struct Trigonometric {
     options: TrigonometricOptions,
     engine: Engine,
+    /// The number of prescribed motions that held their points when the functions were made.
+    held: u64,
     linear: bool,
     /// The displacement about which forces are linearised: none.
     reference: Vec<f64>,
@@ -111,10 +113,9 @@ impl Trigonometric {
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
-            need: Need::NoBoundaries,
+            need: Need::NoMemory,
             reason: "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
         },
-        Requirement::SAME_SUPPORTS,
     ];
 
     /// The scheme for a body.
@@ -135,11 +136,12 @@ impl Trigonometric {
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let reference = array();
-        let engine = engine(options, system, &reference)?;
+        let engine = engine(options, system, &reference, 0.0)?;
         let linear = system.operator().as_linear().is_some();
         Ok(Self {
             options,
             engine,
+            held: system.holding(0.0),
             linear,
             reference,
             push: array(),
@@ -150,11 +152,21 @@ impl Trigonometric {
         })
     }
 
+    /// Makes the functions anew where they know which points are held and some have been let go.
+    fn follow_supports(&mut self, system: &System, t_next: f64) -> Result<()> {
+        let held = system.holding(t_next);
+        if held != self.held && self.options.functions == FunctionMethod::Eigenvectors {
+            self.engine = engine(self.options, system, &self.reference, t_next)?;
+        }
+        self.held = held;
+        Ok(())
+    }
+
     /// Splits the held acceleration in `pull` into that of the linear part, which stays there, and the remainder.
-    fn split(&mut self, system: &System, t: f64, u: &[f64]) {
-        system.vibration_into(&self.reference, u, &mut self.remainder);
+    fn split(&mut self, system: &System, [t, t_next]: [f64; 2], u: &[f64]) {
+        system.vibration_at(t_next, &self.reference, u, &mut self.remainder);
         system.external_acceleration_into(t, &mut self.change);
-        system.hold(&mut self.change);
+        system.hold_at(t_next, &mut self.change);
         self.remainder
             .par_chunks_mut(BLOCK)
             .zip(self.pull.par_chunks_mut(BLOCK))
@@ -168,8 +180,8 @@ impl Trigonometric {
             });
     }
 
-    /// r at a time within the step: zero where nothing changes.
-    fn change_into(&mut self, system: &System, t: [f64; 2], u: &[f64]) -> bool {
+    /// r of the second of three times, start, place and end of the step: zero where nothing changes.
+    fn change_into(&mut self, system: &System, t: [f64; 3], u: &[f64]) -> bool {
         let [push, change] = [&mut self.push, &mut self.change];
         system.external_acceleration_into(t[1], change);
         system.external_acceleration_into(t[0], push);
@@ -178,14 +190,24 @@ impl Trigonometric {
             push.copy_from_slice(u);
             system.place_on(t[1], &On::All, push);
             subtract(push, u);
-            system.vibration_into(&self.reference, push, &mut self.pull);
-            system.hold(change);
+            // Points that are let go within the step are free in all of it.
+            self.pull.copy_from_slice(push);
+            system.hold_at(t[2], &mut self.pull);
+            subtract(push, &self.pull);
+            system.vibration_at(t[2], &self.reference, push, &mut self.pull);
+            system.hold_at(t[2], change);
             subtract(change, &self.pull);
         }
         change.iter().any(|x| *x != 0.0)
     }
 
-    fn flow(&mut self, system: &System, tau: f64, interrupt: Interrupt<'_>) -> Result<()> {
+    fn flow(
+        &mut self,
+        system: &System,
+        [t, t_next]: [f64; 2],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        let tau = t_next - t;
         let [u, v] = &mut self.next;
         let by_velocity = [
             Term::new(WaveFunction::Sine, tau, u),
@@ -195,7 +217,7 @@ impl Trigonometric {
             &mut self.engine,
             self.options,
             system,
-            &self.reference,
+            (&self.reference, t_next),
             (&self.push, by_velocity),
             interrupt,
         )?;
@@ -207,7 +229,7 @@ impl Trigonometric {
             &mut self.engine,
             self.options,
             system,
-            &self.reference,
+            (&self.reference, t_next),
             (&self.pull, by_force),
             interrupt,
         )
@@ -229,7 +251,7 @@ impl Trigonometric {
             LoadRule::Midpoint => &[(0.5, 1.0)],
         };
         for (node, weight) in nodes {
-            if self.change_into(system, [t, t + node * tau], u) {
+            if self.change_into(system, [t, t + node * tau, t + tau], u) {
                 let left = (1.0 - node) * tau;
                 let [u, v] = &mut self.next;
                 let terms = [
@@ -240,7 +262,7 @@ impl Trigonometric {
                     &mut self.engine,
                     self.options,
                     system,
-                    &self.reference,
+                    (&self.reference, t + tau),
                     (&self.change, terms),
                     interrupt,
                 )?;
@@ -250,7 +272,13 @@ impl Trigonometric {
     }
 }
 
-fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> Result<Engine> {
+/// The functions of the stiffness with the points held that are so at time t.
+fn engine(
+    options: TrigonometricOptions,
+    system: &System,
+    reference: &[f64],
+    t: f64,
+) -> Result<Engine> {
     let diagonal = system
         .operator()
         .as_linear()
@@ -261,7 +289,6 @@ fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> 
         }
         _ => None,
     };
-    let product = |x: &[f64], out: &mut [f64]| system.vibration_into(reference, x, out);
     let bound = system
         .operator()
         .frequency_bound(&|i| system.density().at(i));
@@ -288,8 +315,12 @@ fn engine(options: TrigonometricOptions, system: &System, reference: &[f64]) -> 
         }
         (FunctionMethod::Lanczos, _) => Engine::Krylov(Box::new(Lanczos::new(system.masses()))),
         (FunctionMethod::Eigenvectors, _) => {
+            // Held points move nobody, so that the matrix is symmetric.
+            let mut free = vec![0.0; reference.len()];
             let mut shifted = |x: &[f64], out: &mut [f64]| {
-                product(x, out);
+                free.copy_from_slice(x);
+                system.hold_at(t, &mut free);
+                system.vibration_at(t, reference, &free, out);
                 add(out, options.regularisation, x);
             };
             Engine::Krylov(Box::new(Eigenvectors::new(&mut shifted, &system.masses())?))
@@ -302,7 +333,7 @@ fn apply(
     engine: &mut Engine,
     options: TrigonometricOptions,
     system: &System,
-    reference: &[f64],
+    (reference, t_next): (&[f64], f64),
     (x, mut terms): (&[f64], [Term<'_>; 2]),
     interrupt: Interrupt<'_>,
 ) -> Result<()> {
@@ -328,7 +359,7 @@ fn apply(
         }
         Engine::Krylov(engine) => {
             let mut product = |x: &[f64], out: &mut [f64]| {
-                system.vibration_into(reference, x, out);
+                system.vibration_at(t_next, reference, x, out);
                 if options.regularisation > 0.0 {
                     add(out, options.regularisation, x);
                 }
@@ -395,22 +426,30 @@ impl Integrator for Trigonometric {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
-        let dt = t_next - *t;
+        let (times, dt) = ([*t, t_next], t_next - *t);
+        self.follow_supports(system, t_next)?;
         self.push.copy_from_slice(v);
+        let mut exchange = system.damp(t_next, 0.5 * dt, &mut self.push, &mut self.change);
         self.pull.copy_from_slice(a);
-        system.hold(&mut self.push);
-        system.hold(&mut self.pull);
+        if self.linear {
+            // The last push of supports is part of `a` as if it lasted for the whole step; the kicks of nonlinear bodies halve it.
+            if let Some(push) = system.last_push(times, u) {
+                subtract(&mut self.pull, &push);
+            }
+        }
+        system.hold_at(t_next, &mut self.push);
+        system.hold_at(t_next, &mut self.pull);
         if !self.linear {
-            self.split(system, *t, u);
+            self.split(system, times, u);
             add(&mut self.push, 0.5 * dt, &self.remainder);
         }
         if self.options.regularisation > 0.0 {
             add(&mut self.pull, -self.options.regularisation, u);
-            system.hold(&mut self.pull);
+            system.hold_at(t_next, &mut self.pull);
         }
         self.next[0].copy_from_slice(u);
         self.next[1].fill(0.0);
-        self.flow(system, dt, interrupt)?;
+        self.flow(system, times, interrupt)?;
         self.loads(system, [*t, dt], u, interrupt)?;
         let [u_next, v_next] = &mut self.next;
         system.constrain(t_next, u_next, v_next);
@@ -418,11 +457,14 @@ impl Integrator for Trigonometric {
         if !self.linear {
             let mut u_next = std::mem::take(&mut self.next[0]);
             system.free_acceleration(t_next, &u_next, &On::All, &mut self.pull);
-            system.hold(&mut self.pull);
-            self.split(system, t_next, &u_next);
+            system.hold_at(t_next, &mut self.pull);
+            self.split(system, [t_next; 2], &u_next);
             std::mem::swap(&mut self.next[0], &mut u_next);
             add(&mut self.next[1], 0.5 * dt, &self.remainder);
         }
+        let v_next = &mut self.next[1];
+        exchange.add(system.damp(t_next, 0.5 * dt, v_next, &mut self.change));
+        system.book_exchange(exchange);
         state.complete(system, &mut self.next, t_next, dt);
         state.step += 1;
         Ok(())
@@ -431,7 +473,8 @@ impl Integrator for Trigonometric {
 
 pericles::saved! {
     impl Saved for Trigonometric {
-        options, engine, linear, reference: fixed,
+        options, linear, reference: fixed,
+        engine, held: rebuilt,
         push, pull, remainder, change, next: scratch,
     }
 }

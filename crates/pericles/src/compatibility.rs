@@ -16,10 +16,10 @@ pub enum Need {
     NothingBreaks,
     /// No prescribed motion.
     NoSupports,
-    /// No prescribed motion that ends before the run.
-    NoReleasedPoints,
     /// No boundaries that keep a state of their own.
     NoBoundaries,
+    /// No boundaries with a memory: none, or such that depend on the state of a stage alone.
+    NoMemory,
     /// Boundaries that act linearly within a step whose end is an unknown.
     BoundariesWithinStep,
 }
@@ -39,12 +39,6 @@ impl Requirement {
         need: Need::DoublePrecision,
         reason: "it solves equations, judges small differences or takes the force apart, and six digits are too few for that; use forces in double precision",
     };
-
-    /// For schemes that know one set of held points.
-    pub const SAME_SUPPORTS: Self = Self {
-        need: Need::NoReleasedPoints,
-        reason: "points that are let go change what is held; use velocity-verlet or a Runge–Kutta scheme",
-    };
 }
 
 impl Need {
@@ -57,8 +51,8 @@ impl Need {
             Self::SumOverBonds => force.as_split().is_some(),
             Self::NothingBreaks => !force.can_break(),
             Self::NoSupports => system.motions().is_empty(),
-            Self::NoReleasedPoints => !system.releases_points(),
             Self::NoBoundaries => !system.has_boundaries(),
+            Self::NoMemory => !system.boundaries().any(|one| one.has_memory()),
             Self::BoundariesWithinStep => {
                 system.boundaries().all(|one| one.within_step().is_some())
             }

@@ -11,6 +11,8 @@ pub enum StepKind {
     Flow,
     /// At stages, or in sub-steps.
     Stages,
+    /// In parts, each at times of its own: r-RESPA.
+    Kicks,
 }
 
 impl StepKind {
@@ -19,7 +21,9 @@ impl StepKind {
         match self {
             Self::EndOfStep => &["velocity-verlet"],
             Self::Middle => &["implicit-midpoint", "trapezoidal"],
-            Self::Flow | Self::Stages => &[],
+            Self::Stages => &["rk3", "rk4", "dormand-prince", "rk3-mts", "rk4-mts"],
+            Self::Flow => &["trigonometric"],
+            Self::Kicks => &["respa"],
         }
     }
 
@@ -29,7 +33,7 @@ impl StepKind {
             Self::Flow => {
                 ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
             }
-            Self::EndOfStep | Self::Middle | Self::Stages => "",
+            Self::EndOfStep | Self::Middle | Self::Stages | Self::Kicks => "",
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pericles::System;
+use pericles::{System, check_compatibility};
 use pericles_deck::{Body, BuildError, Deck, DeckError, Fault, Model};
 
 use super::assembler::Assembler;
@@ -86,7 +86,9 @@ pub fn assemble(
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
-    assembler.add_damping_layers(&mut system, layers, &steps)?;
+    assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
+    check_compatibility(&system, &*integrator, steps.count)
+        .map_err(|error| at("time.scheme", error))?;
     assembler.refuse_lost_values(&system, &steps)?;
     let stops = assembler.stops(&system, sets)?;
     let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);

@@ -1,6 +1,6 @@
 //! Force and material of a body.
 
-use pericles::material::BondConstants;
+use pericles::material::{BondConstants, BondMaterial};
 use pericles::observe::TrackedCrack;
 use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::{PointCloud, PointSet};
@@ -50,6 +50,7 @@ impl Assembler<'_> {
         let stiffness = self.stiffness_of(&solid.material.inclusions, cloud, sets)?;
         let Composition {
             classes,
+            materials,
             density,
             parts,
         } = self.parts(solid, cloud, sets, &constants, warnings)?;
@@ -67,7 +68,7 @@ impl Assembler<'_> {
             classes: classes.as_ref(),
             correction: solid.material.surface_correction,
         };
-        let (bonds, cracks) = self.bonds(solid, composite, grids, warnings)?;
+        let (bonds, cracks) = self.bonds(solid, composite, (grids, &materials), warnings)?;
         let refused = bonds.form.refusal(Feature::Tensors.into());
         if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
             // A periodic body has no choice of forms.
@@ -178,7 +179,7 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         composite: CompositeBody<'_>,
-        grids: &Grids,
+        (grids, materials): (&Grids, &[BondMaterial]),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
         let crack = |k| KeyPath::from("crack").index(k);
@@ -204,7 +205,7 @@ impl Assembler<'_> {
             ..composite
         };
         let assembled = if grids.ratios.len() > 1 {
-            self.graded_bonds(solid, &composite, grids)?
+            self.graded_bonds(solid, &composite, grids, materials)?
         } else {
             let form = match solid.material.form {
                 ForceForm::Fastest

@@ -1,10 +1,9 @@
 //! Absorbing ends of a model.
 
-use pericles::StepKind;
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, State};
-use pericles::{PericlesError, System};
+use pericles::{Need, PericlesError, System};
 use pericles_deck::{
     ALL, BoundaryCondition, BuildError, Caution, Fault, KeyPath, ModelWarning, Remark, Solid,
 };
@@ -43,6 +42,15 @@ impl Assembler<'_> {
         let mut ends = Vec::new();
         let mut sides: Vec<Side> = Vec::new();
         let mut exterior = 0.0;
+        let mut requirements = integrator.requirements().iter();
+        let free = requirements.find(|one| one.need == Need::NoBoundaries);
+        if let (Some(requirement), false) = (free, self.model.boundaries.is_empty()) {
+            let error = PericlesError::SchemeNotUsable {
+                scheme: integrator.name(),
+                reason: requirement.reason,
+            };
+            return Err(at("time.scheme", error));
+        }
         for (k, boundary) in self.model.boundaries.iter().enumerate() {
             let path = KeyPath::from("boundary").index(k);
             let refuse = |error| at_path(&path, PericlesError::from(error).into());
@@ -62,10 +70,7 @@ impl Assembler<'_> {
                 exterior_data,
             } = *boundary
             else {
-                if kind == StepKind::EndOfStep {
-                    continue;
-                }
-                return Err(wrong_scheme("a damping layer", &[StepKind::EndOfStep]));
+                continue;
             };
             let Some(scheme) = LatticeScheme::of(kind) else {
                 return Err(wrong_scheme("an absorbing end", LatticeScheme::KINDS));

@@ -1,9 +1,9 @@
 //! Damping layers of a model, and the steps that are stable with them.
 
-use pericles::boundary::{DampingLayer, DampingProfile};
+use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile};
 use pericles::material::BondConstants;
 use pericles::space::{Face, PointCloud};
-use pericles::{PericlesError, System};
+use pericles::{PericlesError, StepKind, System};
 use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
 
 use super::assembler::Assembler;
@@ -58,20 +58,18 @@ impl Assembler<'_> {
         &self,
         system: &mut System,
         layers: Vec<(usize, Face, DampingProfile)>,
+        kind: StepKind,
         steps: &Steps,
     ) -> Result<(), BuildError> {
-        let frequency = steps.frequency.map(|frequency| frequency.estimate);
+        let damped = DampedSteps {
+            kind,
+            dt: steps.dt,
+            frequency: steps.frequency.map(|frequency| frequency.estimate),
+        };
         for (k, face, profile) in layers {
             let path = KeyPath::from("boundary").index(k);
             let refuse = |error: PericlesError| at_path(&path, error.into());
-            let layer = DampingLayer::new(
-                system.cloud(),
-                system.density(),
-                face,
-                profile,
-                steps.dt,
-                frequency,
-            );
+            let layer = DampingLayer::new(system.cloud(), system.density(), face, profile, damped);
             system.add_boundary(Box::new(layer.map_err(refuse)?));
         }
         Ok(())

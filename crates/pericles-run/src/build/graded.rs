@@ -1,7 +1,7 @@
 //! Bonds of a body with cells of several sizes.
 
-use pericles::PericlesError;
-use pericles::operator::{CompositeBody, Feature, GradedBody};
+use pericles::material::BondMaterial;
+use pericles::operator::{CompositeBody, Feature, GradedBody, Materials};
 use pericles_deck::{BuildError, Solid};
 use pericles_waves::AssembledForce;
 
@@ -15,32 +15,30 @@ impl Assembler<'_> {
         solid: &Solid,
         composite: &CompositeBody<'_>,
         grids: &Grids,
+        materials: &[BondMaterial],
     ) -> Result<AssembledForce, BuildError> {
         let features = composite.features().with(Feature::SeveralSpacings, true);
         solid.material.form.check(features).map_err(at_material)?;
-        if !composite.is_plain() {
-            let error = PericlesError::Graded {
-                what: "several materials or corrected surfaces",
-                reason: "its bonds have the laws of two grids already; parts of other stiffness are possible ([[material.inclusion]])",
-            };
-            return Err(at("material", error));
-        }
+        GradedBody::check(features).map_err(|error| at("material.surface_correction", error))?;
         let body = &composite.body;
+        let interface = &solid.material.interface;
         let graded = GradedBody {
             cloud: body.cloud,
             ratios: &grids.ratios,
             grid_of_point: &grids.of_point,
             material: body.material,
+            materials: composite.classes.map(|classes| Materials {
+                all: materials,
+                of_point: classes.of_point(),
+                rule: interface.rule,
+                critical_stretches: &interface.critical_stretches,
+            }),
             state: solid.state,
             cracks: body.cracks,
             no_fail: body.no_fail,
             stiffness: body.stiffness,
             damage: body.damage,
         };
-        let bonds = graded.operator().map_err(|error| match error {
-            PericlesError::Graded { .. } => at("material.fracture_energy", error),
-            error => at_material(error),
-        })?;
-        Ok(bonds.into())
+        Ok(graded.operator().map_err(at_material)?.into())
     }
 }

@@ -13,6 +13,8 @@ use super::refusal::{at, at_path};
 /// What a body is made of.
 pub(super) struct Composition {
     pub(super) classes: Option<PairClasses>,
+    /// All materials, the body's own first.
+    pub(super) materials: Vec<BondMaterial>,
     pub(super) density: PointScalar,
     /// Constants of the other materials, in the order of the deck.
     pub(super) parts: Vec<BondConstants>,
@@ -39,11 +41,13 @@ impl Assembler<'_> {
         if material.parts.is_empty() {
             return Ok(Composition {
                 classes: None,
+                materials: vec![material.bonds.clone()],
                 density: PointScalar::Uniform(material.bonds.density),
                 parts: Vec::new(),
             });
         }
         let mut all = vec![constants.clone()];
+        let mut materials = vec![material.bonds.clone()];
         let mut of_point = vec![0u8; cloud.len()];
         for (k, part) in material.parts.iter().enumerate() {
             let path = KeyPath::from("material.part").index(k);
@@ -53,6 +57,7 @@ impl Assembler<'_> {
                 fracture: part.fracture,
                 ..material.bonds.clone()
             };
+            materials.push(own.clone());
             let own = self
                 .constants_of(solid, &own, cloud)
                 .map_err(|error| at_path(&path, error.into()))?;
@@ -97,6 +102,7 @@ impl Assembler<'_> {
         all.remove(0);
         Ok(Composition {
             classes: Some(classes),
+            materials,
             density: PointScalar::PerPoint(densities),
             parts: all,
         })

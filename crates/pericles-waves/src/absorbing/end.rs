@@ -4,7 +4,7 @@ use super::history::History;
 use super::{AbsorbingError, FreeWave, OuterLayer};
 use pericles::StepEnd;
 use pericles::StepKind;
-use pericles::boundary::{Boundary, Exchange};
+use pericles::boundary::{Boundary, Exchange, Stage};
 
 /// Weight of the initial displacement in the history: velocity Verlet starts with half a kick, the trapezoidal rule with half a weight.
 const FIRST: f64 = 0.5;
@@ -112,7 +112,7 @@ impl Boundary for AbsorbingEnd {
         exchange
     }
 
-    fn after_stage(&mut self, _t: f64, _u: &[f64], _v: &[f64], acceleration: &mut [f64]) {
+    fn after_stage(&mut self, _stage: &Stage<'_>, acceleration: &mut [f64]) {
         for (pull, &i) in self.pull.iter().zip(&self.layer.points) {
             acceleration[i] += pull;
         }

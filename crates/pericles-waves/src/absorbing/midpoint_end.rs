@@ -4,7 +4,7 @@ use super::history::History;
 use super::{AbsorbingError, LatticeStep, OuterLayer};
 use pericles::StepEnd;
 use pericles::StepKind;
-use pericles::boundary::{Boundary, Exchange, WithinStep};
+use pericles::boundary::{Boundary, Exchange, Stage, WithinStep};
 
 /// An absorbing end for the implicit midpoint rule and, its exterior being linear, the trapezoidal rule.
 ///
@@ -140,7 +140,7 @@ impl Boundary for MidpointEnd {
         exchange
     }
 
-    fn after_stage(&mut self, _t: f64, _u: &[f64], _v: &[f64], acceleration: &mut [f64]) {
+    fn after_stage(&mut self, _stage: &Stage<'_>, acceleration: &mut [f64]) {
         self.add_present(acceleration);
     }
 

@@ -25,7 +25,7 @@ impl LatticeScheme {
         match kind {
             StepKind::EndOfStep => Some(Self::VelocityVerlet),
             StepKind::Middle => Some(Self::Midpoint),
-            StepKind::Flow | StepKind::Stages => None,
+            StepKind::Flow | StepKind::Stages | StepKind::Kicks => None,
         }
     }
 }

@@ -2,4 +2,5 @@
 
 mod absorbing;
 mod linear;
+mod released;
 mod wave;

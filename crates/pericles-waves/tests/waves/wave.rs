@@ -653,23 +653,6 @@ fn schemes_say_what_they_cannot_do() {
         ..Default::default()
     });
     assert!(fourier.contains("spectral"), "{fourier}");
-    let mut let_go = system(&cloud, bonds(&cloud, &gaussian(), ForceForm::Grid));
-    let mut motion = PrescribedMotion::new(
-        "left".into(),
-        vec![0],
-        MotionKind::Displacement,
-        [Some(0.1), None, None],
-        TimeFunction::Constant,
-        &vec![0.0; cloud.len()],
-        cloud.len(),
-    )
-    .unwrap();
-    motion.until = Some(1.0);
-    let_go.add_motion(motion).unwrap();
-    let released = Implicit::new(ImplicitRule::Midpoint, &let_go)
-        .err()
-        .unwrap();
-    assert!(released.to_string().contains("let go"), "{released}");
     let constants = gaussian().constants(&cloud, StressState::Uniaxial).unwrap();
     let gauss = GaussForce::new(cloud.clone(), &gaussian(), &constants)
         .err()

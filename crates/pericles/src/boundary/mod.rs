@@ -6,13 +6,14 @@ mod load;
 mod motion;
 mod table;
 
-pub use damping::{DampingLayer, DampingProfile};
+pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use table::TimeTable;
 
 use crate::archive::Saved;
+use crate::parallel::On;
 use crate::step_end::StepEnd;
 use crate::step_kind::StepKind;
 
@@ -23,6 +24,29 @@ pub struct Exchange {
     pub work: f64,
     /// Impulse, N s.
     pub impulse: [f64; 3],
+}
+
+impl Exchange {
+    /// Adds another one.
+    pub fn add(&mut self, other: Self) {
+        self.work += other.work;
+        for (sum, impulse) in self.impulse.iter_mut().zip(other.impulse) {
+            *sum += impulse;
+        }
+    }
+}
+
+/// A stage of a step, as a boundary sees it.
+#[derive(Debug, Clone)]
+pub struct Stage<'a> {
+    /// Its time, s.
+    pub t: f64,
+    /// Displacement, m.
+    pub u: &'a [f64],
+    /// Velocity, m/s; of velocity Verlet the mean velocity of the step before.
+    pub v: &'a [f64],
+    /// The points whose accelerations are computed.
+    pub on: On<'a>,
 }
 
 /// What a boundary gives the body within a step whose end is an unknown: an acceleration that depends linearly on it.
@@ -54,12 +78,24 @@ pub trait Boundary: Saved + Send + Sync {
         Exchange::default()
     }
 
-    /// Called after the accelerations of a stage are known; may change them.
-    fn after_stage(&mut self, t: f64, u: &[f64], v: &[f64], acceleration: &mut [f64]);
+    /// Called after the accelerations of a stage are known for the points named by `on`; may change these. Velocities are those of the stage.
+    fn after_stage(&mut self, stage: &Stage<'_>, acceleration: &mut [f64]);
+
+    /// Whether what it does depends on more than the state that it is given: schemes that try steps, or whose steps have different lengths, cannot follow such a boundary.
+    fn has_memory(&self) -> bool {
+        true
+    }
 
     /// The kinds of steps it is made for; empty if any.
     fn step_kinds(&self) -> &'static [StepKind] {
         &[]
+    }
+
+    /// Damps velocities (m/s) as it does over a time dt in which nothing else acts, for schemes that take the force nowhere or in parts ([`StepKind::Flow`], [`StepKind::Kicks`]): they let it act
+    /// for half of a step before and half of it after their own. Returns what the boundary did to the body.
+    fn damp(&self, dt: f64, v: &mut [f64]) -> Exchange {
+        let _ = (dt, v);
+        Exchange::default()
     }
 
     /// Its part in a step that is solved for as a whole; none for boundaries that explicit schemes alone can follow.

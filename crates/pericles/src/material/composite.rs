@@ -125,6 +125,30 @@ impl PairClasses {
         self.critical_stretch[self.class(i, j)]
     }
 
+    /// The constant c of bonds between two materials.
+    ///
+    /// # Panics
+    /// If a material is not one of those given.
+    pub fn pair_micromodulus(&self, [a, b]: [u8; 2]) -> f64 {
+        self.micromodulus[usize::from(a) * self.count + usize::from(b)]
+    }
+
+    /// The critical stretch s₀ of bonds between two materials.
+    ///
+    /// # Panics
+    /// If a material is not one of those given.
+    pub fn pair_critical_stretch(&self, [a, b]: [u8; 2]) -> f64 {
+        self.critical_stretch[usize::from(a) * self.count + usize::from(b)]
+    }
+
+    /// Whether all bonds have one critical stretch.
+    pub fn has_one_critical_stretch(&self) -> bool {
+        let first = self.critical_stretch[0];
+        self.critical_stretch
+            .iter()
+            .all(|stretch| *stretch == first)
+    }
+
     /// The smallest critical stretch of all.
     pub fn smallest_critical_stretch(&self) -> f64 {
         let stretches = self.critical_stretch.iter();

@@ -3,23 +3,27 @@
 use std::sync::Arc;
 
 use super::by_law::{ByLaw, by_law};
+use super::limits::{Feature, Features, Limit};
 use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force};
 use crate::error::{PericlesError, Result};
-use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
-use crate::kernel::Influence;
-use crate::material::{BondMaterial, Fracture, StressState};
+use crate::family::{BondList, Crack, Cut, EndRule};
+use crate::material::{BondConstants, BondMaterial, InterfaceRule, PairClasses, StressState};
 use crate::space::{PointCloud, check_length};
 
-/// What one grid of a body adds to the bonds of its points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EndLaw {
-    /// Horizon δ of the grid, m.
-    pub horizon: f64,
-    /// Its constant c.
-    pub micromodulus: f64,
+/// Several materials of a body, which share law, horizon, influence function and partial volumes.
+#[derive(Debug, Clone, Copy)]
+pub struct Materials<'a> {
+    /// All materials, the body's own first.
+    pub all: &'a [BondMaterial],
+    /// The number of each point's material.
+    pub of_point: &'a [u8],
+    /// The constant of bonds between two materials.
+    pub rule: InterfaceRule,
+    /// Critical stretches of bonds between two materials that differ from the smaller one of theirs.
+    pub critical_stretches: &'a [([u8; 2], f64)],
 }
 
-/// A body of one material on grids of different spacing, each with a horizon of the same number of spacings.
+/// A body on grids of different spacing, each with a horizon of the same number of spacings.
 ///
 /// Points i and j are bonded if |ξ| < max(δ_i, δ_j). The force of the bond is the mean of the laws of its ends, each nothing beyond its own horizon:
 ///
@@ -28,6 +32,11 @@ pub struct EndLaw {
 /// so that both ends exert equal and opposite forces and momentum is conserved to round-off. A uniform strain is in balance inside each grid; within a horizon of an interface
 /// there is a spurious force, for a point sees different grids on its two sides. It falls with the spacing over the length of what is of interest,
 /// as the missing bonds at a free surface do.
+///
+/// With several materials c_i is the constant that bonds between the materials of i and j have on the grid of i.
+///
+/// **Breaking.** A fracture energy belongs to another critical stretch on each grid, s_g. Bonds between two grids g and h break at the stretch at which they store, all together, the mean energy of both
+/// laws: s² = (w_g s_g² + w_h s_h²)/(w_g + w_h), with the sums w of c α κ |ξ| V_i V_j over these bonds by the law of each grid. A crack along an interface then takes the mean of what both grids take.
 #[derive(Debug, Clone)]
 pub struct GradedBody<'a> {
     /// The points.
@@ -38,6 +47,8 @@ pub struct GradedBody<'a> {
     pub grid_of_point: &'a [u8],
     /// The material with the horizon of the large cells.
     pub material: &'a BondMaterial,
+    /// Several materials; none if all points have the body's.
+    pub materials: Option<Materials<'a>>,
     /// The state of stress.
     pub state: StressState,
     /// Pre-cracks.
@@ -50,111 +61,222 @@ pub struct GradedBody<'a> {
     pub damage: DamageMeasure,
 }
 
+/// The laws of the grids.
+struct Laws {
+    /// Horizon of each grid, m.
+    horizons: Vec<f64>,
+    /// Classes of points by grid and material, materials fastest.
+    classes: PairClasses,
+    /// The number of materials.
+    materials: u8,
+}
+
+impl Laws {
+    fn grid_of(&self, class: u8) -> usize {
+        usize::from(class / self.materials)
+    }
+
+    /// The pair of classes of two points where both are on the grid of the first.
+    fn on_grid_of(&self, [a, b]: [u8; 2]) -> [u8; 2] {
+        [a, a - a % self.materials + b % self.materials]
+    }
+}
+
 impl GradedBody<'_> {
-    /// The law of each grid.
+    /// What the list of such a body does not represent.
+    pub const LIMITS: &'static [Limit] = &[Limit::new(
+        Feature::SurfaceCorrection,
+        "a point near an interface has families of two grids, which a correction would take for those at a surface; leave surface_correction out",
+    )];
+
+    /// Refuses a body with features that a list of bonds between cells of several sizes does not represent.
     ///
     /// # Errors
-    /// Those of [`BondMaterial::constants`]; a fracture energy.
-    pub fn laws(&self) -> Result<Vec<EndLaw>> {
-        let cloud = self.cloud;
-        // A table per class names the bonds of one lattice, which this body is not.
-        self.material.constants(cloud, self.state)?;
-        if matches!(self.material.fracture, Fracture::Energy { .. }) {
-            return Err(PericlesError::Graded {
-                what: "a fracture energy",
-                reason: "it belongs to another critical stretch for each horizon; give critical_stretch",
+    /// [`PericlesError::Graded`], with the reason.
+    pub fn check(features: Features) -> Result<()> {
+        let exceeded = Self::LIMITS.iter().find(|one| features.has(one.feature));
+        match exceeded {
+            None => Ok(()),
+            Some(limit) => Err(PericlesError::Graded {
+                what: limit.feature.words(),
+                reason: limit.reason,
+            }),
+        }
+    }
+
+    /// The constants of a material on a grid.
+    fn constants(&self, material: &BondMaterial, ratio: u32) -> Result<(f64, BondConstants)> {
+        let (cloud, ratio) = (self.cloud, f64::from(ratio));
+        let own = BondMaterial {
+            horizon: self.material.horizon / ratio,
+            ..material.clone()
+        };
+        let sides = vec![cloud.spacing() / ratio; cloud.dimension()];
+        let constants = own.constants_on(&sides, cloud.section(), self.state)?;
+        Ok((own.horizon, constants))
+    }
+
+    fn laws(&self) -> Result<Laws> {
+        let own = [self.material.clone()];
+        let (all, rule) = match &self.materials {
+            Some(materials) => (materials.all, materials.rule),
+            None => (&own[..], InterfaceRule::default()),
+        };
+        // A table per class of bonds names those of one lattice, which this body is not.
+        self.material.constants(self.cloud, self.state)?;
+        let count = self.ratios.len() * all.len();
+        if count > 255 {
+            return Err(PericlesError::OutOfRange {
+                quantity: "the number of materials times that of cell sizes",
+                value: count as f64,
+                allowed: "at most 255",
             });
         }
-        let law = |&ratio: &u32| {
-            let ratio = f64::from(ratio);
-            let own = BondMaterial {
-                horizon: self.material.horizon / ratio,
-                ..self.material.clone()
-            };
-            let sides = vec![cloud.spacing() / ratio; cloud.dimension()];
-            let constants = own.constants_on(&sides, cloud.section(), self.state)?;
-            Ok(EndLaw {
-                horizon: own.horizon,
-                micromodulus: constants.micromodulus,
-            })
+        let (mut horizons, mut constants) = (Vec::new(), Vec::new());
+        for &ratio in self.ratios {
+            for material in all {
+                let (horizon, own) = self.constants(material, ratio)?;
+                horizons.push(horizon);
+                constants.push(own);
+            }
+        }
+        let horizons = horizons.into_iter().step_by(all.len()).collect();
+        let materials = all.len() as u8;
+        let class = |i: usize| {
+            let material = self.materials.map_or(0, |materials| materials.of_point[i]);
+            self.grid_of_point[i] * materials + material
         };
-        self.ratios.iter().map(law).collect()
+        let of_point = (0..self.cloud.len()).map(class).collect();
+        let mut classes = PairClasses::new(of_point, &constants, rule)?;
+        for &([a, b], stretch) in self.materials.map_or(&[][..], |one| one.critical_stretches) {
+            for grids in pairs(self.ratios.len() as u8) {
+                let [g, h] = grids.map(|grid| grid * materials);
+                classes.set_critical_stretch([g + a, h + b], stretch);
+                classes.set_critical_stretch([g + b, h + a], stretch);
+            }
+        }
+        Ok(Laws {
+            horizons,
+            classes,
+            materials,
+        })
     }
 
     /// The operator, always a list.
     ///
     /// # Errors
-    /// Those of [`GradedBody::laws`]; a horizon that reaches no neighbour, an unusable crack.
+    /// Those of [`BondMaterial::constants`]; a horizon that reaches no neighbour, an unusable crack.
     pub fn operator(&self) -> Result<AssembledBonds> {
         by_law(self.material.law, self.cloud.dimension(), Listed(self))
     }
 
     fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
-        let laws = self.laws()?;
-        let cloud = self.cloud;
-        check_length(
-            "the grids of the points",
-            self.grid_of_point.len(),
-            cloud.len(),
-        )?;
-        let last = self.grid_of_point.iter().copied().max().unwrap_or(0);
-        if usize::from(last) >= laws.len() {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of a point's grid",
-                value: f64::from(last),
-                allowed: "numbers of the grids given, from 0",
-            });
+        let points = self.cloud.len();
+        check_length("the grids of the points", self.grid_of_point.len(), points)?;
+        if let [_, ..] = self.stiffness {
+            let given = self.stiffness.len();
+            check_length("the stiffnesses of the points", given, points)?;
         }
-        let law_of = |grid: u8| &laws[usize::from(grid)];
-        let grids = self.grid_of_point.iter();
-        let horizons = grids.map(|&grid| law_of(grid).horizon).collect();
-        let correction: VolumeCorrection = self.material.volume_correction;
-        let mut bonds = BondList::with_horizons(cloud, horizons, correction)?;
+        let laws = self.laws()?;
+        let mut classes = laws.classes.clone();
+        let (cloud, material) = (self.cloud, self.material);
+        let horizon = |&class: &u8| laws.horizons[laws.grid_of(class)];
+        let horizons: Vec<f64> = laws.classes.of_point().iter().map(horizon).collect();
+        let mut bonds = BondList::with_horizons(cloud, horizons, material.volume_correction)?;
+        let sites = bonds.shared_sites();
+        let of_site = laws.classes.on_sites(&sites);
+        let class = of_site.of_point();
+        let stiffness = sites.spread(self.stiffness);
+        let mean = |a: usize, b: usize| match &stiffness[..] {
+            [] => 1.0,
+            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
+        };
+        // c α κ by the law of the first end.
+        let end = |bonds: &BondList, i: usize, j: usize| match bonds.end_factor(i, j) {
+            0.0 => 0.0,
+            kappa => {
+                let pair = laws.on_grid_of([class[i], class[j]]);
+                let micromodulus = laws.classes.pair_micromodulus(pair);
+                let alpha = material
+                    .influence
+                    .alpha_of(bonds.vector(i, j), horizon(&class[i]));
+                kappa * micromodulus * alpha
+            }
+        };
+        let weighted = |bonds: &BondList, a: usize, b: usize| mean(a, b) * end(bonds, a, b);
+        let stretches = self.between_grids(&laws, &bonds, (class, &weighted));
+        for (pair, stretch) in stretches {
+            classes.set_critical_stretch(pair, stretch);
+        }
         let cuts: Vec<Cut> = self
             .cracks
             .iter()
             .map(|(crack, rule)| bonds.cut(crack, *rule))
             .collect::<Result<_>>()?;
-        let critical_stretch = match self.material.fracture {
-            Fracture::CriticalStretch(stretch) => stretch,
-            _ => f64::INFINITY,
-        };
-        let influence: &Influence = &self.material.influence;
-        let sites = bonds.shared_sites();
-        let grids: Vec<f64> = self.grid_of_point.iter().map(|&k| f64::from(k)).collect();
-        let (grids, stiffness) = (sites.spread(&grids), sites.spread(self.stiffness));
-        let law = |site: usize| law_of(grids[site] as u8);
-        let end = |bonds: &BondList, i: usize, j: usize| {
-            let EndLaw {
-                horizon,
-                micromodulus,
-            } = law(i);
-            match bonds.end_factor(i, j) {
-                0.0 => 0.0,
-                kappa => kappa * micromodulus * influence.alpha_of(bonds.vector(i, j), *horizon),
-            }
-        };
-        let mean = |a: usize, b: usize| match &stiffness[..] {
-            [] => 1.0,
-            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
-        };
         let force = BondForce::<L, D>::with_weighted_stiffness(
             Arc::clone(cloud),
             bonds,
             &|bonds, i, j| mean(i, j) * 0.5 * (end(bonds, i, j) + end(bonds, j, i)),
             Breaking {
-                critical_stretch,
+                critical_stretch: classes.smallest_critical_stretch(),
                 no_fail: self.no_fail,
             },
             self.damage,
         )?;
-        let operator: Box<dyn Force> = Box::new(force);
+        let operator: Box<dyn Force> = match classes.has_one_critical_stretch() {
+            true => Box::new(force),
+            false => Box::new(force.with_critical_stretches(classes)?),
+        };
         Ok(AssembledBonds {
             operator,
             cuts,
             form: BondForm::List,
         })
     }
+
+    /// The critical stretches of bonds between grids whose own ones differ, from the classes of sites and the stiffness by the law of the first end.
+    fn between_grids(
+        &self,
+        laws: &Laws,
+        bonds: &BondList,
+        (class, end): (&[u8], &(dyn Fn(&BondList, usize, usize) -> f64 + Sync)),
+    ) -> Vec<([u8; 2], f64)> {
+        let (cloud, classes) = (self.cloud, &laws.classes);
+        // Σ of c α κ |ξ| V V over the bonds between two classes, by the law of the first.
+        let weight = |[a, b]: [u8; 2]| {
+            cloud.domain().sum(cloud.len(), |i| {
+                let here = bonds.site(i);
+                if class[here] != a {
+                    return 0.0;
+                }
+                let family = bonds.family(i).filter(|(_, site)| class[*site] == b);
+                let each = family.map(|(_, site)| {
+                    let volumes = bonds.volume(here) * bonds.volume(site);
+                    end(bonds, here, site) * bonds.length(here, site) * volumes
+                });
+                each.sum()
+            })
+        };
+        let all = pairs((laws.horizons.len() as u8) * laws.materials);
+        let between = all.filter(|[a, b]| laws.grid_of(*a) != laws.grid_of(*b));
+        let found = between.filter_map(|[a, b]| {
+            let own =
+                [[a, b], [b, a]].map(|pair| classes.pair_critical_stretch(laws.on_grid_of(pair)));
+            if own[0] == own[1] {
+                return Some(([a, b], own[0]));
+            }
+            let weights = [weight([a, b]), weight([b, a])];
+            let sum = weights[0] + weights[1];
+            let square = weights[0] * own[0] * own[0] + weights[1] * own[1] * own[1];
+            (sum > 0.0).then(|| ([a, b], (square / sum).sqrt()))
+        });
+        found.collect()
+    }
+}
+
+/// The pairs of so many numbers, each once.
+fn pairs(count: u8) -> impl Iterator<Item = [u8; 2]> {
+    (0..count).flat_map(move |a| (a..count).map(move |b| [a, b]))
 }
 
 /// Makes the list of a body.

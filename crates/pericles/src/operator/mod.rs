@@ -44,7 +44,7 @@ pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
 pub use fast_law::{FastLaw, FixedBond};
 pub use forces::Forces;
 pub use form::BondForm;
-pub use graded::{EndLaw, GradedBody};
+pub use graded::{GradedBody, Materials};
 pub use grid::GridForce;
 pub use limits::{Feature, Features, Limit};
 pub use linearisation::Linearisation;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::accounts::Ledger;
 use crate::archive::Counter;
-use crate::boundary::{Boundary, Load, PrescribedMotion};
+use crate::boundary::{Boundary, Load, PrescribedMotion, Stage};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Force, Forces, On};
@@ -190,11 +190,6 @@ impl System {
         !self.boundaries.is_empty()
     }
 
-    /// Whether any prescribed motion ends before the run may.
-    pub fn releases_points(&self) -> bool {
-        self.motions.iter().any(|motion| motion.until.is_some())
-    }
-
     /// The boundaries.
     pub fn boundaries(&self) -> impl Iterator<Item = &dyn Boundary> {
         self.boundaries.iter().map(|boundary| &**boundary)
@@ -210,7 +205,7 @@ impl System {
         self.cloud.dimension()
     }
 
-    /// Acceleration at a stage: internal force and loads over density; prescribed where motion is prescribed. Entries of other points stay.
+    /// Acceleration at a stage: internal force and loads over density; what boundaries give, by the stage's velocity `v` where there are any ([`System::has_boundaries`]); prescribed where motion is prescribed. Entries of other points stay.
     pub fn acceleration(&mut self, t: f64, u: &[f64], v: &[f64], on: On<'_>, out: &mut [f64]) {
         self.free_acceleration(t, u, &on, out);
         self.finish(t, u, v, &on, out);
@@ -294,8 +289,14 @@ impl System {
         for motion in &self.motions {
             motion.accelerate(t, on, self.cloud.len(), out);
         }
+        let stage = Stage {
+            t,
+            u,
+            v,
+            on: on.clone(),
+        };
         for boundary in &mut self.boundaries {
-            boundary.after_stage(t, u, v, out);
+            boundary.after_stage(&stage, out);
         }
     }
 
@@ -345,13 +346,17 @@ impl System {
 
     /// K d / ρ at displacement u, with prescribed entries held: the operator of the linearised free vibration.
     pub fn vibration_into(&self, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.free_vibration_into(u, direction, out);
+        self.hold(out);
+    }
+
+    fn free_vibration_into(&self, u: &[f64], direction: &[f64], out: &mut [f64]) {
         match self.operator().as_linear() {
             Some(linear) => linear.apply_into(direction, out),
             None => self.operator().tangent_into(0.0, u, direction, out),
         }
         self.divide_by_density(&On::All, out);
         for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
-        self.hold(out);
     }
 
     /// Books a load step from one static state to another: loads and supports act as the mean of both ends, without inertia. With a length of zero they do not change on the way.

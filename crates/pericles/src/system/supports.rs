@@ -1,6 +1,7 @@
 //! Prescribed motion.
 
 use super::System;
+use crate::boundary::{Exchange, PrescribedMotion};
 use crate::parallel::On;
 
 impl System {
@@ -43,6 +44,33 @@ impl System {
         }
     }
 
+    /// Lets boundaries damp the velocities of points that are free at time t as they do over a time dt, and returns what they did ([`Boundary::damp`](crate::boundary::Boundary::damp)). `work` is for velocities.
+    pub fn damp(&self, t: f64, dt: f64, v: &mut [f64], work: &mut Vec<f64>) -> Exchange {
+        let mut exchange = Exchange::default();
+        if self.boundaries.is_empty() {
+            return exchange;
+        }
+        work.clear();
+        work.extend_from_slice(v);
+        self.hold_at(t, work);
+        // Of prescribed velocities all is left, of others nothing.
+        for (v, free) in v.iter_mut().zip(&*work) {
+            *v -= free;
+        }
+        for boundary in &self.boundaries {
+            exchange.add(boundary.damp(dt, work));
+        }
+        for (v, free) in v.iter_mut().zip(&*work) {
+            *v += free;
+        }
+        exchange
+    }
+
+    /// Books what boundaries did to the body.
+    pub fn book_exchange(&mut self, exchange: Exchange) {
+        self.ledger.book(exchange.work, exchange.impulse);
+    }
+
     /// Zeros prescribed entries.
     pub fn hold(&self, vector: &mut [f64]) {
         for motion in &self.motions {
@@ -55,5 +83,36 @@ impl System {
         for motion in self.motions.iter().filter(|motion| motion.holds(t)) {
             motion.zero(self.points(), vector);
         }
+    }
+
+    /// K d / ρ at displacement u, with the entries held that are prescribed at time t ([`System::vibration_into`] holds those that are prescribed at all times).
+    pub fn vibration_at(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.free_vibration_into(u, direction, out);
+        self.hold_at(t, out);
+    }
+
+    /// The number of prescribed motions that hold their points at time t. Points that are let go stay free, so that it says which motions these are.
+    pub fn holding(&self, t: f64) -> u64 {
+        self.motions.iter().filter(|motion| motion.holds(t)).count() as u64
+    }
+
+    /// Half of the accelerations (m/s²) that supports give at time t to the points that they let go before `t_next`, zero elsewhere; none if they let none go. `u` is the displacement at t.
+    ///
+    /// A support acts at the start of the first step after the release and not at its end. Schemes give its points half of its last force over this step, as velocity Verlet does, and the ledger books it so.
+    pub fn last_push(&mut self, [t, t_next]: [f64; 2], u: &[f64]) -> Option<Vec<f64>> {
+        let lets_go = |motion: &&PrescribedMotion| motion.holds(t) && !motion.holds(t_next);
+        self.motions.iter().find(lets_go)?;
+        let mut force = vec![0.0; u.len()];
+        self.free_acceleration(t, u, &On::All, &mut force);
+        let n = self.points();
+        let mut push = force.clone();
+        for motion in self.motions.iter().filter(lets_go) {
+            motion.accelerate(t, &On::All, n, &mut push);
+        }
+        // Entries that are not let go are the force itself.
+        for (push, force) in push.iter_mut().zip(&force) {
+            *push = 0.5 * (*push - force);
+        }
+        Some(push)
     }
 }

@@ -25,6 +25,8 @@ pub struct AdaptiveRungeKutta {
     error: [Vec<f64>; 2],
     zone: Zone,
     stage: Vec<f64>,
+    /// Velocity of a stage, where boundaries ask for it.
+    velocity: Vec<f64>,
     a: Vec<Vec<f64>>,
     next: [Vec<f64>; 2],
     /// The proposed sub-step, s; none before the first.
@@ -47,8 +49,8 @@ impl AdaptiveRungeKutta {
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
-            need: Need::NoBoundaries,
-            reason: "a boundary keeps a state of its own, which rejected steps would disturb; use rk4",
+            need: Need::NoMemory,
+            reason: "the kernels of a boundary with a memory are made for steps of one length, and its steps have many; use velocity-verlet",
         },
     ];
 
@@ -75,6 +77,7 @@ impl AdaptiveRungeKutta {
             error: [difference.clone(), tableau.times_stages(&difference)],
             zone: Zone::all(system.points()),
             stage: array(),
+            velocity: Vec::new(),
             a: (1..tableau.len()).map(|_| array()).collect(),
             next: [array(), array()],
             proposed: None,
@@ -103,7 +106,14 @@ impl AdaptiveRungeKutta {
                 .stage(i, h, v, known)
                 .onto(u, &self.zone, n, &mut self.stage);
             let t_stage = t + self.form.nodes[i] * h;
-            system.acceleration(t_stage, &self.stage, v, On::All, &mut later[0]);
+            let velocity = &mut self.velocity;
+            if system.has_boundaries() {
+                velocity.resize(v.len(), 0.0);
+                self.form
+                    .stage_velocity(i, h, known)
+                    .onto(v, &self.zone, n, velocity);
+            }
+            system.acceleration(t_stage, &self.stage, velocity, On::All, &mut later[0]);
         }
         let known = Stages {
             first: a,
@@ -243,6 +253,7 @@ impl Saved for AdaptiveRungeKutta {
             error: _,
             zone: _,
             stage: _,
+            velocity: _,
             a: _,
             next: _,
         } = self;

@@ -2,13 +2,13 @@
 
 use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
-use super::refinement::{ONE_TIME_STEP_BOUNDARIES, PARTS_OF_THE_BODY, Refinement, SchemeCost};
+use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
 use super::zones::Zones;
 use super::{HighestFrequency, Integrator, State, Tableau};
-use crate::compatibility::Requirement;
+use crate::compatibility::{Need, Requirement};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::step_end::{Path, StepEnd};
@@ -51,6 +51,8 @@ pub struct MultiTimeStep {
 
 struct Work {
     stage: Vec<f64>,
+    /// Velocity of a stage, where boundaries ask for it.
+    velocity: Vec<f64>,
     /// Accelerations of stages 2 … s; entries of coarse points belong to the coarse step, those of fine points to the sub-step.
     a: Vec<Vec<f64>>,
     /// First accelerations of sub-steps after the first, and of the next step.
@@ -63,7 +65,10 @@ impl MultiTimeStep {
     /// What it needs of a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
-        ONE_TIME_STEP_BOUNDARIES,
+        Requirement {
+            need: Need::NoMemory,
+            reason: "a boundary keeps a state of its own, which knows one time step only; use velocity-verlet",
+        },
         PARTS_OF_THE_BODY,
     ];
 
@@ -109,6 +114,7 @@ impl MultiTimeStep {
             history: History::new(predictor.levels(order), entries),
             work: Work {
                 stage: array(),
+                velocity: Vec::new(),
                 a: (1..tableau.len()).map(|_| array()).collect(),
                 first: array(),
                 u: array(),
@@ -260,7 +266,18 @@ impl Step<'_> {
                     &mut work.stage,
                 );
             }
-            system.acceleration(self.t + x, &work.stage, v, coarse.on(), &mut later[0]);
+            if system.has_boundaries() {
+                work.velocity.resize(v.len(), 0.0);
+                let known = Stages {
+                    first: a,
+                    later: before,
+                };
+                self.form
+                    .stage_velocity(i, dt, known)
+                    .onto(v, coarse, n, &mut work.velocity);
+            }
+            let on = coarse.on();
+            system.acceleration(self.t + x, &work.stage, &work.velocity, on, &mut later[0]);
         }
         let known = Stages {
             first: a,
@@ -291,6 +308,7 @@ impl Step<'_> {
         let h = dt / f64::from(self.ratio);
         let Work {
             stage,
+            velocity,
             a,
             first,
             u,
@@ -323,7 +341,17 @@ impl Step<'_> {
                         },
                     )
                     .onto(u, fine, n, stage);
-                system.acceleration(t + node * h, stage, v, fine.on(), &mut later[0]);
+                if system.has_boundaries() {
+                    velocity.resize(v.len(), 0.0);
+                    let known = Stages {
+                        first: opening,
+                        later: before,
+                    };
+                    self.form
+                        .stage_velocity(i, h, known)
+                        .onto(v, fine, n, velocity);
+                }
+                system.acceleration(t + node * h, stage, velocity, fine.on(), &mut later[0]);
             }
             let known = Stages {
                 first: opening,

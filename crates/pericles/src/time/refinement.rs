@@ -51,10 +51,6 @@ struct Looking {
 }
 
 /// What all schemes with two time steps need of a system.
-pub(super) const ONE_TIME_STEP_BOUNDARIES: Requirement = Requirement {
-    need: Need::NoBoundaries,
-    reason: "a boundary keeps a state of its own, which knows one time step only; use velocity-verlet",
-};
 pub(super) const PARTS_OF_THE_BODY: Requirement = Requirement {
     need: Need::FiniteReach,
     reason: "its force is one product over the whole body and cannot be evaluated on a part of it; use bonds, or one time step",

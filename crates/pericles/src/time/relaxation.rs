@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{InnerIterations, Integrator, State};
-use crate::compatibility::{Requirement, require};
+use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
@@ -84,7 +84,13 @@ const NAME: &str = "relaxation";
 
 impl Relaxation {
     /// What it needs of a system.
-    pub const REQUIREMENTS: &'static [Requirement] = &[Requirement::IN_DOUBLES];
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
+        },
+    ];
 
     /// The scheme for a system.
     ///

@@ -1,7 +1,7 @@
 //! r-RESPA: velocity Verlet with short steps for some bonds.
 
 use super::fine_region::Fine;
-use super::refinement::{ONE_TIME_STEP_BOUNDARIES, PARTS_OF_THE_BODY, Refinement, SchemeCost};
+use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::step_end::{Path, StepEnd};
+use crate::step_kind::StepKind;
 use crate::system::System;
 
 /// The reversible reference system propagator (Tuckerman, Berne & Martyna 1992), split by bonds.
@@ -28,6 +29,8 @@ pub struct Respa {
     fast: Vec<f64>,
     /// Displacement at the start of the step, then the mean velocity over it.
     mean: Vec<f64>,
+    /// Velocities that boundaries damp.
+    damped: Vec<f64>,
     everywhere: Zone,
 }
 
@@ -37,7 +40,10 @@ impl Respa {
     /// What it needs of a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
-        ONE_TIME_STEP_BOUNDARIES,
+        Requirement {
+            need: Need::NoMemory,
+            reason: "it kicks with parts of the force at times of their own, and a boundary with a memory knows one time step only; use velocity-verlet",
+        },
         PARTS_OF_THE_BODY,
         Requirement {
             need: Need::SumOverBonds,
@@ -63,6 +69,7 @@ impl Respa {
             slow: array(),
             fast: array(),
             mean: array(),
+            damped: Vec::new(),
             everywhere: Zone::all(system.points()),
         })
     }
@@ -135,6 +142,10 @@ impl Integrator for Respa {
         Self::REQUIREMENTS
     }
 
+    fn step_kind(&self) -> StepKind {
+        StepKind::Kicks
+    }
+
     fn order(&self) -> u32 {
         2
     }
@@ -181,6 +192,7 @@ impl Integrator for Respa {
             ..
         } = &self.refinement.zones;
         Sum::new().onto(u, &self.everywhere, n, &mut self.mean);
+        let mut exchange = system.damp(t_next, 0.5 * dt, v, &mut self.damped);
         kick(coarse, &self.slow, 0.5 * dt, n, v);
         system.drive_mean_on(*t, dt, &coarse_inner.on(), v);
         Sum::new().plus(dt, v).add_to(coarse_inner, n, u);
@@ -223,6 +235,8 @@ impl Integrator for Respa {
         }
         kick(coarse, &self.slow, 0.5 * dt, n, v);
         system.constrain_velocity(t_next, v);
+        exchange.add(system.damp(t_next, 0.5 * dt, v, &mut self.damped));
+        system.book_exchange(exchange);
         // The sum of both parts is what observers and accounts are to see.
         Sum::new().onto(&self.slow, coarse, n, a);
         Sum::new().onto(&self.fast, &self.refinement.zones.fine, n, a);
@@ -241,6 +255,6 @@ crate::saved! {
         slow: array("scheme/slow"),
         fast: array("scheme/fast"),
         everywhere: fixed,
-        mean: scratch,
+        mean, damped: scratch,
     }
 }

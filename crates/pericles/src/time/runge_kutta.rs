@@ -100,14 +100,13 @@ impl RungeKutta {
     pub fn new(tableau: &Tableau, system: &System) -> Self {
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
-        let with_velocity = if system.has_boundaries() { entries } else { 0 };
         Self {
             name: tableau.name,
             order: tableau.order,
             limit: tableau.stability_limit(),
             form: StepForm::new(tableau),
             zone: Zone::all(system.points()),
-            stage: [array(), vec![0.0; with_velocity]],
+            stage: [array(), Vec::new()],
             a: (1..tableau.len()).map(|_| array()).collect(),
             next: [array(), array()],
         }
@@ -154,7 +153,8 @@ impl Integrator for RungeKutta {
             self.form
                 .stage(i, dt, v, known)
                 .onto(u, &self.zone, n, stage);
-            if !velocity.is_empty() {
+            if system.has_boundaries() {
+                velocity.resize(v.len(), 0.0);
                 self.form
                     .stage_velocity(i, dt, known)
                     .onto(v, &self.zone, n, velocity);

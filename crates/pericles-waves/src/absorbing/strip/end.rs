@@ -8,7 +8,7 @@ use crate::absorbing::{GhostKernels, Side};
 use crate::linear::LineTransform;
 use pericles::StepEnd;
 use pericles::StepKind;
-use pericles::boundary::{Boundary, Exchange};
+use pericles::boundary::{Boundary, Exchange, Stage};
 
 /// Weight of the initial displacement in the history, as for bars.
 const FIRST: f64 = 0.5;
@@ -167,7 +167,7 @@ impl Boundary for StripEnd {
         exchange
     }
 
-    fn after_stage(&mut self, _t: f64, _u: &[f64], _v: &[f64], acceleration: &mut [f64]) {
+    fn after_stage(&mut self, _stage: &Stage<'_>, acceleration: &mut [f64]) {
         let rows = self.line.len();
         for (k, pull) in self.pull.iter().enumerate() {
             let (depth, component, row) = (k / (2 * rows), k / rows % 2, k % rows);

@@ -72,13 +72,12 @@ impl Implicit {
             need: Need::BoundariesWithinStep,
             reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
         },
-        Requirement::SAME_SUPPORTS,
     ];
 
     /// A scheme for a body.
     ///
     /// # Errors
-    /// Boundaries that are not made for implicit schemes; points that are let go.
+    /// Boundaries that are not made for implicit schemes; forces in single precision.
     pub fn new(rule: ImplicitRule, system: &System) -> Result<Self> {
         Self::with_solver(rule, LinearSolver::default(), system)
     }
@@ -132,7 +131,7 @@ impl Implicit {
         solver: &mut StepSolver,
         system: &System,
         t: [f64; 2],
-        [u, v, a]: [&[f64]; 3],
+        ([u, v, a], push): ([&[f64]; 3], Option<&[f64]>),
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         let tau = t[1] - t[0];
@@ -150,18 +149,22 @@ impl Implicit {
         // Boundaries: what they give at the middle, were the body where it is.
         ends::without_present(system, a, &mut self.change);
         ends::add_middle(system, u, &mut self.change);
+        if let Some(push) = push {
+            // The last push of supports is part of `a` as if it lasted for the whole step.
+            each(&mut self.change, push, |a, push| *a -= push);
+        }
         each(&mut self.right, &self.change, |right, a| {
             *right += quarter * a;
         });
         each(&mut self.right, v, |right, v| *right += 0.5 * tau * v);
         if !system.motions().is_empty() {
-            system.vibration_into(&self.half, &self.half, &mut self.change);
+            system.vibration_at(t[1], &self.half, &self.half, &mut self.change);
             each(&mut self.right, &self.change, |right, pull| {
                 *right -= quarter * pull;
             });
         }
         each(&mut self.right, &self.mass, |right, m| *right *= m);
-        system.hold(&mut self.right);
+        system.hold_at(t[1], &mut self.right);
         // Prescribed entries are known: the solver sees the free ones.
         let free = &mut self.change;
         let limits = SolveLimits {
@@ -169,7 +172,7 @@ impl Implicit {
             ..LIMITS
         };
         let work = &mut self.work;
-        let solved = solver.solve(system, &self.mass, tau, &self.right, free, (&limits, work));
+        let solved = solver.solve(system, &self.mass, t, &self.right, free, (&limits, work));
         let solved = good_enough(solved, ACCEPTED * system.domain().norm(&self.right));
         each(&mut self.half, free, |half, free| *half += free);
         solved
@@ -179,7 +182,7 @@ impl Implicit {
         &mut self,
         system: &mut System,
         t: [f64; 2],
-        [u, v, a]: [&[f64]; 3],
+        ([u, v, a], push): ([&[f64]; 3], Option<&[f64]>),
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         let tau = t[1] - t[0];
@@ -190,18 +193,23 @@ impl Implicit {
             ImplicitRule::Trapezoidal => (t[1], 2.0, 0.5 * quarter),
         };
         let total = quarter - known;
-        let of_step = self.size_of_the_step(system, place, u, [total, quarter]);
+        let of_step = self.size_of_the_step(system, [place, t[1]], u, [total, quarter]);
         // What boundaries give acts at the middle for both rules, and is no part of `a` here.
         ends::without_present(system, a, &mut self.right);
         each(&mut self.right, v, |right, v| {
             *right = 0.5 * tau * v + known * *right;
         });
-        system.hold(&mut self.right);
+        if let Some(push) = push {
+            // What `known` leaves of the last push of supports.
+            let share = quarter - 2.0 * known;
+            each(&mut self.right, push, |right, push| *right += share * push);
+        }
+        system.hold_at(t[1], &mut self.right);
         // The first guess: the explicit step.
         each(&mut self.half, &self.right, |half, right| *half += right);
         let size = &mut self.force;
         size.copy_from_slice(a);
-        system.hold(size);
+        system.hold_at(t[1], size);
         each(&mut self.half, size, |half, a| *half += total * a);
         each(size, &self.right, |a, right| {
             *a = total * a.abs() + right.abs()
@@ -225,7 +233,7 @@ impl Implicit {
             u,
             place: &mut self.change,
             force: &mut self.force,
-            t: place,
+            t: [place, t[1]],
             reach,
             quarter,
         };
@@ -238,20 +246,20 @@ impl Implicit {
     fn size_of_the_step(
         &mut self,
         system: &System,
-        t: f64,
+        [t, t_next]: [f64; 2],
         u: &[f64],
         [share, quarter]: [f64; 2],
     ) -> f64 {
         let (load, pull) = (&mut self.right, &mut self.change);
         system.external_acceleration_into(t, load);
-        system.hold(load);
+        system.hold_at(t_next, load);
         pull.fill(0.0);
         if !system.motions().is_empty() {
             // Where the supports have moved: some bodies have no stiffness at rest.
             let moved = &mut self.force;
             moved.copy_from_slice(u);
             each(moved, &self.half, |moved, half| *moved += half);
-            system.vibration_into(moved, &self.half, pull);
+            system.vibration_at(t_next, moved, &self.half, pull);
         }
         let (load, pull, mass) = (&*load, &*pull, &self.mass);
         system
@@ -293,7 +301,8 @@ struct Stage<'a> {
     u: &'a [f64],
     place: &'a mut [f64],
     force: &'a mut [f64],
-    t: f64,
+    /// Times of the force, and of the end of the step, when motion is prescribed or not.
+    t: [f64; 2],
     /// s
     reach: f64,
     /// τ²/4
@@ -312,7 +321,7 @@ impl Nonlinear for Stage<'_> {
     fn residual_into(&mut self, x: &[f64], out: &mut [f64]) {
         self.go_to(x, self.reach);
         self.system
-            .free_acceleration(self.t, self.place, &On::All, self.force);
+            .free_acceleration(self.t[0], self.place, &On::All, self.force);
         let share = 1.0 / self.reach;
         self.force.iter_mut().for_each(|force| *force *= share);
         if self.system.has_boundaries() {
@@ -324,12 +333,13 @@ impl Nonlinear for Stage<'_> {
         each(out, self.right, |out, right| *out -= right);
         each(out, self.force, |out, force| *out -= factor * force);
         each(out, self.mass, |out, m| *out *= m);
-        self.system.hold(out);
+        self.system.hold_at(self.t[1], out);
     }
 
     fn derivative_into(&mut self, x: &[f64], direction: &[f64], out: &mut [f64]) {
         self.go_to(x, self.reach);
-        self.system.vibration_into(self.place, direction, out);
+        self.system
+            .vibration_at(self.t[1], self.place, direction, out);
         ends::add_stiffness(self.system, direction, out);
         add_and_weigh(out, self.quarter, direction, self.mass);
     }
@@ -391,14 +401,16 @@ impl Integrator for Implicit {
         let State { t, u, v, a, .. } = state;
         let tau = t_next - *t;
         self.prescribe(system, t_next, u);
+        let times = [*t, t_next];
+        let push = system.last_push(times, u);
+        let known = ([&**u, &**v, &**a], push.as_deref());
         match self.solver.take() {
             Some(mut solver) => {
-                let times = [*t, t_next];
-                let solved = self.solve_linear(&mut solver, system, times, [u, v, a], interrupt);
+                let solved = self.solve_linear(&mut solver, system, times, known, interrupt);
                 self.solver = Some(solver);
                 solved?;
             }
-            None => self.solve_nonlinear(system, [*t, t_next], [u, v, a], interrupt)?,
+            None => self.solve_nonlinear(system, times, known, interrupt)?,
         }
         let [u_next, v_next] = &mut self.next;
         u_next.copy_from_slice(u);

@@ -85,6 +85,8 @@ pub(super) struct StepSolver {
     shape: Shape,
     /// The step that the factor belongs to, s; zero if there is none. It stays while steps differ by rounding only.
     factored: f64,
+    /// The number of prescribed motions that held their points then.
+    held: u64,
     factor: Option<BandedCholesky>,
 }
 
@@ -95,6 +97,7 @@ impl StepSolver {
             choice,
             shape: Shape::of(system, linear),
             factored: 0.0,
+            held: 0,
             factor: None,
         })
     }
@@ -111,22 +114,24 @@ impl StepSolver {
         }
     }
 
-    /// Solves (M + τ²/4 K) x = right for a right-hand side that is zero where motion is prescribed; `mass` is the diagonal of M.
+    /// Solves (M + τ²/4 K) x = right of the step between two times, for a right-hand side that is zero where motion is prescribed at its end; `mass` is the diagonal of M.
     pub(super) fn solve(
         &mut self,
         system: &System,
         mass: &[f64],
-        tau: f64,
+        [t, t_next]: [f64; 2],
         right: &[f64],
         x: &mut [f64],
         (limits, work): (&SolveLimits<'_>, &mut Work),
     ) -> Result<()> {
-        let mut product = |x: &[f64], out: &mut [f64]| product_into(system, mass, tau, x, out);
+        let tau = t_next - t;
+        let mut product =
+            |x: &[f64], out: &mut [f64]| product_into(system, mass, [tau, t_next], x, out);
         if !self.is_direct(tau, system) {
             x.fill(0.0);
             return conjugate_gradient(&mut product, right, x, limits, work).map(|_| ());
         }
-        let factor = self.factor_of(system, mass, tau)?;
+        let factor = self.factor_of(system, mass, [tau, t_next])?;
         x.copy_from_slice(right);
         factor.solve(x);
         factor
@@ -135,36 +140,57 @@ impl StepSolver {
     }
 
     /// The factor of a step, made where there is none yet.
-    fn factor_of(&mut self, system: &System, mass: &[f64], tau: f64) -> Result<&BandedCholesky> {
+    fn factor_of(
+        &mut self,
+        system: &System,
+        mass: &[f64],
+        [tau, t_next]: [f64; 2],
+    ) -> Result<&BandedCholesky> {
         /// Steps that differ by less are one step, the difference of rounded times.
         const SAME: f64 = 1e-6;
-        if (self.factored / tau - 1.0).abs() > SAME {
+        let held = system.holding(t_next);
+        if (self.factored / tau - 1.0).abs() > SAME || self.held != held {
             self.factored = tau;
+            self.held = held;
             self.factor = None;
         }
         let factor = match self.factor.take() {
             Some(factor) => factor,
-            None => factorise(system, mass, self.factored, self.shape.reach as usize)?,
+            None => {
+                let step = [self.factored, t_next];
+                factorise(system, mass, step, self.shape.reach as usize)?
+            }
         };
         Ok(self.factor.insert(factor))
     }
 }
 
-/// M x + τ²/4 K x, boundaries included, with K x zero where motion is prescribed.
-fn product_into(system: &System, mass: &[f64], tau: f64, x: &[f64], out: &mut [f64]) {
+/// M x + τ²/4 K x, boundaries included, with K x zero where motion is prescribed at the end of the step.
+fn product_into(
+    system: &System,
+    mass: &[f64],
+    [tau, t_next]: [f64; 2],
+    x: &[f64],
+    out: &mut [f64],
+) {
     // The place about which a linear force is linearised does not matter.
-    system.vibration_into(x, x, out);
+    system.vibration_at(t_next, x, x, out);
     ends::add_stiffness(system, x, out);
     add_and_weigh(out, 0.25 * tau * tau, x, mass);
 }
 
 /// The factor of the matrix whose rows and columns of prescribed entries are those of the unit matrix.
-fn factorise(system: &System, mass: &[f64], tau: f64, reach: usize) -> Result<BandedCholesky> {
+fn factorise(
+    system: &System,
+    mass: &[f64],
+    step: [f64; 2],
+    reach: usize,
+) -> Result<BandedCholesky> {
     let mut free = vec![0.0; mass.len()];
     let mut apply = |x: &[f64], out: &mut [f64]| {
         free.copy_from_slice(x);
-        system.hold(&mut free);
-        product_into(system, mass, tau, &free, out);
+        system.hold_at(step[1], &mut free);
+        product_into(system, mass, step, &free, out);
         for (out, (x, free)) in out.iter_mut().zip(x.iter().zip(&free)) {
             *out += x - free;
         }
@@ -176,6 +202,7 @@ fn factorise(system: &System, mass: &[f64], tau: f64, reach: usize) -> Result<Ba
 crate::saved! {
     impl Saved for StepSolver {
         factored: array("implicit/factored"),
+        held: array("implicit/held"),
         factor: set(None),
         choice, shape: fixed,
     }

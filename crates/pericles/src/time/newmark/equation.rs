@@ -54,7 +54,7 @@ impl StepEquation<'_> {
                 *out = self.root_mass[k] * (x[k] - known(k) - self.theta * acceleration + pull);
             }
         });
-        self.system.hold(out);
+        self.system.hold_at(self.t, out);
     }
 
     fn unscale(&mut self, y: &[f64], slot: usize) {

@@ -59,7 +59,7 @@ impl InnerSolver {
                 Requirement::IN_DOUBLES,
                 Requirement {
                     need: Need::NoBoundaries,
-                    reason: "its boundaries have a memory that an iteration must not touch; solver = \"fixed-point\" can",
+                    reason: "its equation has forces by displacements only, none of boundaries; use velocity-verlet, and for damping layers also solver = \"fixed-point\"",
                 },
             ],
         }

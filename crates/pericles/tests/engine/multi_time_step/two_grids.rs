@@ -3,11 +3,17 @@
 use std::sync::Arc;
 
 use pericles::family::VolumeCorrection;
-use pericles::material::{BondMaterial, Fracture, StressState};
-use pericles::operator::{BondBody, BondForm, DamageMeasure, Force, GradedBody, On};
+use pericles::material::{
+    BondMaterial, CubicLaw, ElasticModulus, Fracture, FractureCalibration, InterfaceRule, Modulus,
+    PairClasses, PairLaw, StressState, Treatment,
+};
+use pericles::operator::{
+    BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials, On,
+};
+use pericles::round_trip::check_resume;
 use pericles::space::{Finer, GradedCloud, GradedGrid, Grid, PointCloud, Region, Shape};
-use pericles::time::{Fine, Integrator, Respa, State, highest_frequency};
-use pericles::{Control, PointScalar, Simulation, System};
+use pericles::time::{Fine, Integrator, Respa, State, VelocityVerlet, highest_frequency};
+use pericles::{Control, PointScalar, Simulation, StepEnd, System};
 
 use crate::common::{boxed, material, points};
 
@@ -44,19 +50,36 @@ fn bonds(
     state: StressState,
 ) -> (Arc<PointCloud>, Box<dyn Force>) {
     let cloud = Arc::new(points.cloud);
-    let body = GradedBody {
-        cloud: &cloud,
-        ratios: &points.ratios,
-        grid_of_point: &points.grid_of_point,
+    let operator = bonds_of(
+        &cloud,
+        (&points.ratios, &points.grid_of_point),
         material,
+        None,
+        state,
+    );
+    (cloud, operator)
+}
+
+fn bonds_of(
+    cloud: &Arc<PointCloud>,
+    (ratios, grid_of_point): (&[u32], &[u8]),
+    material: &BondMaterial,
+    materials: Option<Materials<'_>>,
+    state: StressState,
+) -> Box<dyn Force> {
+    let body = GradedBody {
+        cloud,
+        ratios,
+        grid_of_point,
+        material,
+        materials,
         state,
         cracks: &[],
         no_fail: &[],
         stiffness: &[],
         damage: DamageMeasure::default(),
     };
-    let operator = body.operator().unwrap().operator;
-    (cloud, operator)
+    body.operator().unwrap().operator
 }
 
 fn middle(dimension: usize) -> Region {
@@ -122,14 +145,23 @@ fn divided_everywhere_it_is_the_body_of_small_cells() {
 
 #[test]
 fn both_ends_of_every_bond_pull_alike() {
-    for (dimension, state) in [
-        (1, StressState::Uniaxial),
-        (2, StressState::PlaneStrain),
-        (3, StressState::Spatial),
+    let treated = PairLaw::Treated(CubicLaw::Literal57, Treatment::SecondOrder);
+    for (dimension, state, law) in [
+        (1, StressState::Uniaxial, PairLaw::BondStretch),
+        (1, StressState::Uniaxial, PairLaw::Literal57),
+        (1, StressState::Uniaxial, treated),
+        (2, StressState::PlaneStrain, PairLaw::BondStretch),
+        (2, StressState::PlaneStrain, PairLaw::GreenStrain),
+        (3, StressState::Spatial, PairLaw::BondStretch),
+        (3, StressState::Spatial, PairLaw::GreenStrain),
     ] {
         let size = vec![0.12; dimension];
         let points = graded(&size, middle(dimension), 2);
-        let (cloud, force) = bonds(points, &glass(VolumeCorrection::Extended), state);
+        let material = BondMaterial {
+            law,
+            ..glass(VolumeCorrection::Extended)
+        };
+        let (cloud, force) = bonds(points, &material, state);
         let n = cloud.len();
         let mut density = vec![0.0; dimension * n];
         force.add_force(0.0, &bumpy(&cloud), On::All, &mut density);
@@ -180,5 +212,249 @@ fn middle_of_plate() -> Region {
     Region::Box {
         min: [0.09, 0.05, f64::NEG_INFINITY],
         max: [0.15, 0.11, f64::INFINITY],
+    }
+}
+
+/// A plate 24 × 20 large cells, the cells of its right half divided by two.
+fn half_fine() -> GradedCloud {
+    let right = Region::Box {
+        min: [0.12, f64::NEG_INFINITY, f64::NEG_INFINITY],
+        max: [f64::INFINITY; 3],
+    };
+    graded(&[0.24, 0.2], right, 2)
+}
+
+/// Glass of 100 J/m² with the linear law, all of whose bonds have the same stretch under a dilation.
+fn breakable() -> BondMaterial {
+    BondMaterial {
+        law: PairLaw::Linear,
+        fracture: Fracture::Energy {
+            energy: 100.0,
+            calibration: FractureCalibration::Lattice,
+        },
+        ..glass(VolumeCorrection::Extended)
+    }
+}
+
+fn dilation(cloud: &PointCloud, strain: f64) -> Vec<f64> {
+    (0..2)
+        .flat_map(|c| cloud.axis(c).iter().map(move |x| strain * x))
+        .collect()
+}
+
+#[test]
+fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
+    let state = StressState::PlaneStress;
+    let material = breakable();
+    let (cloud, force) = bonds(half_fine(), &material, state);
+    let stretch_on = |spacing: f64| {
+        let own = BondMaterial {
+            horizon: 3.0 * spacing,
+            ..material.clone()
+        };
+        let sides = [spacing; 2];
+        own.constants_on(&sides, 1.0, state)
+            .unwrap()
+            .critical_stretch
+    };
+    let [large, small] = [SPACING, 0.5 * SPACING].map(stretch_on);
+    assert!(small > 1.3 * large);
+    let is_fine = |i: usize| cloud.axis(0)[i] > 0.12;
+    // Bonds left within one grid or between both once the body has been dilated.
+    let left = |strain: f64| {
+        let (_, mut force) = bonds(half_fine(), &material, state);
+        let u = dilation(&cloud, strain);
+        let mut out = vec![0.0; u.len()];
+        force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), On::All, &mut out);
+        let mut left = [0; 3];
+        for i in 0..cloud.len() {
+            let view = force.as_bonds().unwrap();
+            view.for_each_bond(&u, i, &mut |bond| {
+                left[usize::from(is_fine(i)) + usize::from(is_fine(bond.neighbour))] += 1;
+            });
+        }
+        left
+    };
+    let all = left(0.5 * large);
+    for (grid, stretch) in [(0, large), (2, small)] {
+        assert_eq!(left(stretch * (1.0 - 1e-9))[grid], all[grid]);
+        assert_eq!(left(stretch * (1.0 + 1e-9))[grid], 0);
+    }
+    let (mut low, mut high) = (large, small);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        match left(middle)[1] {
+            0 => high = middle,
+            count => {
+                assert_eq!(count, all[1], "bonds between the grids break together");
+                low = middle;
+            }
+        }
+    }
+    // Critical energies of the bonds across a line x = const, away from free faces, J/m².
+    let strain = 1e-6;
+    let u = dilation(&cloud, strain);
+    let across = |line: f64| {
+        let inside = |i: &usize| (0.07..0.13).contains(&cloud.axis(1)[*i]);
+        let mut energy = 0.0;
+        for i in (0..cloud.len()).filter(inside) {
+            let view = force.as_bonds().unwrap();
+            view.for_each_bond(&u, i, &mut |bond| {
+                let [a, b] = [i, bond.neighbour].map(|i| cloud.axis(0)[i]);
+                if (a - line) * (b - line) > 0.0 {
+                    return;
+                }
+                let stretch = match (is_fine(i), is_fine(bond.neighbour)) {
+                    (false, false) => large,
+                    (true, true) => small,
+                    _ => low,
+                };
+                let norm = |x: [f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let force = norm(bond.force) * cloud.volumes()[i];
+                // Each end has half of ½ F Δ.
+                let stored = 0.25 * force * strain * norm(bond.xi);
+                energy += stored * (stretch / strain).powi(2);
+            });
+        }
+        energy / 0.06
+    };
+    let (coarse, interface, fine) = (across(0.06), across(0.12), across(0.18));
+    // The same plane of both lattices; the calibration is the mean over planes.
+    assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse}, {fine}");
+    assert!((coarse / 100.0 - 1.0).abs() < 0.15, "{coarse}");
+    // Seen: the interface has other bonds than a plane of either lattice.
+    assert!(
+        (interface / coarse - 1.0).abs() < 0.15,
+        "{interface}, {coarse}"
+    );
+}
+
+/// A torn plate whose crack runs from large into small cells, in two materials.
+fn torn() -> Simulation {
+    let state = StressState::PlaneStress;
+    let points = half_fine();
+    let cloud = Arc::new(points.cloud);
+    let material = breakable();
+    let stiff = BondMaterial {
+        modulus: Modulus {
+            value: ElasticModulus::Young(100e9),
+            ..material.modulus
+        },
+        ..material.clone()
+    };
+    let of_point: Vec<u8> = cloud.axis(1).iter().map(|y| u8::from(*y > 0.15)).collect();
+    let all = [material.clone(), stiff];
+    let materials = Materials {
+        all: &all,
+        of_point: &of_point,
+        rule: InterfaceRule::Harmonic,
+        critical_stretches: &[],
+    };
+    let grids = (&points.ratios[..], &points.grid_of_point[..]);
+    let force = bonds_of(&cloud, grids, &material, Some(materials), state);
+    let system = System::new(cloud.clone(), force, PointScalar::Uniform(2440.0)).unwrap();
+    let mut start = State::at_rest(2 * cloud.len());
+    let n = cloud.len();
+    for i in 0..n {
+        // Both halves fly apart, the left ends faster.
+        let [x, y, _] = cloud.point(i);
+        start.v[n + i] = (y - 0.1).signum() * 12.0 * (1.0 - x / 0.3);
+    }
+    let omega = highest_frequency(&system, &start.u).unwrap();
+    let dt = omega.stable_step(2.0, 0.5);
+    Simulation::new(system, Box::new(VelocityVerlet), start, dt, 300)
+}
+
+#[test]
+fn a_crack_through_two_grids_and_materials_keeps_energy_and_momentum() {
+    let mut run = torn();
+    let before = run.system().momentum(&run.state().v);
+    let size = run.system().kinetic_energy(&run.state().v);
+    run.run(|_| Control::Continue).unwrap();
+    let force = run.system().operator();
+    assert!(force.broken_bonds() > 500, "{}", force.broken_bonds());
+    assert!(force.dissipated() > 1e-3 * size);
+    let energies = run.snapshot().energies();
+    let off = energies.balance().abs() / force.dissipated();
+    assert!(off < 1e-3, "{off:e} {energies:?}");
+    let after = run.system().momentum(&run.state().v);
+    let scale = (2.0 * size * 2440.0 * 0.24 * 0.2).sqrt();
+    for c in 0..2 {
+        assert!((after[c] - before[c]).abs() < 1e-12 * scale);
+    }
+}
+
+#[test]
+fn a_crack_through_two_grids_is_resumed() {
+    check_resume(torn, [90]).unwrap();
+}
+
+#[test]
+fn several_materials_divided_everywhere_are_those_of_small_cells() {
+    let state = StressState::PlaneStress;
+    let points = graded(&[0.12, 0.08], Region::All, 2);
+    let cloud = Arc::new(points.cloud);
+    let half = 0.5 * SPACING;
+    let stiff = |young: f64, horizon: f64| BondMaterial {
+        horizon,
+        modulus: Modulus {
+            value: ElasticModulus::Young(young),
+            ..breakable().modulus
+        },
+        ..breakable()
+    };
+    let number = |cloud: &PointCloud| -> Vec<u8> {
+        cloud.axis(0).iter().map(|x| u8::from(*x > 0.06)).collect()
+    };
+    let (of_point, override_) = (number(&cloud), [([0, 1], 2e-4)]);
+    let [soft, hard] = [50e9, 90e9].map(|young| stiff(young, 3.0 * SPACING));
+    let all = [soft.clone(), hard];
+    let materials = Materials {
+        all: &all,
+        of_point: &of_point,
+        rule: InterfaceRule::Weaker,
+        critical_stretches: &override_,
+    };
+    let grids = (&points.ratios[..], &points.grid_of_point[..]);
+    let found = |materials| bonds_of(&cloud, grids, &soft, Some(materials), state);
+
+    let plain = boxed([0.0; 3], &[0.12, 0.08], half, 1.0);
+    let own = [50e9, 90e9].map(|young| stiff(young, 3.0 * half));
+    let constants = own
+        .each_ref()
+        .map(|own| own.constants(&plain, state).unwrap());
+    let mut classes = PairClasses::new(number(&plain), &constants, InterfaceRule::Weaker).unwrap();
+    classes.set_critical_stretch([0, 1], 2e-4);
+    let composite = CompositeBody {
+        body: BondBody::new(&plain, &own[0], &constants[0]),
+        classes: Some(&classes),
+        correction: Default::default(),
+    };
+    let expected = || composite.operator(BondForm::List).unwrap().operator;
+    // The points come in another order.
+    let same: Vec<usize> = (0..cloud.len())
+        .map(|i| plain.nearest(cloud.point(i)))
+        .collect();
+    // Between the stretches of the interface and of the materials, and beyond that of the stiffer one.
+    let stretches = constants
+        .each_ref()
+        .map(|constants| constants.critical_stretch);
+    for strain in [1e-4, 3e-4, 0.5 * (stretches[0] + stretches[1])] {
+        let broken = |mut force: Box<dyn Force>, cloud: &PointCloud| {
+            let u = dilation(cloud, strain);
+            let mut out = vec![0.0; u.len()];
+            force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), On::All, &mut out);
+            (force.broken_bonds(), out)
+        };
+        let (number, out) = broken(found(materials), &cloud);
+        let (expected_number, expected) = broken(expected(), &plain);
+        assert_eq!(number, expected_number);
+        assert_eq!(number > 0, strain > 2e-4);
+        let n = cloud.len();
+        let scale = expected.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+        for (k, out) in out.iter().enumerate() {
+            let other = expected[k / n * n + same[k % n]];
+            assert!((out - other).abs() < 1e-11 * scale, "{out} {other}");
+        }
     }
 }
