@@ -55,9 +55,18 @@ pub trait TwoPass: Saved + Send + Sync {
     /// Calls `visit` for every own point that point i is bonded to, once each.
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
 
-    /// Decides breaking of the bonds of the points named by `on`, at both ends alike, before the passes at the end of a step.
-    fn decide(&mut self, step: &StepEnd<'_>, on: &On<'_>) {
-        let _ = (step, on);
+    /// At the end of a step, at the displacement `u`: decides breaking of the bonds of the points named by `on`, at both ends alike, and sets the values of the points named by `needed` by the bonds that are left.
+    /// `needed` are the points of `on` and all that they are bonded to.
+    fn end_values_into(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        needed: &On<'_>,
+        values: &mut [f64],
+    ) {
+        let _ = on;
+        self.values_into(step.t, u, needed, values);
     }
 
     /// Its bonds as ones that break, if they do.
@@ -75,6 +84,16 @@ pub trait TwoPass: Saved + Send + Sync {
 
     /// Memory, bytes.
     fn bytes(&self) -> usize;
+
+    /// What the loops are compiled for.
+    fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::Baseline
+    }
+
+    /// As [`Force::use_instruction_set`].
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        let _ = set;
+    }
 }
 
 /// The [`Force`] of a force in two passes.
@@ -190,8 +209,23 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
     }
 
     fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
-        self.force.decide(step, &on);
-        self.add_force(step.t, step.u, on, out);
+        let domain = self.cloud.domain();
+        let ghosts = domain.ghosts(step.u);
+        let u = Field::new(step.u, &ghosts);
+        let part;
+        let needed = match &on {
+            On::All => On::All,
+            on => {
+                part = self.with_neighbours(on);
+                On::Set(&part)
+            }
+        };
+        let mut own = self.work.take();
+        self.force.end_values_into(step, u, &on, &needed, &mut own);
+        let ghosts = domain.ghosts(&own);
+        let values = Field::new(&own, &ghosts);
+        self.force
+            .add_bond_force(step.t, AtPoints { u, values }, &on, out);
     }
 
     fn capabilities(&self) -> Capabilities<'_> {
@@ -222,7 +256,11 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
     }
 
     fn instruction_set(&self) -> InstructionSet {
-        InstructionSet::Baseline
+        self.force.instruction_set()
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        self.force.use_instruction_set(set);
     }
 }
 
