@@ -1,10 +1,13 @@
 //! Tests of state-based materials.
 
 mod bodies;
+#[path = "../../benches/clock/mod.rs"]
+mod clock;
 #[path = "../common/mod.rs"]
 mod common;
 mod constants;
 mod fracture;
 mod identities;
 mod reference;
+mod speed;
 mod twin;
