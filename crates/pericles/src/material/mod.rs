@@ -39,7 +39,8 @@ pub use pair_force::PairForce;
 pub use polynomial::{GreenBond, LiteralBond};
 pub use state_based::{
     BondFailure, BondLimits, ElasticConstants, GivenConstants, IsotropicInfluence, LatticeShear,
-    LinearSolid, LinearSolidConstants, SolidClasses, StateInfluence, Strains, StretchDefinition,
+    LinearSolid, LinearSolidConstants, SolidClasses, SolidSurface, StateInfluence, Strains,
+    StretchDefinition,
 };
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

@@ -9,5 +9,7 @@ mod constants;
 mod fracture;
 mod identities;
 mod reference;
+mod schemes;
 mod speed;
+mod surface;
 mod twin;

@@ -23,7 +23,7 @@ fn state_based(cloud: &Arc<PointCloud>, function: InfluenceFunction) -> Box<dyn 
     body.operator().unwrap().0
 }
 
-/// An evaluation takes two passes over the bonds, in place of one. The bound is one and a half times what is measured.
+/// An evaluation takes two passes over the bonds, in place of one. The bound is one and a half times what is measured with AVX2.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "measures optimised loops: --release")]
 fn two_passes_take_about_the_time_of_two_passes() {
@@ -75,7 +75,8 @@ fn two_passes_take_about_the_time_of_two_passes() {
                 let set = force.instruction_set().name();
                 println!("{set}, {name}: {best:.2} ns per directed bond");
             }
-            assert!(best[1] < 3.5 * best[0], "{best:?}");
+            let vectors = set != InstructionSet::Baseline;
+            assert!(!vectors || best[1] < 2.8 * best[0], "{best:?}");
         }
     });
 }

@@ -5,9 +5,11 @@ mod elastic;
 mod failure;
 mod isotropic;
 mod linear_solid;
+mod surface;
 
 pub use classes::SolidClasses;
 pub use elastic::{ElasticConstants, GivenConstants};
 pub use failure::{BondFailure, BondLimits, StretchDefinition};
 pub use isotropic::{IsotropicInfluence, LatticeShear};
 pub use linear_solid::{LinearSolid, LinearSolidConstants, StateInfluence, Strains};
+pub use surface::SolidSurface;

@@ -6,6 +6,7 @@ use super::weight::Weight;
 use crate::domain::Field;
 use crate::family::BondList;
 use crate::lanes::{Lanes, Row, dot, vector};
+use crate::operator::list::stiffness::Stiffness;
 use crate::operator::records::Records;
 use crate::parallel::BLOCK;
 use crate::space::PointCloud;
@@ -91,6 +92,8 @@ pub(super) struct SolidBonds<'a> {
     pub list: &'a BondList,
     pub layout: &'a Layout,
     pub weight: &'a Weight,
+    /// Factors of the stiffness of bonds near surfaces, where they are corrected.
+    pub factor: Option<&'a Stiffness>,
 }
 
 /// What all bonds of a point share.
@@ -113,8 +116,10 @@ pub(super) struct Bond<T, const D: usize> {
     pub inverse_square: T,
     /// ω
     pub weight: T,
-    /// s of both ends.
+    /// s of both ends times the bond's own factor.
     pub stiffness: T,
+    /// The factor.
+    pub factor: T,
     /// The fourth number of the rows of both ends: p, where rows hold it.
     pub last: T,
 }
@@ -174,6 +179,10 @@ impl<'a> SolidBonds<'a> {
                 (own[0], reference[3], own[1])
             }
         };
+        let factor = match self.factor {
+            None => T::splat(1.0),
+            Some(factors) => factors.of_group(group, r, volume, [cell, cell]),
+        };
         Bond {
             xi,
             eta,
@@ -182,7 +191,8 @@ impl<'a> SolidBonds<'a> {
             weight: self
                 .weight
                 .of_group(group, r, inverse, volume, [here.cell, cell]),
-            stiffness: here.stiffness + stiffness,
+            stiffness: factor * (here.stiffness + stiffness),
+            factor,
             last: here.last + there[3],
         }
     }
@@ -199,6 +209,14 @@ impl<'a> SolidBonds<'a> {
         let [volume, to] = self.layout.volume_and_cell(slot(j));
         let r = dot(xi, xi).sqrt();
         self.weight.of_entry(entry, r, volume, [from, to])
+    }
+}
+
+impl SolidBonds<'_> {
+    /// The factor of the stiffness of an entry.
+    pub fn factor_of(&self, entry: usize) -> f64 {
+        self.factor
+            .map_or(1.0, |factors| factors.of_entry(entry, 0.0, 0.0, [0.0; 2]))
     }
 }
 

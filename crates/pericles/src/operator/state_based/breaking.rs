@@ -19,7 +19,7 @@ pub(super) struct States {
     pub pressure: Vec<f64>,
     /// s = B/m.
     pub stiffness: Vec<f64>,
-    /// A/D, Pa: the energy density is this times θ²/2, and s/2 Σ ω e².
+    /// A/D, Pa: the energy density is this times θ²/2, and s/2 Σ g ω e².
     pub bulk: Vec<f64>,
 }
 
@@ -119,7 +119,7 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
 struct Sums {
     /// Σ ω r e and its rate.
     extension: [f64; 2],
-    /// Σ ω e² and half its rate.
+    /// Σ g ω e² and half its rate.
     square: [f64; 2],
 }
 
@@ -157,9 +157,10 @@ fn dissipated<L: Kinematics, const D: usize>(
                 along * L::contraction(F64x8([t; LANES])).0[0] / square
             });
             let weight = bonds.weight_of(entry, [i, j], xi) * square;
-            whole.add(weight, stretch, rate);
+            let factor = bonds.factor_of(entry);
+            whole.add(weight, factor, stretch, rate);
             if broken[k] >> lane & 1 == 1 {
-                lost.add(weight, stretch, rate);
+                lost.add(weight, factor, stretch, rate);
             }
         }
     }
@@ -177,12 +178,12 @@ fn dissipated<L: Kinematics, const D: usize>(
 }
 
 impl Sums {
-    /// Adds a bond of the weight ω r² with the stretch ψ and its rate.
-    fn add(&mut self, weight: f64, stretch: f64, rate: f64) {
+    /// Adds a bond of the weight ω r² and the factor g with the stretch ψ and its rate.
+    fn add(&mut self, weight: f64, factor: f64, stretch: f64, rate: f64) {
         self.extension[0] += weight * stretch;
         self.extension[1] += weight * rate;
-        self.square[0] += weight * stretch * stretch;
-        self.square[1] += weight * stretch * rate;
+        self.square[0] += factor * weight * stretch * stretch;
+        self.square[1] += factor * weight * stretch * rate;
     }
 }
 

@@ -12,8 +12,9 @@ use crate::domain::Field;
 use crate::family::BondList;
 use crate::kernel::Influence;
 use crate::lanes::{LANES, Row, dot};
-use crate::material::{BondLimits, PairForce, SolidClasses};
+use crate::material::{BondLimits, PairForce, SolidClasses, SolidSurface, SurfaceFactors};
 use crate::operator::damage::{BlockDamage, DamageMeasure};
+use crate::operator::list::stiffness::Stiffness;
 use crate::operator::pool::{Lent, Pool};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
@@ -36,6 +37,8 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
     pub(super) bonds: BondList,
     pub(super) layout: Layout,
     pub(super) weight: Weight,
+    /// Factors of the stiffness of bonds near surfaces, if they are corrected.
+    factor: Option<Stiffness>,
     pub(super) states: States,
     pub(super) classes: SolidClasses,
     /// The limits of the weakest pair of materials.
@@ -56,7 +59,7 @@ crate::saved! {
     impl<L: Kinematics, const D: usize> Saved for LinearSolidForce<L, D> {
         blocks: under("operator"),
         work: array("operator/bond-work"),
-        cloud, bonds, layout, weight, states, classes, weakest, breakable, damage, influence: fixed,
+        cloud, bonds, layout, weight, factor, states, classes, weakest, breakable, damage, influence: fixed,
         instruction_set, kinematics: fixed,
         packed: scratch,
     }
@@ -102,6 +105,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             bonds,
             layout,
             weight,
+            factor: None,
             states,
             classes,
             weakest,
@@ -109,6 +113,20 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             blocks,
             instruction_set: InstructionSet::detect(),
             kinematics: std::marker::PhantomData,
+        }
+    }
+
+    /// The same with corrected surfaces; every bond keeps a number, a byte where there are few.
+    pub fn with_surface(self, surface: SolidSurface, influence: &Influence) -> Self {
+        let factors = match surface.factors(&self.cloud, &self.bonds, influence, &self.classes) {
+            SurfaceFactors::None => None,
+            factors => Some(Stiffness::of_pairs(&self.bonds, &|i, j| {
+                factors.of_bond(i, j, self.bonds.vector(&self.cloud, i, j))
+            })),
+        };
+        Self {
+            factor: factors,
+            ..self
         }
     }
 
@@ -134,6 +152,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             list: &self.bonds,
             layout: &self.layout,
             weight: &self.weight,
+            factor: self.factor.as_ref(),
         }
     }
 
@@ -314,8 +333,9 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let rows = size_of::<Row>() * self.cloud.len();
         let states = 4 * size_of::<f64>() * self.cloud.len();
         let influence = self.influence.as_ref().map_or(0, Weight::bytes);
+        let factor = self.factor.as_ref().map_or(0, Stiffness::bytes);
         let work = size_of_val(&self.work[..]);
-        rows + states + self.layout.bytes() + self.weight.bytes() + influence + work
+        rows + states + factor + self.layout.bytes() + self.weight.bytes() + influence + work
     }
 }
 
@@ -364,6 +384,7 @@ fn weighted_volumes<const D: usize>(
         list: bonds,
         layout: &layout,
         weight,
+        factor: None,
     };
     for_each_point(cloud.len(), &|i| {
         let family = bonds

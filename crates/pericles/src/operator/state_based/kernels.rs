@@ -249,7 +249,7 @@ fn square_rows_body<T: Lanes, L: Kinematics, const D: usize>(
         for k in 0..groups.len() {
             let bond = bonds.group(first + k, &here, u);
             let stretch = L::exact_stretch(L::strain(bond.xi, bond.eta, bond.inverse_square));
-            let square = bond.weight * bond.square * stretch * stretch;
+            let square = bond.factor * bond.weight * bond.square * stretch * stretch;
             total = total + square.masked(intact[groups.start + k]);
         }
         out[0][i - rows.first] = sum(total);
@@ -385,7 +385,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Sets Σ ω e² of the rows.
+    /// Sets Σ g ω e² of the rows, with the factors g of bonds near surfaces.
     pub(super) fn square_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         u: &Records,

@@ -65,13 +65,13 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         });
     }
 
-    /// W ≤ ½ k Σ ω e² with k = max(A D + B, B)/m, by Cauchy's inequality θ² ≤ (D²/m) Σ ω e²: the solid is softer than springs of the stiffness ω (k_i + k_j) V_i, to which Gershgorin's discs apply.
+    /// W ≤ ½ Σ k ω e² with k = (max(A D, 0) + g B)/m, by Cauchy's inequality θ² ≤ (D²/m) Σ ω e²: the solid is softer than springs of the stiffness ω (k_i + k_j) V_i, to which Gershgorin's discs apply.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let bonds = self.view();
         let dimension = D as f64;
-        let stiffness = |i: usize| {
+        let stiffness = |i: usize, factor: f64| {
             let dilatational = (dimension * self.states.pressure[i]).max(0.0);
-            dilatational + self.states.stiffness[i]
+            dilatational + factor * self.states.stiffness[i]
         };
         let mut largest: f64 = 0.0;
         for i in 0..self.cloud.len() {
@@ -80,7 +80,8 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
                 .filter(|&(entry, _)| self.is_intact(i, entry))
                 .map(|(entry, j)| {
                     let weight = bonds.weight_of(entry, [i, j], bonds.vector::<D>(i, j));
-                    weight.abs() * (stiffness(i) + stiffness(j))
+                    let factor = bonds.factor_of(entry);
+                    weight.abs() * (stiffness(i, factor) + stiffness(j, factor))
                 })
                 .sum();
             largest = largest.max(2.0 * row / density(i));
