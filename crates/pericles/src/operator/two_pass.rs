@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
-    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce, On,
+    BondView, Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity,
+    LocalForce, On,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -76,6 +77,11 @@ pub trait TwoPass: Saved + Send + Sync {
 
     /// The same, to be changed.
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        None
+    }
+
+    /// Its bonds one by one, if they can be looked at.
+    fn bonds(&self) -> Option<&dyn BondView> {
         None
     }
 
@@ -238,6 +244,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             local: Some(self),
             // What a bond exerts depends on all bonds of its ends.
             split: None,
+            bonds: self.force.bonds(),
             ..Capabilities::default()
         }
     }

@@ -411,3 +411,73 @@ fn the_force_on_a_point_does_not_depend_on_what_is_evaluated_with_it_or_on_threa
         }
     }
 }
+
+/// σ = κ tr ε + 2 G dev ε inside a lattice with its isotropic function.
+#[test]
+fn the_virial_stress_of_a_uniform_strain_is_that_of_elasticity() {
+    let cloud = boxed([0.0; 3], &[13.0, 13.0], 1.0, 1.0);
+    let state = StressState::PlaneStress;
+    let material = LinearSolid {
+        influence: StateInfluence::Isotropic,
+        ..solid(0.4, 3.0 * (1.0 + 1e-6), InfluenceFunction::Constant)
+    };
+    let constants = material.constants(&cloud, state).unwrap();
+    let body = LinearSolidBody {
+        strains: Strains::Small,
+        ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::None)
+    };
+    let operator = body.operator().unwrap().0;
+    let (n, middle) = (cloud.len(), cloud.nearest([6.5; 3]));
+    let strain = [[3e-3, -2e-3], [-2e-3, 5e-3]];
+    let mut u = vec![0.0; 2 * n];
+    for k in 0..2 * n {
+        let x = cloud.point(k % n);
+        u[k] = strain[k / n][0] * x[0] + strain[k / n][1] * x[1];
+    }
+    let bonds = operator.as_bonds().unwrap();
+    let mut stress = [[0.0; 2]; 2];
+    bonds.for_each_bond(&u, middle, &mut |bond| {
+        for a in 0..2 {
+            for b in 0..2 {
+                stress[a][b] += 0.5 * bond.force[a] * bond.xi[b];
+            }
+        }
+    });
+    let (kappa, shear) = (
+        constants.elastic.dilatation_modulus(state),
+        constants.elastic.shear(),
+    );
+    let trace = strain[0][0] + strain[1][1];
+    for a in 0..2 {
+        for b in 0..2 {
+            let identity = f64::from(u8::from(a == b));
+            let deviator = strain[a][b] - 0.5 * trace * identity;
+            let expected = kappa * trace * identity + 2.0 * shear * deviator;
+            let error = (stress[a][b] / expected - 1.0).abs();
+            assert!(error < 1e-12, "{a}, {b}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn the_forces_of_single_bonds_add_up_to_the_force() {
+    for (cloud, constants) in bodies(&InfluenceFunction::Gaussian {
+        length: 1.3,
+        cutoff: None,
+    }) {
+        let operator = operator(&cloud, &constants);
+        let u = wave(&cloud, 0.15);
+        let force = force_of(&*operator, &u);
+        let bonds = operator.as_bonds().unwrap();
+        for i in 0..cloud.len() {
+            let mut sum = [0.0; 3];
+            bonds.for_each_bond(&u, i, &mut |bond| {
+                (0..3).for_each(|c| sum[c] += bond.force[c]);
+            });
+            for c in 0..cloud.dimension() {
+                let error = (sum[c] - force[c * cloud.len() + i]).abs() / largest(&force);
+                assert!(error < 1e-12, "{error:e}");
+            }
+        }
+    }
+}

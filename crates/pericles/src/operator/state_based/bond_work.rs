@@ -6,7 +6,7 @@ use super::kernels::{extension_of, groups_of};
 use super::kinematics::Kinematics;
 use super::weight::Weight;
 use crate::lanes::{LANES, Lanes, for_each_instruction_set};
-use crate::operator::damage::Tally;
+use crate::operator::damage::{BlockDamage, Tally};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
@@ -20,8 +20,6 @@ pub(super) struct Worked<'a> {
     pub bonds: SolidBonds<'a>,
     /// The influence function w alone.
     pub influence: &'a Weight,
-    /// D/m of every point.
-    pub factors: &'a [f64],
 }
 
 #[inline(always)]
@@ -29,12 +27,12 @@ fn work_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     worked: &Worked<'_>,
     rule: &BreakRule<'_>,
     u: &Records,
-    intact: &mut [u8],
+    block: &mut BlockDamage,
     kept: &mut [f64],
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; 1],
-    tally: &mut Tally,
 ) {
+    let BlockDamage { intact, tally } = block;
     let (bonds, zero) = (&worked.bonds, T::splat(0.0));
     let (half, one) = (T::splat(0.5), T::splat(1.0));
     // By more than the rounding of the sums below the limit.
@@ -74,7 +72,7 @@ fn work_rows_body<T: Lanes, L: Kinematics, const D: usize>(
             let kept = &kept[groups.start * KEPT..groups.end * KEPT];
             if break_by_work::<L, D>(worked, rule, u, i, &mut intact[groups.clone()], kept, tally) {
                 let extension = extension_of::<T, L, D>(bonds, u, i, &intact[groups]);
-                out[0][i - rows.first] = worked.factors[i] * extension;
+                out[0][i - rows.first] = rule.states.dilatation[i] * extension;
             }
         }
     }
@@ -128,10 +126,9 @@ for_each_instruction_set! {
         worked: &Worked<'_>,
         rule: &BreakRule<'_>,
         u: &Records,
-        intact: &mut [u8],
+        block: &mut BlockDamage,
         kept: &mut [f64],
         rows: &Rows<'_>,
         out: &mut [&mut [f64]; 1],
-        tally: &mut Tally,
     ) = work_rows_body on lanes
 }

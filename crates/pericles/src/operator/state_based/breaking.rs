@@ -37,7 +37,7 @@ pub(super) struct BreakRule<'a> {
     pub volumes: &'a [f64],
     /// The step that ended.
     pub step: &'a StepEnd<'a>,
-    /// Note what breaks, so that the other end can be told.
+    /// Note what breaks, so that the other end can be cleared.
     pub note_events: bool,
 }
 
@@ -52,7 +52,7 @@ impl BreakRule<'_> {
     }
 }
 
-/// Breaks the bonds of a point that are stretched beyond their critical stretch and books their energy; says whether there were any.
+/// Breaks the bonds of a point that are stretched beyond their critical stretch and books their energy; returns whether there were any.
 ///
 /// Decided with [`PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
 #[cold]
@@ -83,7 +83,7 @@ pub(super) fn break_row<L: Kinematics, const D: usize>(
     take_bonds::<L, D>(bonds, rule, u, i, intact, &broken, tally)
 }
 
-/// Clears the bits of bonds that are broken, books what their point loses, and says whether there are any.
+/// Clears the bits of bonds that are broken, books the energy that their point loses, and returns whether there are any.
 pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
     rule: &BreakRule<'_>,
@@ -123,7 +123,7 @@ struct Sums {
     square: [f64; 2],
 }
 
-/// What a point dissipates that loses the bonds `broken` of those that are left at the end of a step, J.
+/// Energy dissipated by a point that loses the bonds `broken` of those that are left at the end of a step, J.
 fn dissipated<L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
     rule: &BreakRule<'_>,

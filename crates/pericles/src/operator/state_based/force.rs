@@ -225,7 +225,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     ) {
         let n = self.cloud.len();
         let mut blocks = std::mem::take(&mut self.blocks);
-        let (bonds, factors) = (self.view(), &self.states.dilatation[..]);
+        let bonds = self.view();
         let rule = self.rule(step, on);
         let u = self.packed(u);
         for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
@@ -234,7 +234,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 accept_rows::<L, D>(
                     self.instruction_set,
                     &bonds,
-                    factors,
                     &rule,
                     &u,
                     &mut block.intact,
@@ -244,7 +243,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 );
             }
         });
-        self.tell_the_other_ends(&rule, &u, &mut blocks);
+        self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
         self.blocks = blocks;
     }
@@ -273,7 +272,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let worked = Worked {
             bonds: self.view(),
             influence,
-            factors: &self.states.dilatation,
         };
         for_each_block(
             [dilatations],
@@ -286,23 +284,22 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                         &worked,
                         &rule,
                         &u,
-                        &mut block.intact,
+                        block,
                         kept,
                         &wanted,
                         &mut out,
-                        &mut block.tally,
                     );
                 }
             },
         );
-        self.tell_the_other_ends(&rule, &u, &mut blocks);
+        self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
         self.blocks = blocks;
         self.work = work;
     }
 
-    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books what their other ends lose.
-    fn tell_the_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
+    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
+    fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
         let bonds = self.view();
         let rule = BreakRule {
             note_events: false,

@@ -90,7 +90,7 @@ fn beyond<T: Lanes, L: Kinematics>(largest: T, smallest: T) -> bool {
     largest.greater(reach) | (-smallest).greater(reach) != 0
 }
 
-/// The sum in the form that the point's own bonds ask for, so that it does not depend on which other points are computed beside it.
+/// The sum in the form that the strains of the point's own bonds need, so that it does not depend on which other points are computed beside it.
 #[inline(always)]
 fn settled<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -135,13 +135,12 @@ fn dilatation_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// t above which a row is looked at bond by bond: below the threshold by more than the fast form's rounding.
+/// t above which a row is checked bond by bond: below the threshold by more than the fast form's rounding.
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
 fn accept_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
-    factors: &[f64],
     rule: &BreakRule<'_>,
     u: &Records,
     intact: &mut [u8],
@@ -162,7 +161,7 @@ fn accept_rows_body<T: Lanes, L: Kinematics, const D: usize>(
             }
         };
         let extension = settled::<T, L, D>(bonds, u, i, intact, extension);
-        out[0][i - rows.first] = factors[i] * extension;
+        out[0][i - rows.first] = rule.states.dilatation[i] * extension;
     }
 }
 
@@ -363,7 +362,6 @@ for_each_instruction_set! {
     /// Breaks over-stretched bonds of the rows and sets the dilatation by those that are left.
     pub(super) fn accept_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
-        factors: &[f64],
         rule: &BreakRule<'_>,
         u: &Records,
         intact: &mut [u8],

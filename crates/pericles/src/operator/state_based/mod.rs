@@ -6,7 +6,7 @@
 //! | `bonds`, `weight` | what the loops over lists read |
 //! | `kernels`, `bond_work` | the loops over lists |
 //! | `breaking` | which bonds break, and what that dissipates |
-//! | `force`, `passes` | the operator |
+//! | `force`, `passes`, `view` | the operator |
 
 mod body;
 mod bond_work;
@@ -16,6 +16,7 @@ mod force;
 mod kernels;
 mod kinematics;
 mod passes;
+mod view;
 mod weight;
 
 pub use body::LinearSolidBody;

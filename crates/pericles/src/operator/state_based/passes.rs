@@ -8,7 +8,9 @@ use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
-use crate::operator::{AtPoints, Breakable, CoarseBreak, InstructionSet, On, TwoPass, damage};
+use crate::operator::{
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, On, TwoPass, damage,
+};
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
 
@@ -133,6 +135,10 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         Some(self)
     }
 
+    fn bonds(&self) -> Option<&dyn BondView> {
+        Some(self)
+    }
+
     fn directed_bonds(&self) -> u64 {
         self.bonds.directed_bonds()
     }
@@ -212,11 +218,10 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     /// The bond energy is taken from the work at the end of the last step.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         let bonds = self.view();
-        let worked = self.influence.as_ref().map(|influence| Worked {
-            bonds,
-            influence,
-            factors: &self.states.dilatation,
-        });
+        let worked = self
+            .influence
+            .as_ref()
+            .map(|influence| Worked { bonds, influence });
         let may_break = |entry: usize| {
             self.breakable
                 .as_ref()
