@@ -114,12 +114,24 @@ impl<'a> StepEnd<'a> {
     /// It is what the bond stores at the end less the work that its force would have done within the step and did not do: none where forces acted all the way, ½ f·Δη where they act for half of the step at
     /// each end. So the energy of body, loads and dissipation together does not change when a bond breaks, whatever the scheme.
     pub fn dissipated<const D: usize>(&self, bond: &BreakingBond<D>) -> f64 {
-        let mut energy = bond.energy;
-        if let Path::MeanVelocity(_) = self.path {
-            let power: f64 = (0..D).map(|c| bond.force[c] * bond.velocity[c]).sum();
-            energy -= 0.5 * self.dt * power;
-        }
+        let energy = match self.path {
+            Path::MeanVelocity(_) => {
+                let power: f64 = (0..D).map(|c| bond.force[c] * bond.velocity[c]).sum();
+                self.dissipated_energy(bond.energy, power)
+            }
+            _ => bond.energy,
+        };
         bond.weight * energy
+    }
+
+    /// The energy that is dissipated where a part of the elastic energy ends with the step, J: `energy` at the end of the step, which grows with `rate` (W) as the points move with their mean velocity.
+    ///
+    /// It is the energy less the work that its forces would have done in the part of the step that they no longer act in; see [`StepEnd::dissipated`].
+    pub fn dissipated_energy(&self, energy: f64, rate: f64) -> f64 {
+        match self.path {
+            Path::MeanVelocity(_) => energy - 0.5 * self.dt * rate,
+            _ => energy,
+        }
     }
 
     /// ∫ b and ∫ b v of a force b that is `first`, `middle` and `last` at the start, middle and end of the step, on one entry of the arrays.

@@ -182,6 +182,12 @@ pub enum PericlesError {
         /// The ratio the model has.
         fixed: f64,
     },
+    /// Elastic constants that no solid has, or too few of them.
+    #[error("elastic constants: {reason}")]
+    ElasticConstants {
+        /// Why, and what is allowed.
+        reason: String,
+    },
     /// The time step is larger than the scheme's limit.
     #[error(
         "the time step {dt:e} s is unstable: the highest frequency of the body is {omega:.4e} 1/s, so {scheme} needs dt ≤ {limit:.4e} s (give a smaller dt, \"auto\", or allow_unstable = true)"

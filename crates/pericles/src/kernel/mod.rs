@@ -4,10 +4,12 @@
 //! follows from the moments m_q = ∫₀^δ α(r) r^q dr (or their lattice sums), so that every function gives the same modulus.
 //! Lengths are in metres; α is dimensionless, or has any unit, for c absorbs it.
 
+mod caps;
 mod classes;
 mod influence;
 mod moments;
 mod quadrature;
 
+pub use caps::CapIntegrals;
 pub use classes::{ClassOffset, ClassTable, class_of, multiplicity};
 pub use influence::{ActsOn, Influence, InfluenceFunction};

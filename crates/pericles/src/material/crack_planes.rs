@@ -44,6 +44,28 @@ impl CrackPlane {
         families.iter().sum::<f64>() / families.len() as f64
     }
 
+    /// How many planes of the family lie between the ends of a bond, negative where it runs against the normal.
+    pub(super) fn crossed(&self, offset: [i32; 3]) -> i32 {
+        let indices = self.indices.iter().zip(offset);
+        indices
+            .map(|(index, steps)| i32::from(*index) * steps)
+            .sum()
+    }
+
+    /// Planes of the family per length, along their normal, 1/m.
+    pub(super) fn per_length(&self, cells: Cells<'_>) -> f64 {
+        let normal = self.indices.iter().zip(cells.sides());
+        let square: f64 = normal
+            .map(|(index, side)| (f64::from(*index) / side).powi(2))
+            .sum();
+        square.sqrt()
+    }
+
+    /// The same plane with another energy, J/m².
+    pub(super) fn with_energy(self, energy: f64) -> Self {
+        Self { energy, ..self }
+    }
+
     /// The same plane with its energy times a factor.
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self {
@@ -53,7 +75,7 @@ impl CrackPlane {
     }
 
     /// The planes of a lattice with indices of 0 and 1, those of square and cubic lattices once for each family; energies are still to be found.
-    fn all(cells: Cells<'_>) -> Vec<Self> {
+    pub(super) fn all(cells: Cells<'_>) -> Vec<Self> {
         let dimension = cells.sides().len();
         let mut planes: Vec<Self> = (1..1u8 << dimension)
             .map(|bits| Self {
@@ -87,21 +109,12 @@ impl BondMaterial {
             let kappa = self.volume_correction.factor(r, self.horizon, size);
             let weight = kappa * self.influence.alpha_of(xi, self.horizon) * r;
             for plane in &mut planes {
-                // The planes between the ends of the bond.
-                let indices = plane.indices.iter().zip(offset);
-                let crossed: i32 = indices
-                    .map(|(index, steps)| i32::from(*index) * steps)
-                    .sum();
-                plane.energy += weight * f64::from(crossed.max(0));
+                plane.energy += weight * f64::from(plane.crossed(offset).max(0));
             }
         });
         for plane in &mut planes {
             // ξ·n is the number of planes crossed times their distance.
-            let normal = plane.indices.iter().zip(cells.sides());
-            let square: f64 = normal
-                .map(|(index, side)| (f64::from(*index) / side).powi(2))
-                .sum();
-            plane.energy *= 0.5 * stiffness * cells.volume() / square.sqrt();
+            plane.energy *= 0.5 * stiffness * cells.volume() / plane.per_length(cells);
         }
         planes
     }

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use super::BondMaterial;
 use crate::error::{PericlesError, Result};
+use crate::family::VolumeCorrection;
 use crate::kernel::{ClassOffset, ClassTable, InfluenceFunction, class_of};
 use crate::space::PointCloud;
 
@@ -54,6 +55,65 @@ pub(super) struct LatticeSums {
     pub(super) shear_moment: f64,
 }
 
+/// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
+pub(super) fn for_each_offset(
+    cells: Cells<'_>,
+    horizon: f64,
+    correction: VolumeCorrection,
+    mut visit: impl FnMut([i32; 3], [f64; 3], f64),
+) {
+    let sides = cells.sides;
+    let reach = correction.reach(horizon, cells.size());
+    let side = |c: usize| sides.get(c).copied().unwrap_or(0.0);
+    let range = |c: usize| match sides.get(c) {
+        Some(side) => {
+            let n = (reach / side).floor() as i32;
+            -n..=n
+        }
+        None => 0..=0,
+    };
+    // In units of the first side, so that lengths on square and cubic lattices are roots of whole numbers, exactly.
+    let shape: [f64; 3] = std::array::from_fn(|c| side(c) / sides[0]);
+    for z in range(2) {
+        for y in range(1) {
+            for x in range(0) {
+                let offset = [x, y, z];
+                let square: f64 = (0..3)
+                    .map(|c| f64::from(offset[c]) * shape[c])
+                    .map(|steps| steps * steps)
+                    .sum();
+                let r = square.sqrt() * sides[0];
+                if r > 0.0 && r <= reach {
+                    let xi = std::array::from_fn(|c| f64::from(offset[c]) * side(c));
+                    visit(offset, xi, r);
+                }
+            }
+        }
+    }
+}
+
+/// Refuses horizons with so many neighbours that sums over them do not end.
+pub(super) fn check_reach(
+    cells: Cells<'_>,
+    horizon: f64,
+    correction: VolumeCorrection,
+) -> Result<()> {
+    /// A second's work, and far more bonds than any body can have.
+    const MOST: f64 = 1e8;
+    let reach = correction.reach(horizon, cells.size());
+    let along = |side: &f64| 2.0 * (reach / side).floor() + 1.0;
+    let neighbours = cells.sides.iter().map(along).product();
+    if neighbours <= MOST {
+        return Ok(());
+    }
+    Err(PericlesError::HorizonTooLarge {
+        horizon,
+        spacing: cells.size(),
+        neighbours,
+        most: MOST,
+    })
+}
+
 impl BondMaterial {
     /// The sums over an interior point's bonds that become m_dimension as the spacing goes to zero.
     pub(super) fn lattice_sums(&self, cells: Cells<'_>) -> LatticeSums {
@@ -84,54 +144,14 @@ impl BondMaterial {
     pub(super) fn for_each_offset(
         &self,
         cells: Cells<'_>,
-        mut visit: impl FnMut([i32; 3], [f64; 3], f64),
+        visit: impl FnMut([i32; 3], [f64; 3], f64),
     ) {
-        let sides = cells.sides;
-        let reach = self.volume_correction.reach(self.horizon, cells.size());
-        let side = |c: usize| sides.get(c).copied().unwrap_or(0.0);
-        let range = |c: usize| match sides.get(c) {
-            Some(side) => {
-                let n = (reach / side).floor() as i32;
-                -n..=n
-            }
-            None => 0..=0,
-        };
-        // In units of the first side, so that lengths on square and cubic lattices are roots of whole numbers, exactly.
-        let shape: [f64; 3] = std::array::from_fn(|c| side(c) / sides[0]);
-        for z in range(2) {
-            for y in range(1) {
-                for x in range(0) {
-                    let offset = [x, y, z];
-                    let square: f64 = (0..3)
-                        .map(|c| f64::from(offset[c]) * shape[c])
-                        .map(|steps| steps * steps)
-                        .sum();
-                    let r = square.sqrt() * sides[0];
-                    if r > 0.0 && r <= reach {
-                        let xi = std::array::from_fn(|c| f64::from(offset[c]) * side(c));
-                        visit(offset, xi, r);
-                    }
-                }
-            }
-        }
+        for_each_offset(cells, self.horizon, self.volume_correction, visit);
     }
 
     /// Refuses horizons with so many neighbours that sums over them do not end.
     pub(super) fn check_reach(&self, cells: Cells<'_>) -> Result<()> {
-        /// A second's work, and far more bonds than any body can have.
-        const MOST: f64 = 1e8;
-        let reach = self.volume_correction.reach(self.horizon, cells.size());
-        let along = |side: &f64| 2.0 * (reach / side).floor() + 1.0;
-        let neighbours = cells.sides.iter().map(along).product();
-        if neighbours <= MOST {
-            return Ok(());
-        }
-        Err(PericlesError::HorizonTooLarge {
-            horizon: self.horizon,
-            spacing: cells.size(),
-            neighbours,
-            most: MOST,
-        })
+        check_reach(cells, self.horizon, self.volume_correction)
     }
 
     pub(super) fn class_table(&self) -> Option<&ClassTable> {

@@ -24,6 +24,7 @@ mod law;
 mod modulus;
 mod pair_force;
 mod polynomial;
+mod state_based;
 mod surface_correction;
 mod treatment;
 mod waves;
@@ -36,6 +37,11 @@ pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};
 pub use pair_force::PairForce;
 pub use polynomial::{GreenBond, LiteralBond};
+pub use state_based::{
+    BondFailure, BondLimits, ElasticConstants, GivenConstants, IsotropicInfluence, LatticeShear,
+    LinearSolid, LinearSolidConstants, SolidClasses, SolidSurface, StateInfluence, Strains,
+    StretchDefinition,
+};
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};
 pub use waves::{ElasticWaves, TransverseWaves};

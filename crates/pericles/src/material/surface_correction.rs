@@ -33,7 +33,7 @@ pub enum SurfaceCorrection {
 }
 
 /// A symmetric tensor: xx, yy, zz, xy, yz, zx.
-type Tensor = [f64; 6];
+pub(super) type Tensor = [f64; 6];
 
 /// The factors of a body's points.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +58,7 @@ impl SurfaceFactors {
 }
 
 /// |ξ|/|G⁻¹ ξ| with the mean G of the tensors of both ends.
-fn ellipsoid([a, b]: [&Tensor; 2], xi: [f64; 3]) -> f64 {
+pub(super) fn ellipsoid([a, b]: [&Tensor; 2], xi: [f64; 3]) -> f64 {
     let [xx, yy, zz, xy, yz, zx]: Tensor = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
     // Cofactors: the inverse times the determinant.
     let inverse = [
@@ -102,17 +102,17 @@ impl SurfaceCorrection {
 
 /// The factors of a point along three directions.
 #[derive(Debug, Clone, Copy)]
-struct Directions {
+pub(super) struct Directions {
     /// Unit vectors at right angles.
-    axes: [[f64; 3]; 3],
+    pub(super) axes: [[f64; 3]; 3],
     /// Energies of tension along them inside the body.
-    interior: [f64; 3],
-    factors: [f64; 3],
+    pub(super) interior: [f64; 3],
+    pub(super) factors: [f64; 3],
 }
 
 impl Directions {
     /// Σ_c g_c c⊗c
-    fn tensor(&self) -> Tensor {
+    pub(super) fn tensor(&self) -> Tensor {
         const ENTRIES: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]];
         ENTRIES.map(|[a, b]| {
             let terms = self.axes.iter().zip(self.factors);

@@ -70,7 +70,7 @@ impl<L: CubicBond, T: CubicFactor> FastLaw for Treated<L, T> {}
 
 /// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)), ascending: the polynomial through its values at the seven Chebyshev nodes of
 /// |t| ≤ 0.02, computed with 50 digits; relative error below 8e-15 there.
-const PHI: [f64; 7] = [
+pub(super) const PHI: [f64; 7] = [
     0.5,
     -0.3750000000013755,
     0.3125000000012991,

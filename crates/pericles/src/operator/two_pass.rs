@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
-    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce, On,
+    BondView, Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity,
+    LocalForce, On,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -55,9 +56,18 @@ pub trait TwoPass: Saved + Send + Sync {
     /// Calls `visit` for every own point that point i is bonded to, once each.
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
 
-    /// Decides breaking of the bonds of the points named by `on`, at both ends alike, before the passes at the end of a step.
-    fn decide(&mut self, step: &StepEnd<'_>, on: &On<'_>) {
-        let _ = (step, on);
+    /// At the end of a step, at the displacement `u`: decides breaking of the bonds of the points named by `on`, at both ends alike, and sets the values of the points named by `needed` by the bonds that are left.
+    /// `needed` are the points of `on` and all that they are bonded to.
+    fn end_values_into(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        needed: &On<'_>,
+        values: &mut [f64],
+    ) {
+        let _ = on;
+        self.values_into(step.t, u, needed, values);
     }
 
     /// Its bonds as ones that break, if they do.
@@ -70,11 +80,26 @@ pub trait TwoPass: Saved + Send + Sync {
         None
     }
 
+    /// Its bonds one by one, if they can be looked at.
+    fn bonds(&self) -> Option<&dyn BondView> {
+        None
+    }
+
     /// Family entries that the loops run over: each bond counts twice.
     fn directed_bonds(&self) -> u64;
 
     /// Memory, bytes.
     fn bytes(&self) -> usize;
+
+    /// What the loops are compiled for.
+    fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::Baseline
+    }
+
+    /// As [`Force::use_instruction_set`].
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        let _ = set;
+    }
 }
 
 /// The [`Force`] of a force in two passes.
@@ -190,8 +215,23 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
     }
 
     fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
-        self.force.decide(step, &on);
-        self.add_force(step.t, step.u, on, out);
+        let domain = self.cloud.domain();
+        let ghosts = domain.ghosts(step.u);
+        let u = Field::new(step.u, &ghosts);
+        let part;
+        let needed = match &on {
+            On::All => On::All,
+            on => {
+                part = self.with_neighbours(on);
+                On::Set(&part)
+            }
+        };
+        let mut own = self.work.take();
+        self.force.end_values_into(step, u, &on, &needed, &mut own);
+        let ghosts = domain.ghosts(&own);
+        let values = Field::new(&own, &ghosts);
+        self.force
+            .add_bond_force(step.t, AtPoints { u, values }, &on, out);
     }
 
     fn capabilities(&self) -> Capabilities<'_> {
@@ -204,6 +244,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             local: Some(self),
             // What a bond exerts depends on all bonds of its ends.
             split: None,
+            bonds: self.force.bonds(),
             ..Capabilities::default()
         }
     }
@@ -222,7 +263,11 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
     }
 
     fn instruction_set(&self) -> InstructionSet {
-        InstructionSet::Baseline
+        self.force.instruction_set()
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        self.force.use_instruction_set(set);
     }
 }
 

@@ -8,7 +8,7 @@ mod kernels;
 mod operator;
 mod packed;
 mod springs;
-mod stiffness;
+pub(super) mod stiffness;
 mod zoned;
 
 pub use force::BondForce;

@@ -11,7 +11,7 @@ use crate::space::PointCloud;
 
 /// c α κ V of the neighbour, for every entry of a list.
 #[derive(Debug, Clone)]
-pub(super) enum Stiffness {
+pub(in crate::operator) enum Stiffness {
     /// Computed from the bond's length and the volume of the neighbour.
     Formula(Formula),
     /// One of a few values: the bonds of a lattice.
@@ -22,7 +22,7 @@ pub(super) enum Stiffness {
 
 /// c (a₀ + a₁ min(r, δ)) κ(r) V.
 #[derive(Debug, Clone)]
-pub(super) struct Formula {
+pub(in crate::operator) struct Formula {
     constant: f64,
     slope: f64,
     horizon: f64,
@@ -54,13 +54,28 @@ impl Formula {
             (InfluenceFunction::Conical, ActsOn::Stretch) => (1.0, -1.0 / horizon),
             _ => return None,
         };
+        Some(Self::of_first_degree(
+            cloud,
+            correction,
+            horizon,
+            [micromodulus * constant, micromodulus * slope],
+        ))
+    }
+
+    /// The formula with the coefficients a₀ and a₁ given.
+    pub fn of_first_degree(
+        cloud: &PointCloud,
+        correction: VolumeCorrection,
+        horizon: f64,
+        [constant, slope]: [f64; 2],
+    ) -> Self {
         let domain = cloud.domain();
         let largest = (0..cloud.len()).fold(0.0, |most: f64, i| most.max(cloud.cell_size(i)));
         let first = domain.max(largest);
         let equal = domain.all((0..cloud.len()).all(|i| cloud.cell_size(i) == first));
-        Some(Self {
-            constant: micromodulus * constant,
-            slope: micromodulus * slope,
+        Self {
+            constant,
+            slope,
             horizon,
             correction: match correction {
                 VolumeCorrection::None => None,
@@ -69,7 +84,7 @@ impl Formula {
                 }),
                 _ => Some(Cells::Own),
             },
-        })
+        }
     }
 
     /// Of eight bonds of length r; `cells` are the sizes of the cells of the point and of its neighbours.

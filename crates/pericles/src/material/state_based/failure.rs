@@ -1,0 +1,294 @@
+//! When the bonds of a linear peridynamic solid break: criteria, and their limits from the fracture energy.
+
+use crate::error::{PericlesError, Result, positive};
+use crate::family::VolumeCorrection;
+use crate::kernel::Influence;
+use crate::material::FractureCalibration;
+use crate::material::crack_planes::CrackPlane;
+use crate::material::lattice::{Cells, for_each_offset};
+
+/// The deformation at which the energy of a unit area of crack is counted. In a state-based solid the energy of a bond depends on the dilatation of its ends, so that a critical stretch s₀ does not follow
+/// from the fracture energy G₀ alone.
+///
+/// With the constants A and B of the solid ([`LinearSolidConstants`](super::LinearSolidConstants)) and the integrals P₁ = ∫ p dz and P₂ = ∫ p² dz over caps ([`CapIntegrals`](crate::kernel::CapIntegrals)):
+///
+/// | definition | G₀/s₀² |
+/// |---|---|
+/// | closing | B P₁ + A D P₂ |
+/// | bond | B P₁ |
+/// | isotropic | B P₁ + A D (2 P₁ − P₂) |
+///
+/// All are equal where A = 0, for ν = 1/4 (1/3 in plane stress), where the solid is bond-based.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum StretchDefinition {
+    /// Only the bonds that cross the crack are stretched, by s₀: two halves of a body pulled apart rigidly.
+    #[default]
+    Closing,
+    /// The part of the energy that depends on the bond's own stretch.
+    Bond,
+    /// The whole body is stretched by s₀ in all directions, then cut. Such a stretch need not exist where ν is low.
+    Isotropic,
+}
+
+/// When bonds break.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BondFailure {
+    /// Never.
+    Unbreakable,
+    /// Beyond this stretch.
+    CriticalStretch(f64),
+    /// Beyond the stretch for which a unit area of crack costs a given energy.
+    Stretch {
+        /// The fracture energy G₀, J/m².
+        fracture_energy: f64,
+        /// The deformation at which it is counted.
+        definition: StretchDefinition,
+        /// How the critical stretch follows from it.
+        calibration: FractureCalibration,
+    },
+    /// Beyond the bond energy w_c for which a unit area of crack costs a given energy (Foster, Silling & Chen, Int. J. Multiscale Comput. Eng. 9, 2011): a bond breaks where it is elongated and the work
+    /// ∫ (t_ij + t_ji) de of its force states since the start exceeds w_c.
+    BondEnergy {
+        /// The fracture energy G₀, J/m².
+        fracture_energy: f64,
+        /// How w_c follows from it.
+        calibration: FractureCalibration,
+    },
+}
+
+/// What a bond can bear; infinite where a criterion does not apply. A bond breaks when one of the limits is exceeded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondLimits {
+    /// Critical stretch s₀.
+    pub stretch: f64,
+    /// Critical bond energy w_c, J/m⁶.
+    pub energy: f64,
+}
+
+impl BondLimits {
+    /// Of bonds that never break.
+    pub const NONE: Self = Self {
+        stretch: f64::INFINITY,
+        energy: f64::INFINITY,
+    };
+
+    /// Whether the bond can break.
+    pub fn can_break(&self) -> bool {
+        self.stretch.is_finite() || self.energy.is_finite()
+    }
+
+    /// The lower one of each limit: what the weaker of two materials can bear.
+    #[must_use]
+    pub fn weaker(self, other: Self) -> Self {
+        Self {
+            stretch: self.stretch.min(other.stretch),
+            energy: self.energy.min(other.energy),
+        }
+    }
+}
+
+/// The lattice and family on which limits are calibrated.
+#[derive(Clone, Copy)]
+pub(super) struct Crossing<'a> {
+    pub cells: Cells<'a>,
+    pub section: f64,
+    pub influence: &'a Influence,
+    pub horizon: f64,
+    pub correction: VolumeCorrection,
+    /// The constants A and B of the solid, Pa.
+    pub dilatational: f64,
+    pub deviatoric: f64,
+}
+
+/// Integrals or sums over the bonds that cross a plane: ∫ p dz, ∫ p² dz (m) and ∫∫_cap dV dz (m⁴).
+#[derive(Debug, Clone, Copy)]
+struct Caps {
+    share: f64,
+    share_squared: f64,
+    volume: f64,
+}
+
+/// Limits with the fracture energy that they stand for.
+pub(super) struct Calibrated {
+    pub limits: BondLimits,
+    /// J/m²; infinite if bonds never break.
+    pub fracture_energy: f64,
+    pub calibration: Option<FractureCalibration>,
+    pub crack_planes: Vec<CrackPlane>,
+}
+
+/// What the limit of a criterion is measured in.
+#[derive(Clone, Copy)]
+enum Measure {
+    Stretch(StretchDefinition),
+    Energy,
+}
+
+impl BondFailure {
+    /// The limits of a material's bonds. On points without a lattice the integrals of the continuum take the place of sums over the lattice.
+    pub(super) fn calibrated(
+        self,
+        crossing: &Crossing<'_>,
+        on_lattice: bool,
+    ) -> Result<Calibrated> {
+        let (measure, energy, calibration) = match self {
+            Self::Unbreakable => {
+                return Ok(Calibrated {
+                    limits: BondLimits::NONE,
+                    fracture_energy: f64::INFINITY,
+                    calibration: None,
+                    crack_planes: Vec::new(),
+                });
+            }
+            Self::CriticalStretch(_) => (Measure::Stretch(StretchDefinition::Closing), None, None),
+            Self::Stretch {
+                fracture_energy,
+                definition,
+                calibration,
+            } => (
+                Measure::Stretch(definition),
+                Some(fracture_energy),
+                Some(calibration),
+            ),
+            Self::BondEnergy {
+                fracture_energy,
+                calibration,
+            } => (Measure::Energy, Some(fracture_energy), Some(calibration)),
+        };
+        let calibration = calibration.map(|wanted| match on_lattice {
+            true => wanted,
+            false => FractureCalibration::Continuum,
+        });
+        let planes = match on_lattice {
+            true => crossing.planes(measure),
+            false => Vec::new(),
+        };
+        let unit = match calibration {
+            Some(FractureCalibration::Lattice) => CrackPlane::mean(&planes),
+            _ => crossing.unit_energy(measure, crossing.of_the_continuum()),
+        };
+        // The limit, and its square where the energy is quadratic in it.
+        let (limit, scale) = match (self, energy) {
+            (Self::CriticalStretch(stretch), _) => {
+                let stretch = positive("the critical stretch", stretch)?;
+                (stretch, stretch * stretch)
+            }
+            (_, energy) => {
+                let energy = positive("the fracture energy", energy.unwrap_or(f64::NAN))?;
+                if unit <= 0.0 {
+                    return Err(no_stretch(unit));
+                }
+                let scale = energy / unit;
+                match measure {
+                    Measure::Stretch(_) => (scale.sqrt(), scale),
+                    Measure::Energy => (scale, scale),
+                }
+            }
+        };
+        let limits = match measure {
+            Measure::Stretch(_) => BondLimits {
+                stretch: limit,
+                ..BondLimits::NONE
+            },
+            Measure::Energy => BondLimits {
+                energy: limit,
+                ..BondLimits::NONE
+            },
+        };
+        let planes = planes.into_iter().map(|plane| plane.scaled(scale));
+        Ok(Calibrated {
+            limits,
+            fracture_energy: unit * scale,
+            calibration,
+            crack_planes: planes.collect(),
+        })
+    }
+}
+
+fn no_stretch(unit: f64) -> PericlesError {
+    PericlesError::ElasticConstants {
+        reason: format!(
+            "no critical stretch belongs to the fracture energy with this stretch definition and Poisson's ratio: a unit area of crack would cost {unit:.3e} J/m² at unit stretch; use the closing \
+             definition or the bond energy"
+        ),
+    }
+}
+
+impl Crossing<'_> {
+    /// Energy of a unit area of crack at s₀ = 1 or w_c = 1, J/m².
+    fn unit_energy(&self, measure: Measure, caps: Caps) -> f64 {
+        let dimension = self.cells.sides().len() as f64;
+        let dilatational = self.dilatational * dimension;
+        let bond = self.deviatoric * caps.share;
+        match measure {
+            Measure::Energy => caps.volume,
+            Measure::Stretch(StretchDefinition::Bond) => bond,
+            Measure::Stretch(StretchDefinition::Closing) => {
+                bond + dilatational * caps.share_squared
+            }
+            Measure::Stretch(StretchDefinition::Isotropic) => {
+                bond + dilatational * (2.0 * caps.share - caps.share_squared)
+            }
+        }
+    }
+
+    fn of_the_continuum(&self) -> Caps {
+        let dimension = self.cells.sides().len();
+        let caps = self.influence.cap_integrals(dimension, self.horizon);
+        Caps {
+            share: caps.share,
+            share_squared: caps.share_squared,
+            volume: self.section * caps.volume,
+        }
+    }
+
+    /// The planes of the lattice with the energy of a unit area of crack along each.
+    ///
+    /// The points beside a crack lie in layers, the k-th of which has the share p_k of its family beyond k planes of the lattice and more; a layer has 1/(planes per length) of volume for each area.
+    fn planes(&self, measure: Measure) -> Vec<CrackPlane> {
+        let (cells, size) = (self.cells, self.cells.size());
+        let planes = CrackPlane::all(cells);
+        // Weighted volume and volume of the bonds of a point by the number of planes that they cross.
+        let mut by_number: Vec<Vec<[f64; 2]>> = vec![Vec::new(); planes.len()];
+        let mut whole = 0.0;
+        for_each_offset(cells, self.horizon, self.correction, |offset, xi, r| {
+            let volume = self.correction.factor(r, self.horizon, size);
+            let weighted = volume * self.influence.alpha_of(xi, self.horizon) * r * r;
+            whole += weighted;
+            for (plane, sums) in planes.iter().zip(&mut by_number) {
+                let crossed = plane.crossed(offset).max(0) as usize;
+                if crossed >= sums.len() {
+                    sums.resize(crossed + 1, [0.0; 2]);
+                }
+                sums[crossed][0] += weighted;
+                sums[crossed][1] += volume;
+            }
+        });
+        let cell = self.section * cells.volume();
+        let energy = |plane: &CrackPlane, sums: &[[f64; 2]]| {
+            let distance = 1.0 / plane.per_length(cells);
+            let mut caps = Caps {
+                share: 0.0,
+                share_squared: 0.0,
+                volume: 0.0,
+            };
+            let (mut share, mut volume) = (0.0, 0.0);
+            // From the layer that is farthest from the crack.
+            for [weighted, bonds] in sums[1..].iter().rev() {
+                share += weighted / whole;
+                volume += bonds * cell;
+                caps.share += distance * share;
+                caps.share_squared += distance * share * share;
+                caps.volume += distance * volume;
+            }
+            self.unit_energy(measure, caps)
+        };
+        let with_energy = planes.into_iter().zip(&by_number);
+        with_energy
+            .map(|(plane, sums)| {
+                let energy = energy(&plane, sums);
+                plane.with_energy(energy)
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,15 @@
+//! State-based materials: a bond's force depends on all bonds of its two ends, so that Poisson's ratio is free.
+
+mod classes;
+mod elastic;
+mod failure;
+mod isotropic;
+mod linear_solid;
+mod surface;
+
+pub use classes::SolidClasses;
+pub use elastic::{ElasticConstants, GivenConstants};
+pub use failure::{BondFailure, BondLimits, StretchDefinition};
+pub use isotropic::{IsotropicInfluence, LatticeShear};
+pub use linear_solid::{LinearSolid, LinearSolidConstants, StateInfluence, Strains};
+pub use surface::SolidSurface;

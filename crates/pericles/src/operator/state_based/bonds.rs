@@ -1,0 +1,226 @@
+//! The bonds of a state-based material as the loops see them.
+
+use rayon::prelude::*;
+
+use super::weight::Weight;
+use crate::domain::Field;
+use crate::family::BondList;
+use crate::lanes::{Lanes, Row, dot, vector};
+use crate::operator::list::stiffness::Stiffness;
+use crate::operator::records::Records;
+use crate::parallel::BLOCK;
+use crate::space::PointCloud;
+
+/// What the loops read of the points, in rows of four numbers, and of their bonds.
+pub(super) struct Layout {
+    /// Reference coordinates in units of `unit`; behind them the stiffness s = B/m of the point's own force state, N/m⁴ per weighted volume, or the volume of the point where volumes or cells differ.
+    reference: Vec<Row>,
+    /// s and the size of the cell where volumes or cells differ.
+    own: Option<Vec<Row>>,
+    unit: f64,
+    volume: f64,
+    cell: f64,
+}
+
+/// The row of a neighbour among the rows of all points.
+///
+/// Neighbours of a list are numbers of points of the process; rows of ghosts come behind those of its own points.
+pub(super) fn slot(neighbour: usize) -> usize {
+    neighbour
+}
+
+impl Layout {
+    /// The layout of a body whose points have the stiffness s.
+    pub fn new(cloud: &PointCloud, stiffness: &[f64]) -> Self {
+        let volumes = cloud.volumes();
+        let first = cloud.cell_size(0);
+        let alike =
+            (0..cloud.len()).all(|i| volumes[i] == volumes[0] && cloud.cell_size(i) == first);
+        let row = |i: usize| {
+            let [x, y, z] = match cloud.lattice() {
+                Some(lattice) => lattice.coordinates(lattice.node[i]).map(f64::from),
+                None => cloud.point(i),
+            };
+            Row([x, y, z, if alike { stiffness[i] } else { volumes[i] }])
+        };
+        let own = |i: usize| Row([stiffness[i], cloud.cell_size(i), 0.0, 0.0]);
+        Self {
+            reference: (0..cloud.len()).map(row).collect(),
+            own: (!alike).then(|| (0..cloud.len()).map(own).collect()),
+            unit: cloud.lattice().map_or(1.0, |lattice| lattice.spacing),
+            volume: volumes[0],
+            cell: first,
+        }
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.reference[..]) + self.own.as_ref().map_or(0, |own| size_of_val(&own[..]))
+    }
+
+    fn volume_and_cell(&self, i: usize) -> [f64; 2] {
+        match &self.own {
+            Some(own) => [self.reference[i][3], own[i][1]],
+            None => [self.volume, self.cell],
+        }
+    }
+}
+
+/// Writes a vector on points and, behind its components, a number per point to rows.
+pub(super) fn pack<const D: usize>(
+    u: Field<'_>,
+    last: impl Fn(usize) -> f64 + Sync,
+    rows: &mut [Row],
+) {
+    let n = u.owned.len() / D;
+    rows.par_chunks_mut(8 * BLOCK)
+        .enumerate()
+        .for_each(|(part, rows)| {
+            let first = part * 8 * BLOCK;
+            for (k, row) in rows.iter_mut().enumerate() {
+                for c in 0..D {
+                    row[c] = u.owned[c * n + first + k];
+                }
+                row[3] = last(first + k);
+            }
+        });
+}
+
+/// A bond list with layout and weights.
+#[derive(Clone, Copy)]
+pub(super) struct SolidBonds<'a> {
+    pub list: &'a BondList,
+    pub layout: &'a Layout,
+    pub weight: &'a Weight,
+    /// Factors of the stiffness of bonds near surfaces, where they are corrected.
+    pub factor: Option<&'a Stiffness>,
+}
+
+/// What all bonds of a point share.
+pub(super) struct Here<T, const D: usize> {
+    reference: [T; D],
+    u: [T; D],
+    /// s of the point.
+    stiffness: T,
+    cell: T,
+    /// The fourth number of the point's row.
+    last: T,
+}
+
+/// Eight bonds side by side.
+pub(super) struct Bond<T, const D: usize> {
+    pub xi: [T; D],
+    pub eta: [T; D],
+    /// |ξ|²
+    pub square: T,
+    pub inverse_square: T,
+    /// ω
+    pub weight: T,
+    /// s of both ends times the bond's own factor.
+    pub stiffness: T,
+    /// The factor.
+    pub factor: T,
+    /// The fourth number of the rows of both ends: p, where rows hold it.
+    pub last: T,
+}
+
+impl<'a> SolidBonds<'a> {
+    #[inline(always)]
+    pub fn here<T: Lanes, const D: usize>(&self, i: usize, u: &Records) -> Here<T, D> {
+        let reference = &self.layout.reference[i];
+        let (stiffness, cell) = match &self.layout.own {
+            Some(own) => (own[i][0], own[i][1]),
+            None => (reference[3], self.layout.cell),
+        };
+        Here {
+            reference: vector(|c| T::splat(reference[c])),
+            u: vector(|c| T::splat(u[i][c])),
+            stiffness: T::splat(stiffness),
+            cell: T::splat(cell),
+            last: T::splat(u[i][3]),
+        }
+    }
+
+    /// The rows of the neighbours of a group.
+    #[inline(always)]
+    pub fn there<T: Lanes>(&self, group: usize, rows: &Records) -> [T; 4] {
+        assert!(rows.len() == self.list.len(), "a row for every point");
+        let mut indices = self.list.group(group);
+        for index in &mut indices {
+            *index = slot(*index);
+        }
+        // SAFETY: neighbours are below the number of points, which `BondList` guarantees, and there are as many rows.
+        unsafe { T::gather(rows, indices) }
+    }
+
+    /// The eight bonds of a group.
+    #[inline(always)]
+    pub fn group<T: Lanes, const D: usize>(
+        &self,
+        group: usize,
+        here: &Here<T, D>,
+        u: &Records,
+    ) -> Bond<T, D> {
+        let reference = self.there::<T>(group, &self.layout.reference);
+        let there = self.there::<T>(group, u);
+        let unit = T::splat(self.layout.unit);
+        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * unit);
+        let eta: [T; D] = vector(|c| there[c] - here.u[c]);
+        let mut square = xi[0] * xi[0];
+        for c in 1..D {
+            square = xi[c].mul_add(xi[c], square);
+        }
+        let inverse = square.inverse_root();
+        let r = square * inverse;
+        let (stiffness, volume, cell) = match &self.layout.own {
+            None => (reference[3], T::splat(self.layout.volume), here.cell),
+            Some(own) => {
+                let own = self.there::<T>(group, own);
+                (own[0], reference[3], own[1])
+            }
+        };
+        let factor = match self.factor {
+            None => T::splat(1.0),
+            Some(factors) => factors.of_group(group, r, volume, [cell, cell]),
+        };
+        Bond {
+            xi,
+            eta,
+            square,
+            inverse_square: inverse * inverse,
+            weight: self
+                .weight
+                .of_group(group, r, inverse, volume, [here.cell, cell]),
+            stiffness: factor * (here.stiffness + stiffness),
+            factor,
+            last: here.last + there[3],
+        }
+    }
+
+    /// ξ of one bond, m.
+    pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
+        let (from, to) = (&self.layout.reference[i], &self.layout.reference[slot(j)]);
+        std::array::from_fn(|c| (to[c] - from[c]) * self.layout.unit)
+    }
+
+    /// ω of one entry that leads from i to j along ξ.
+    pub fn weight_of<const D: usize>(&self, entry: usize, [i, j]: [usize; 2], xi: [f64; D]) -> f64 {
+        let [_, from] = self.layout.volume_and_cell(i);
+        let [volume, to] = self.layout.volume_and_cell(slot(j));
+        let r = dot(xi, xi).sqrt();
+        self.weight.of_entry(entry, r, volume, [from, to])
+    }
+}
+
+impl SolidBonds<'_> {
+    /// The factor of the stiffness of an entry.
+    pub fn factor_of(&self, entry: usize) -> f64 {
+        self.factor
+            .map_or(1.0, |factors| factors.of_entry(entry, 0.0, 0.0, [0.0; 2]))
+    }
+}
+
+/// Difference of the vectors of two rows.
+pub(super) fn difference<const D: usize>(u: &Records, i: usize, j: usize) -> [f64; D] {
+    std::array::from_fn(|c| u[slot(j)][c] - u[i][c])
+}

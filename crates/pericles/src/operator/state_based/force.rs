@@ -1,0 +1,415 @@
+//! The force operator of linear peridynamic solids on a bond list.
+
+use std::sync::Arc;
+
+use super::bond_work::{KEPT, Worked, work_rows};
+use super::bonds::{Layout, SolidBonds, pack};
+use super::breaking::{BreakRule, States, take_bonds};
+use super::kernels::{accept_rows, dilatation_rows};
+use super::kinematics::Kinematics;
+use super::weight::Weight;
+use crate::domain::Field;
+use crate::family::BondList;
+use crate::kernel::Influence;
+use crate::lanes::{LANES, Row, dot};
+use crate::material::{BondLimits, PairForce, SolidClasses, SolidSurface, SurfaceFactors};
+use crate::operator::damage::{BlockDamage, DamageMeasure};
+use crate::operator::list::stiffness::Stiffness;
+use crate::operator::pool::{Lent, Pool};
+use crate::operator::records::Records;
+use crate::operator::rows::Rows;
+use crate::operator::{InstructionSet, On};
+use crate::parallel::{BLOCK, components_mut, for_each_block, for_each_point};
+use crate::space::PointCloud;
+use crate::step_end::StepEnd;
+
+/// The force density of linear peridynamic solids, N/m³, in two passes over a bond list:
+///
+/// θ_i = (D/m_i) Σ_j ω e, then f_i = Σ_j ω [A_i θ_i/m_i + A_j θ_j/m_j + (B_i/m_i + B_j/m_j) e/r] (r/|y|) y, with the weight ω = w b V_j of influence function, partial volume and volume, the extension e of the
+/// bond and its direction y as [`Kinematics`] has them (in the first sum the extension is weighted by r).
+///
+/// m_i = Σ_j ω r² is computed once, of the bonds that exist at the start, and kept when bonds break: f is then the gradient of Σ W V with W = A θ²/(2 D) + B/(2 m) Σ ω e² whatever is broken, and θ goes to zero
+/// with the bonds.
+///
+/// Memory: no number per bond where the influence function is a constant, cone or inverse (see [`BondForce`](crate::operator::BondForce)); 24 bytes per bond where bonds break by their energy.
+pub struct LinearSolidForce<L: Kinematics, const D: usize> {
+    pub(super) cloud: Arc<PointCloud>,
+    pub(super) bonds: BondList,
+    pub(super) layout: Layout,
+    pub(super) weight: Weight,
+    /// Factors of the stiffness of bonds near surfaces, if they are corrected.
+    factor: Option<Stiffness>,
+    pub(super) states: States,
+    pub(super) classes: SolidClasses,
+    /// The limits of the weakest pair of materials.
+    pub(super) weakest: BondLimits,
+    pub(super) breakable: Option<Vec<u8>>,
+    pub(super) damage: DamageMeasure,
+    pub(super) blocks: Vec<BlockDamage>,
+    /// The influence function alone, where bonds break by their energy.
+    pub(super) influence: Option<Weight>,
+    /// What is kept of bonds that break by their energy, [`KEPT`] numbers for each group.
+    pub(super) work: Vec<f64>,
+    packed: Pool<Vec<Row>>,
+    pub(super) instruction_set: InstructionSet,
+    kinematics: std::marker::PhantomData<L>,
+}
+
+crate::saved! {
+    impl<L: Kinematics, const D: usize> Saved for LinearSolidForce<L, D> {
+        blocks: under("operator"),
+        work: array("operator/bond-work"),
+        cloud, bonds, layout, weight, factor, states, classes, weakest, breakable, damage, influence: fixed,
+        instruction_set, kinematics: fixed,
+        packed: scratch,
+    }
+}
+
+impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
+    /// The force of solids with one influence function on the bonds of a body. Bonds of the points `no_fail` never break.
+    ///
+    /// # Panics
+    /// If the cloud has another dimension than D.
+    pub fn new(
+        cloud: Arc<PointCloud>,
+        bonds: BondList,
+        influence: &Influence,
+        classes: SolidClasses,
+        no_fail: &[u32],
+        damage: DamageMeasure,
+    ) -> Self {
+        assert_eq!(cloud.dimension(), D, "a force of the cloud's dimension");
+        let n = cloud.len();
+        let weight = Weight::of_volumes(&cloud, &bonds, influence);
+        let volumes = weighted_volumes::<D>(&cloud, &bonds, &weight);
+        let states = States::new::<D>(&volumes, &classes);
+        let layout = Layout::new(&cloud, &states.stiffness);
+        let blocks = (0..n.div_ceil(BLOCK))
+            .map(|block| {
+                let (from, to) = (block * BLOCK, ((block + 1) * BLOCK).min(n));
+                let groups = bonds.start()[from]..bonds.start()[to];
+                BlockDamage::new(bonds.present()[groups].to_vec())
+            })
+            .collect();
+        let weakest = classes.weakest();
+        let by_energy = weakest.energy.is_finite();
+        Self {
+            influence: by_energy.then(|| Weight::of_influence(&cloud, &bonds, influence)),
+            work: match by_energy {
+                true => vec![0.0; KEPT * bonds.present().len()],
+                false => Vec::new(),
+            },
+            packed: Pool::new(1, move || vec![Row::default(); n]),
+            breakable: breakable(&bonds, no_fail),
+            cloud,
+            bonds,
+            layout,
+            weight,
+            factor: None,
+            states,
+            classes,
+            weakest,
+            damage,
+            blocks,
+            instruction_set: InstructionSet::detect(),
+            kinematics: std::marker::PhantomData,
+        }
+    }
+
+    /// The same with corrected surfaces; every bond keeps a number, a byte where there are few.
+    pub fn with_surface(self, surface: SolidSurface, influence: &Influence) -> Self {
+        let factors = match surface.factors(&self.cloud, &self.bonds, influence, &self.classes) {
+            SurfaceFactors::None => None,
+            factors => Some(Stiffness::of_pairs(&self.bonds, &|i, j| {
+                factors.of_bond(i, j, self.bonds.vector(&self.cloud, i, j))
+            })),
+        };
+        Self {
+            factor: factors,
+            ..self
+        }
+    }
+
+    /// The families.
+    pub fn bonds(&self) -> &BondList {
+        &self.bonds
+    }
+
+    /// The weighted volume m of a point, m⁵ for a dimensionless influence function; infinite for a point without bonds.
+    pub fn weighted_volume(&self, i: usize) -> f64 {
+        D as f64 / self.states.dilatation[i]
+    }
+
+    /// Whether an entry's bond is still there.
+    pub fn is_intact(&self, i: usize, entry: usize) -> bool {
+        let block = i / BLOCK;
+        let group = entry / LANES - self.bonds.start()[block * BLOCK];
+        self.blocks[block].intact[group] >> (entry % LANES) & 1 == 1
+    }
+
+    pub(super) fn view(&self) -> SolidBonds<'_> {
+        SolidBonds {
+            list: &self.bonds,
+            layout: &self.layout,
+            weight: &self.weight,
+            factor: self.factor.as_ref(),
+        }
+    }
+
+    /// Rows of displacements.
+    pub(super) fn packed(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
+        let mut rows = self.packed.take();
+        pack::<D>(u, |_| 0.0, &mut rows);
+        rows
+    }
+
+    /// Rows of a vector and of p for the dilatations given.
+    pub(super) fn packed_with(&self, u: Field<'_>, dilatations: Field<'_>) -> Lent<'_, Vec<Row>> {
+        let mut rows = self.packed.take();
+        let pressure = |i: usize| self.states.pressure[i] * dilatations.owned[i];
+        pack::<D>(u, pressure, &mut rows);
+        rows
+    }
+
+    /// Runs a read-only loop over all blocks.
+    pub(super) fn sweep<const C: usize>(
+        &self,
+        on: &On<'_>,
+        out: &mut [f64],
+        rows: impl Fn(&[u8], &Rows<'_>, &mut [&mut [f64]; C]) + Sync,
+    ) {
+        let n = self.cloud.len();
+        // A vector of nothing: the blocks' state is only read, and no memory is taken.
+        let mut nothing = vec![(); self.blocks.len()];
+        for_each_block(
+            components_mut::<C>(out, n),
+            &mut nothing,
+            &|first, mut out, ()| {
+                if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
+                    rows(&self.blocks[first / BLOCK].intact, &wanted, &mut out);
+                }
+            },
+        );
+    }
+
+    /// Sets the dilatations of the points named by `on`.
+    pub(super) fn dilatations_into(&self, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
+        let (bonds, factors) = (self.view(), &self.states.dilatation[..]);
+        let u = self.packed(u);
+        self.sweep::<1>(on, out, |intact, rows, out| {
+            let set = self.instruction_set;
+            dilatation_rows::<L, D>(set, &bonds, factors, &u, intact, rows, out);
+        });
+    }
+
+    fn rule<'a>(&'a self, step: &'a StepEnd<'a>, on: &On<'_>) -> BreakRule<'a> {
+        BreakRule {
+            threshold: L::Measure::threshold(self.weakest.stretch),
+            energy: self.weakest.energy,
+            classes: &self.classes,
+            breakable: self.breakable.as_deref(),
+            states: &self.states,
+            volumes: self.cloud.volumes(),
+            step,
+            note_events: !matches!(on, On::All),
+        }
+    }
+
+    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch and sets the points' dilatations.
+    pub(super) fn break_by_stretch(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        dilatations: &mut [f64],
+    ) {
+        let n = self.cloud.len();
+        let mut blocks = std::mem::take(&mut self.blocks);
+        let bonds = self.view();
+        let rule = self.rule(step, on);
+        let u = self.packed(u);
+        for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
+            let len = n.min(first + BLOCK) - first;
+            if let Some(wanted) = Rows::of_block(on, first, len) {
+                accept_rows::<L, D>(
+                    self.instruction_set,
+                    &bonds,
+                    &rule,
+                    &u,
+                    &mut block.intact,
+                    &wanted,
+                    &mut out,
+                    &mut block.tally,
+                );
+            }
+        });
+        self.clear_other_ends(&rule, &u, &mut blocks);
+        drop(u);
+        self.blocks = blocks;
+    }
+
+    /// Advances the work of the bonds of the points named by `on`, breaks those whose energy is above their limit, and sets the dilatations of points of `on` that lost bonds. Dilatations are given at all
+    /// points that are needed.
+    pub(super) fn break_by_energy(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        dilatations: &mut [f64],
+    ) {
+        let Some(influence) = &self.influence else {
+            return;
+        };
+        let n = self.cloud.len();
+        let (mut blocks, mut work) = (
+            std::mem::take(&mut self.blocks),
+            std::mem::take(&mut self.work),
+        );
+        let ghosts = self.cloud.domain().ghosts(dilatations);
+        // These rows hold the dilatations from before: those of points that lose bonds change.
+        let u = self.packed_with(u, Field::new(dilatations, &ghosts));
+        let rule = self.rule(step, on);
+        let worked = Worked {
+            bonds: self.view(),
+            influence,
+        };
+        for_each_block(
+            [dilatations],
+            &mut with_work(&mut blocks, &mut work),
+            &|first, mut out, (block, kept)| {
+                let len = n.min(first + BLOCK) - first;
+                if let Some(wanted) = Rows::of_block(on, first, len) {
+                    work_rows::<L, D>(
+                        self.instruction_set,
+                        &worked,
+                        &rule,
+                        &u,
+                        block,
+                        kept,
+                        &wanted,
+                        &mut out,
+                    );
+                }
+            },
+        );
+        self.clear_other_ends(&rule, &u, &mut blocks);
+        drop(u);
+        self.blocks = blocks;
+        self.work = work;
+    }
+
+    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
+    fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
+        let bonds = self.view();
+        let rule = BreakRule {
+            note_events: false,
+            ..*rule
+        };
+        for b in 0..blocks.len() {
+            let events = std::mem::take(&mut blocks[b].tally.events);
+            for event in events {
+                let here = event.point as usize;
+                let j = self.bonds.neighbour(event.entry);
+                let Some((back, _)) = self.bonds.family(j).find(|&(_, other)| other == here) else {
+                    continue;
+                };
+                let BlockDamage { intact, tally } = &mut blocks[j / BLOCK];
+                let first = self.bonds.start()[j / BLOCK * BLOCK];
+                let groups = self.bonds.groups(j);
+                let intact = &mut intact[groups.start - first..groups.end - first];
+                let mut broken = vec![0; intact.len()];
+                let group = back / LANES - groups.start;
+                broken[group] = intact[group] & 1 << (back % LANES);
+                take_bonds::<L, D>(&bonds, &rule, u, j, intact, &broken, tally);
+            }
+        }
+    }
+
+    /// Memory of what the loops read beside the list, bytes.
+    pub(super) fn own_bytes(&self) -> usize {
+        let rows = size_of::<Row>() * self.cloud.len();
+        let states = 4 * size_of::<f64>() * self.cloud.len();
+        let influence = self.influence.as_ref().map_or(0, Weight::bytes);
+        let factor = self.factor.as_ref().map_or(0, Stiffness::bytes);
+        let work = size_of_val(&self.work[..]);
+        rows + states + factor + self.layout.bytes() + self.weight.bytes() + influence + work
+    }
+}
+
+impl States {
+    /// The factors for these weighted volumes; points without bonds have none.
+    fn new<const D: usize>(volumes: &[f64], classes: &SolidClasses) -> Self {
+        let over = |value: f64, volume: f64| if volume > 0.0 { value / volume } else { 0.0 };
+        let of = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let volumes = volumes.iter().enumerate();
+            volumes.map(|(i, volume)| over(value(i), *volume)).collect()
+        };
+        Self {
+            dilatation: of(&|_| D as f64),
+            pressure: of(&|i| classes.constants(i)[0]),
+            stiffness: of(&|i| classes.constants(i)[1]),
+            bulk: (0..volumes.len())
+                .map(|i| classes.constants(i)[0] / D as f64)
+                .collect(),
+        }
+    }
+}
+
+/// The blocks with the part of what is kept of bonds that belongs to each.
+fn with_work<'a>(
+    blocks: &'a mut [BlockDamage],
+    mut work: &'a mut [f64],
+) -> Vec<(&'a mut BlockDamage, &'a mut [f64])> {
+    let mut parts = Vec::with_capacity(blocks.len());
+    for block in blocks {
+        let (own, rest) = work.split_at_mut(KEPT * block.intact.len());
+        parts.push((block, own));
+        work = rest;
+    }
+    parts
+}
+
+/// m = Σ ω r² of every point, over the bonds that exist.
+fn weighted_volumes<const D: usize>(
+    cloud: &PointCloud,
+    bonds: &BondList,
+    weight: &Weight,
+) -> Vec<f64> {
+    let nothing = vec![0.0; cloud.len()];
+    let layout = Layout::new(cloud, &nothing);
+    let view = SolidBonds {
+        list: bonds,
+        layout: &layout,
+        weight,
+        factor: None,
+    };
+    for_each_point(cloud.len(), &|i| {
+        let family = bonds
+            .family(i)
+            .filter(|&(entry, _)| bonds.is_present(entry));
+        family
+            .map(|(entry, j)| {
+                let xi = view.vector::<D>(i, j);
+                view.weight_of(entry, [i, j], xi) * dot(xi, xi)
+            })
+            .sum()
+    })
+}
+
+/// One bit per entry that may break; none if all may.
+fn breakable(bonds: &BondList, no_fail: &[u32]) -> Option<Vec<u8>> {
+    if no_fail.is_empty() {
+        return None;
+    }
+    let mut held = vec![false; bonds.len()];
+    for &i in no_fail {
+        held[i as usize] = true;
+    }
+    let mut breakable = vec![0u8; bonds.geometric().len()];
+    for i in (0..bonds.len()).filter(|&i| !held[i]) {
+        for (entry, _) in bonds.family(i).filter(|&(_, j)| !held[j]) {
+            breakable[entry / LANES] |= 1 << (entry % LANES);
+        }
+    }
+    Some(breakable)
+}

@@ -1,0 +1,228 @@
+//! How stretches and directions of bonds follow from displacements, in the loops of grid and list.
+
+use crate::lanes::{Vector, dot};
+use crate::material::{BondStretch, LinearBond, PairForce};
+use crate::operator::fast_law::PHI;
+
+/// The geometry of a bond of length r = |ξ| as the loops of state-based materials take it: a strain t of one number decides all.
+///
+/// With the stretch ψ = e/r, the direction y and the pull p + ψ s of both force states (p from the dilatations, s from the bond itself), a bond adds
+///
+/// * ω r² ψ to the weighted extension Σ ω r e of its point,
+/// * ω F y with F = (p + ψ s) r/|y| to the force,
+///
+/// where ω is the influence function times the partial volume of the neighbour. No root and no division is taken for |t| ≤ [`Kinematics::REACH`].
+pub trait Kinematics: Copy + Default + Send + Sync + 'static {
+    /// The pair force with the same measure of stretch, by which breaking is decided.
+    type Measure: PairForce;
+    /// Whether stretches are linear in the displacement, and directions fixed.
+    const LINEAR: bool;
+    /// The largest |t| for which [`Kinematics::stretch`] and [`Kinematics::pull`] hold to round-off.
+    const REACH: f64;
+
+    /// t of bonds side by side; the same bits seen from the other end.
+    fn strain<T: Vector, const D: usize>(xi: [T; D], eta: [T; D], inverse_square: T) -> T;
+
+    /// ψ for |t| ≤ REACH.
+    fn stretch<T: Vector>(t: T) -> T;
+
+    /// ψ for any t.
+    fn exact_stretch<T: Vector>(t: T) -> T;
+
+    /// F for |t| ≤ REACH.
+    fn pull<T: Vector>(t: T, p: T, s: T) -> T;
+
+    /// F for any t.
+    fn exact_pull<T: Vector>(t: T, p: T, s: T) -> T;
+
+    /// The direction of the force, not normalised.
+    fn direction<T: Vector, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D];
+
+    /// r/|y| for any t.
+    fn contraction<T: Vector>(t: T) -> T;
+
+    /// The change of F where ψ changes by `stretch` and p by `change`, for any t.
+    fn pull_change<T: Vector>(t: T, p: T, s: T, stretch: T, change: T) -> T;
+}
+
+/// e = |ξ + η| − |ξ|, forces along y = ξ + η: for displacements of any size. t = η·(2ξ + η)/|ξ|², so that nothing cancels at small strains, and ψ = √(1 + t) − 1.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FiniteStrain;
+
+/// e = ξ·η/|ξ|, forces along y = ξ: the linearisation of [`FiniteStrain`] about the reference. t = ψ = ξ·η/|ξ|².
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SmallStrain;
+
+/// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), ascending: the polynomial through its values at the seven Chebyshev nodes of |t| ≤ 0.02, computed with 50 digits; relative error below 6e-16 there.
+const PSI: [f64; 7] = [
+    0.5,
+    -0.12500000000009168,
+    0.06250000000007641,
+    -0.039062498166270054,
+    0.027343748471866127,
+    -0.020516980175525664,
+    0.0161209210780157,
+];
+
+/// t times the polynomial.
+#[inline(always)]
+fn polynomial<T: Vector>(coefficients: &[f64; 7], t: T) -> T {
+    let mut value = T::splat(coefficients[6]);
+    for k in (0..6).rev() {
+        value = value.mul_add(t, T::splat(coefficients[k]));
+    }
+    t * value
+}
+
+/// η·(2ξ + η)
+#[inline(always)]
+fn growth<T: Vector, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
+    let mut growth = eta[0] * (xi[0] + (xi[0] + eta[0]));
+    for c in 1..D {
+        growth = eta[c].mul_add(xi[c] + (xi[c] + eta[c]), growth);
+    }
+    growth
+}
+
+impl Kinematics for FiniteStrain {
+    type Measure = BondStretch;
+    const LINEAR: bool = false;
+    const REACH: f64 = 0.02;
+
+    #[inline(always)]
+    fn strain<T: Vector, const D: usize>(xi: [T; D], eta: [T; D], inverse_square: T) -> T {
+        growth(xi, eta) * inverse_square
+    }
+
+    #[inline(always)]
+    fn stretch<T: Vector>(t: T) -> T {
+        polynomial(&PSI, t)
+    }
+
+    #[inline(always)]
+    fn exact_stretch<T: Vector>(t: T) -> T {
+        let one = T::splat(1.0);
+        t / (one + (one + t).sqrt())
+    }
+
+    /// (1 − φ) (p + ψ s) = p + φ (s − p) with φ = 1 − r/|y| = ψ/(1 + ψ).
+    #[inline(always)]
+    fn pull<T: Vector>(t: T, p: T, s: T) -> T {
+        polynomial(&PHI, t).mul_add(s - p, p)
+    }
+
+    #[inline(always)]
+    fn exact_pull<T: Vector>(t: T, p: T, s: T) -> T {
+        let square = T::splat(1.0) + t;
+        (t / (square + square.sqrt())).mul_add(s - p, p)
+    }
+
+    #[inline(always)]
+    fn direction<T: Vector, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
+        let mut direction = xi;
+        for c in 0..D {
+            direction[c] = xi[c] + eta[c];
+        }
+        direction
+    }
+
+    #[inline(always)]
+    fn contraction<T: Vector>(t: T) -> T {
+        let one = T::splat(1.0);
+        one / (one + t).sqrt()
+    }
+
+    /// With g = r/|y|: dF = g dp + g² dψ (s − p).
+    #[inline(always)]
+    fn pull_change<T: Vector>(t: T, p: T, s: T, stretch: T, change: T) -> T {
+        let g = Self::contraction(t);
+        g * (g * stretch).mul_add(s - p, change)
+    }
+}
+
+impl Kinematics for SmallStrain {
+    type Measure = LinearBond;
+    const LINEAR: bool = true;
+    const REACH: f64 = f64::INFINITY;
+
+    #[inline(always)]
+    fn strain<T: Vector, const D: usize>(xi: [T; D], eta: [T; D], inverse_square: T) -> T {
+        dot(xi, eta) * inverse_square
+    }
+
+    #[inline(always)]
+    fn stretch<T: Vector>(t: T) -> T {
+        t
+    }
+
+    #[inline(always)]
+    fn exact_stretch<T: Vector>(t: T) -> T {
+        t
+    }
+
+    #[inline(always)]
+    fn pull<T: Vector>(t: T, p: T, s: T) -> T {
+        t.mul_add(s, p)
+    }
+
+    #[inline(always)]
+    fn exact_pull<T: Vector>(t: T, p: T, s: T) -> T {
+        t.mul_add(s, p)
+    }
+
+    #[inline(always)]
+    fn direction<T: Vector, const D: usize>(xi: [T; D], _eta: [T; D]) -> [T; D] {
+        xi
+    }
+
+    #[inline(always)]
+    fn contraction<T: Vector>(_t: T) -> T {
+        T::splat(1.0)
+    }
+
+    #[inline(always)]
+    fn pull_change<T: Vector>(_t: T, _p: T, s: T, stretch: T, change: T) -> T {
+        stretch.mul_add(s, change)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::F64x8;
+
+    fn lanes(x: f64) -> F64x8 {
+        F64x8([x; 8])
+    }
+
+    #[test]
+    fn polynomials_and_exact_forms_agree_to_round_off() {
+        for k in -1000..=1000 {
+            let t = 0.02 * f64::from(k) / 1000.0;
+            let fast = FiniteStrain::stretch(lanes(t)).0[0];
+            let exact = FiniteStrain::exact_stretch(lanes(t)).0[0];
+            assert!((fast - exact).abs() <= 1e-15 * exact.abs(), "{t}");
+            let [p, s] = [0.3, 7.0].map(lanes);
+            let fast = FiniteStrain::pull(lanes(t), p, s).0[0];
+            let exact = FiniteStrain::exact_pull(lanes(t), p, s).0[0];
+            assert!((fast - exact).abs() < 1e-14, "{t}");
+        }
+    }
+
+    #[test]
+    fn changes_of_the_pull_are_its_derivatives() {
+        // t of a stretch ψ is ψ (2 + ψ).
+        let pull = |psi: f64, p: f64, s: f64| {
+            let t = lanes(psi * (2.0 + psi));
+            FiniteStrain::exact_pull(t, lanes(p), lanes(s)).0[0]
+        };
+        let (psi, p, s, h) = (0.2, 0.7, 3.0, 1e-6);
+        let (dpsi, dp) = (0.4, -0.9);
+        let at = |sign: f64| pull(psi + sign * h * dpsi, p + sign * h * dp, s);
+        let t = lanes(psi * (2.0 + psi));
+        let change = FiniteStrain::pull_change(t, lanes(p), lanes(s), lanes(dpsi), lanes(dp)).0[0];
+        assert!(((at(1.0) - at(-1.0)) / (2.0 * h) - change).abs() < 1e-9);
+        // F = (p + ψ s)/(1 + ψ)
+        assert!((pull(psi, p, s) - (p + psi * s) / (1.0 + psi)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,24 @@
+//! The force of state-based materials.
+//!
+//! | part | what |
+//! |---|---|
+//! | `kinematics` | how stretches and directions follow from displacements: the law, shared by all forms of loops |
+//! | `bonds`, `weight` | what the loops over lists read |
+//! | `kernels`, `bond_work` | the loops over lists |
+//! | `breaking` | which bonds break, and what that dissipates |
+//! | `force`, `passes`, `view` | the operator |
+
+mod body;
+mod bond_work;
+mod bonds;
+mod breaking;
+mod force;
+mod kernels;
+mod kinematics;
+mod passes;
+mod view;
+mod weight;
+
+pub use body::LinearSolidBody;
+pub use force::LinearSolidForce;
+pub use kinematics::{FiniteStrain, Kinematics, SmallStrain};

@@ -1,0 +1,249 @@
+//! [`TwoPass`] and [`Breakable`] for linear peridynamic solids.
+
+use super::bond_work::{KEPT, Worked};
+use super::bonds::difference;
+use super::force::LinearSolidForce;
+use super::kernels::{dilatation_change_rows, force_rows, square_rows, tangent_rows};
+use super::kinematics::Kinematics;
+use crate::domain::Field;
+use crate::lanes::LANES;
+use crate::material::PairForce;
+use crate::operator::{
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, On, TwoPass, damage,
+};
+use crate::parallel::for_each_chunk;
+use crate::step_end::StepEnd;
+
+impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
+    /// The dilatation θ.
+    fn values_per_point(&self) -> usize {
+        1
+    }
+
+    fn values_into(&self, _t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+        self.dilatations_into(u, on, values);
+    }
+
+    fn value_changes_into(&self, _t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
+        let (bonds, factors) = (self.view(), &self.states.dilatation[..]);
+        let (u, direction) = (self.packed(u), self.packed(direction));
+        self.sweep::<1>(&On::All, changes, |intact, rows, out| {
+            let set = self.instruction_set;
+            dilatation_change_rows::<L, D>(set, &bonds, factors, &u, &direction, intact, rows, out);
+        });
+    }
+
+    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+        let bonds = self.view();
+        let u = self.packed_with(at.u, at.values);
+        self.sweep::<D>(on, out, |intact, rows, out| {
+            force_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
+        });
+    }
+
+    fn add_bond_tangent(&self, _t: f64, at: AtPoints<'_>, change: AtPoints<'_>, out: &mut [f64]) {
+        let bonds = self.view();
+        let u = self.packed_with(at.u, at.values);
+        let direction = self.packed_with(change.u, change.values);
+        self.sweep::<D>(&On::All, out, |intact, rows, out| {
+            let set = self.instruction_set;
+            tangent_rows::<L, D>(set, &bonds, &u, &direction, intact, rows, out);
+        });
+    }
+
+    fn add_energy_density(&self, _t: f64, at: AtPoints<'_>, out: &mut [f64]) {
+        let bonds = self.view();
+        let mut squares = vec![0.0; self.cloud.len()];
+        let u = self.packed(at.u);
+        self.sweep::<1>(&On::All, &mut squares, |intact, rows, out| {
+            square_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
+        });
+        for_each_chunk(out, &|first, out| {
+            for (i, energy) in (first..).zip(out) {
+                let theta = at.values.owned[i];
+                let (bulk, stiffness) = (self.states.bulk[i], self.states.stiffness[i]);
+                *energy += 0.5 * (bulk * theta * theta + stiffness * squares[i]);
+            }
+        });
+    }
+
+    /// W ≤ ½ Σ k ω e² with k = (max(A D, 0) + g B)/m, by Cauchy's inequality θ² ≤ (D²/m) Σ ω e²: the solid is softer than springs of the stiffness ω (k_i + k_j) V_i, to which Gershgorin's discs apply.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let bonds = self.view();
+        let dimension = D as f64;
+        let stiffness = |i: usize, factor: f64| {
+            let dilatational = (dimension * self.states.pressure[i]).max(0.0);
+            dilatational + factor * self.states.stiffness[i]
+        };
+        let mut largest: f64 = 0.0;
+        for i in 0..self.cloud.len() {
+            let family = self.bonds.family(i);
+            let row: f64 = family
+                .filter(|&(entry, _)| self.is_intact(i, entry))
+                .map(|(entry, j)| {
+                    let weight = bonds.weight_of(entry, [i, j], bonds.vector::<D>(i, j));
+                    let factor = bonds.factor_of(entry);
+                    weight.abs() * (stiffness(i, factor) + stiffness(j, factor))
+                })
+                .sum();
+            largest = largest.max(2.0 * row / density(i));
+        }
+        self.cloud.domain().max(largest).sqrt()
+    }
+
+    fn is_linear(&self) -> bool {
+        L::LINEAR
+    }
+
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let family = self.bonds.family(i);
+        let present = family.filter(|&(entry, _)| self.bonds.is_present(entry));
+        present.for_each(|(_, j)| visit(j));
+    }
+
+    /// A critical stretch is decided in the pass over points itself; the bond energy after it, for it needs the dilatations of both ends.
+    fn end_values_into(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        needed: &On<'_>,
+        values: &mut [f64],
+    ) {
+        let all = matches!(on, On::All);
+        if self.weakest.stretch.is_finite() {
+            self.break_by_stretch(step, u, on, values);
+            if !all {
+                self.dilatations_into(u, needed, values);
+            }
+        } else {
+            self.dilatations_into(u, needed, values);
+        }
+        if self.weakest.energy.is_finite() {
+            self.break_by_energy(step, u, on, values);
+            if !all {
+                self.dilatations_into(u, needed, values);
+            }
+        }
+    }
+
+    fn breaking(&self) -> Option<&dyn Breakable> {
+        Some(self)
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        Some(self)
+    }
+
+    fn bonds(&self) -> Option<&dyn BondView> {
+        Some(self)
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.bonds.directed_bonds()
+    }
+
+    fn bytes(&self) -> usize {
+        self.bonds.bytes()
+            + self.bonds.geometric().len()
+            + self.breakable.as_ref().map_or(0, Vec::len)
+            + self.own_bytes()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+    }
+}
+
+impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
+    fn dissipated(&self) -> f64 {
+        damage::dissipated(&self.blocks)
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        damage::dissipate(&mut self.blocks, energy);
+    }
+
+    /// None: the energy that a bond stores at its critical stretch depends on the other bonds of its ends.
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        Vec::new()
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        damage::broken_bonds(&self.blocks)
+    }
+
+    fn can_break(&self) -> bool {
+        self.weakest.can_break()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        for_each_chunk(out, &|first, out| {
+            for (i, damage) in (first..).zip(out) {
+                let (mut whole, mut left) = (0.0, 0.0);
+                for (entry, j) in self.bonds.family(i) {
+                    if !(self.bonds.is_present(entry) || self.damage.count_precut) {
+                        continue;
+                    }
+                    let weight = if self.damage.count {
+                        1.0
+                    } else {
+                        self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
+                    };
+                    whole += weight;
+                    if self.is_intact(i, entry) {
+                        left += weight;
+                    }
+                }
+                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
+            }
+        });
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for i in 0..self.cloud.len() {
+            let family = self.bonds.family(i);
+            for (_, j) in family.filter(|&(entry, j)| j > i && self.is_intact(i, entry)) {
+                visit(i, j);
+            }
+        }
+    }
+
+    /// The bond energy is taken from the work at the end of the last step.
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        let bonds = self.view();
+        let worked = self
+            .influence
+            .as_ref()
+            .map(|influence| Worked { bonds, influence });
+        let may_break = |entry: usize| {
+            self.breakable
+                .as_ref()
+                .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
+        };
+        let ghosts = self.cloud.domain().ghosts(u);
+        let u = self.packed(Field::new(u, &ghosts));
+        let over = |i: usize, entry: usize, j: usize| {
+            let (xi, limits) = (bonds.vector::<D>(i, j), self.classes.limits(i, j));
+            let (measure, square) = L::Measure::stretch_measure(xi, difference::<D>(&u, i, j));
+            let worked = worked.as_ref().is_some_and(|worked| {
+                let kept = self.work[entry / LANES * KEPT + entry % LANES];
+                worked.bond_energy(entry, xi, kept) > fraction * limits.energy
+            });
+            worked || measure > L::Measure::threshold(fraction * limits.stretch) * square
+        };
+        for_each_chunk(marks, &|first, marks| {
+            for (i, mark) in (first..).zip(marks) {
+                *mark |= self.bonds.family(i).any(|(entry, j)| {
+                    self.is_intact(i, entry) && may_break(entry) && over(i, entry, j)
+                });
+            }
+        });
+    }
+}

@@ -1,0 +1,15 @@
+//! Tests of state-based materials.
+
+mod bodies;
+#[path = "../../benches/clock/mod.rs"]
+mod clock;
+#[path = "../common/mod.rs"]
+mod common;
+mod constants;
+mod fracture;
+mod identities;
+mod reference;
+mod schemes;
+mod speed;
+mod surface;
+mod twin;
