@@ -309,6 +309,42 @@ impl BondList {
         })
     }
 
+    /// Calls `visit` for every own point but i that point i is bonded to, once each.
+    pub(crate) fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let family = self.family(i);
+        let near = family.filter(|&(entry, _)| self.is_present(entry));
+        if self.sites.are_points() {
+            return near.for_each(|(_, j)| visit(j));
+        }
+        // By images a point may be a neighbour more than once, and its own.
+        let mut points: Vec<usize> = near
+            .filter_map(|(_, site)| self.sites.own_point(site))
+            .collect();
+        points.sort_unstable();
+        points.dedup();
+        points.into_iter().filter(|&j| j != i).for_each(visit);
+    }
+
+    /// One bit for each entry whose bond may break: those between points other than `no_fail`; none if all may.
+    pub(crate) fn breakable(&self, no_fail: &[u32]) -> Option<Vec<u8>> {
+        let sites = &self.sites;
+        if sites.cloud().domain().all(no_fail.is_empty()) {
+            return None;
+        }
+        let mut held = vec![false; self.len()];
+        for &i in no_fail {
+            held[i as usize] = true;
+        }
+        let held = sites.spread_marks(&held);
+        let mut breakable = vec![0u8; self.geometric.len()];
+        for i in (0..self.len()).filter(|&i| !held[self.site(i)]) {
+            for (entry, _) in self.family(i).filter(|&(_, site)| !held[site]) {
+                breakable[entry / LANES] |= 1 << (entry % LANES);
+            }
+        }
+        Some(breakable)
+    }
+
     /// The partial-volume factor κ of the bond between two sites: the mean of what its ends see.
     pub fn volume_factor(&self, a: usize, b: usize) -> f64 {
         match &self.horizons {

@@ -94,7 +94,7 @@ impl SurfaceCorrection {
                 for _ in 0..PASSES {
                     body.improve(&mut points);
                 }
-                SurfaceFactors::Directional(body.tensors(&points))
+                SurfaceFactors::Directional(tensors_of_sites(bonds, &points))
             }
         }
     }
@@ -121,6 +121,23 @@ impl Directions {
                 .sum::<f64>()
         })
     }
+}
+
+/// The tensors of all sites of a bond list.
+pub(super) fn tensors_of_sites(bonds: &BondList, points: &[Directions]) -> Vec<Tensor> {
+    let own: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
+    let sites = bonds.sites();
+    if sites.are_points() {
+        return own;
+    }
+    let entry = |k: usize| {
+        let of_points: Vec<f64> = own.iter().map(|tensor| tensor[k]).collect();
+        sites.spread(&of_points).into_owned()
+    };
+    let entries: [Vec<f64>; 6] = std::array::from_fn(entry);
+    (0..sites.len())
+        .map(|site| std::array::from_fn(|k| entries[k][site]))
+        .collect()
 }
 
 /// What factors are found for.
@@ -225,27 +242,10 @@ impl Body<'_> {
         }
     }
 
-    /// The tensors of all sites.
-    fn tensors(&self, points: &[Directions]) -> Vec<Tensor> {
-        let own: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
-        let sites = self.bonds.sites();
-        if sites.are_points() {
-            return own;
-        }
-        let entry = |k: usize| {
-            let of_points: Vec<f64> = own.iter().map(|tensor| tensor[k]).collect();
-            sites.spread(&of_points).into_owned()
-        };
-        let entries: [Vec<f64>; 6] = std::array::from_fn(entry);
-        (0..sites.len())
-            .map(|site| std::array::from_fn(|k| entries[k][site]))
-            .collect()
-    }
-
     /// Takes factors under which the energies of corrected bonds are nearer those of the interior.
     fn improve(&self, points: &mut [Directions]) {
         let bonds = self.bonds;
-        let tensors = self.tensors(points);
+        let tensors = tensors_of_sites(bonds, points);
         let improved: Vec<[f64; 3]> = self.for_each_point(|i| {
             let (own, here) = (&points[i], bonds.site(i));
             let mut sums = [0.0; 3];

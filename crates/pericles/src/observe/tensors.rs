@@ -4,6 +4,7 @@
 
 use rayon::prelude::*;
 
+use crate::domain::Field;
 use crate::operator::{BondAt, BondView};
 use crate::parallel::BLOCK;
 use crate::space::PointCloud;
@@ -22,6 +23,8 @@ type Matrix = [[f64; 3]; 3];
 /// The virial stress σ_i = ½ Σ_j f_ij ⊗ (ξ + η), Pa, with the force densities f_ij of the bonds of point i; the symmetric part. In a body under uniform strain it is that of
 /// the continuum; within a horizon of a surface bonds, and so parts of it, are missing.
 pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
+    let ghosts = cloud.domain().ghosts(u);
+    let u = Field::new(u, &ghosts);
     per_point(cloud, |i| {
         let mut stress = Matrix::default();
         bonds.for_each_bond(u, i, &mut |bond: BondAt| {
@@ -38,10 +41,13 @@ pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64])
 /// The strain of the displacement gradient G that fits the bonds best: Σ_j V_j |η − G ξ|² is least. Zero where the bonds left do not span the space.
 pub(super) fn fitted_strain(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
     let dimension = cloud.dimension();
+    let ghosts = cloud.domain().ghosts(u);
+    let u = Field::new(u, &ghosts);
+    let volumes = cloud.domain().with_ghosts(cloud.volumes());
     per_point(cloud, |i| {
         let (mut shape, mut moment) = (Matrix::default(), Matrix::default());
         bonds.for_each_bond(u, i, &mut |bond: BondAt| {
-            let volume = cloud.volumes()[bond.neighbour];
+            let volume = volumes[bond.neighbour];
             for a in 0..3 {
                 for b in 0..3 {
                     shape[a][b] += volume * bond.xi[a] * bond.xi[b];

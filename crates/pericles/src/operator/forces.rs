@@ -5,6 +5,7 @@ use super::{
     Linearity, LocalForce, On, SplitForce,
 };
 use crate::archive::{Archive, Saved};
+use crate::domain::Field;
 use crate::error::{PericlesError, Result};
 use crate::step_end::StepEnd;
 
@@ -287,7 +288,7 @@ impl SplitForce for Forces {
 }
 
 impl BondView for Forces {
-    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         for bonds in self.iter().filter_map(|force| force.capabilities().bonds) {
             bonds.for_each_bond(u, i, visit);
         }

@@ -151,8 +151,8 @@ impl GradedBody<'_> {
         for &([a, b], stretch) in self.materials.map_or(&[][..], |one| one.critical_stretches) {
             for grids in pairs(self.ratios.len() as u8) {
                 let [g, h] = grids.map(|grid| grid * materials);
-                classes.set_critical_stretch([g + a, h + b], stretch);
-                classes.set_critical_stretch([g + b, h + a], stretch);
+                classes.set_critical_stretch([g + a, h + b], stretch)?;
+                classes.set_critical_stretch([g + b, h + a], stretch)?;
             }
         }
         Ok(Laws {
@@ -206,7 +206,7 @@ impl GradedBody<'_> {
         let weighted = |bonds: &BondList, a: usize, b: usize| mean(a, b) * end(bonds, a, b);
         let stretches = self.between_grids(&laws, &bonds, (class, &weighted));
         for (pair, stretch) in stretches {
-            classes.set_critical_stretch(pair, stretch);
+            classes.set_critical_stretch(pair, stretch)?;
         }
         let cuts: Vec<Cut> = self
             .cracks

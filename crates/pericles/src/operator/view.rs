@@ -1,9 +1,11 @@
 //! Bonds one by one, for fields that are made of them.
 
+use crate::domain::Field;
+
 /// A bond as one of its ends sees it; missing components are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondAt {
-    /// The other end.
+    /// The other end; ghosts are counted behind own points.
     pub neighbour: usize,
     /// Reference vector to it ξ, m.
     pub xi: [f64; 3],
@@ -16,5 +18,5 @@ pub struct BondAt {
 /// An operator whose bonds can be looked at. Slow beside the operator itself: for output.
 pub trait BondView: Sync {
     /// Calls `visit` for every bond of point i that is left, at displacement u.
-    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt));
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt));
 }

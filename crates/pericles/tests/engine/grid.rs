@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pericles::domain::Field;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
@@ -691,7 +692,7 @@ fn single_bonds_add_up_to_the_force() {
         let (bonds, mut count) = (operator.capabilities().bonds.unwrap(), 0);
         for i in 0..n {
             let mut sum = [0.0; 3];
-            bonds.for_each_bond(&u, i, &mut |bond| {
+            bonds.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
                 count += 1;
                 for c in 0..2 {
                     let xi = cloud.point(bond.neighbour)[c] - cloud.point(i)[c];

@@ -77,6 +77,6 @@ pub fn bodies(function: &InfluenceFunction) -> Vec<(Arc<PointCloud>, LinearSolid
 }
 
 /// The bonds of a body within its horizon, with whole volumes.
-pub fn families(cloud: &PointCloud, constants: &LinearSolidConstants) -> BondList {
+pub fn families(cloud: &Arc<PointCloud>, constants: &LinearSolidConstants) -> BondList {
     BondList::new(cloud, constants.horizon, VolumeCorrection::None).unwrap()
 }

@@ -94,7 +94,7 @@ fn torn(
         .unwrap()
         .stable_step(2.0, part);
     let scheme = scheme(&system);
-    Simulation::new(system, scheme, start, dt, (20.0 / dt) as u64)
+    Simulation::new(system, scheme, start, dt, (20.0 / dt) as u64).unwrap()
 }
 
 fn verlet(_: &System) -> Box<dyn Integrator> {
@@ -468,7 +468,8 @@ fn supports_balance_the_energy_of_a_plate_that_is_pulled_apart() {
             TimeFunction::Constant,
             &vec![0.0; 2 * cloud.len()],
             cloud.len(),
-        );
+        )
+        .unwrap();
         system.add_motion(motion).unwrap();
     }
     let mut start = State::at_rest(2 * cloud.len());
@@ -483,7 +484,7 @@ fn supports_balance_the_energy_of_a_plate_that_is_pulled_apart() {
         .unwrap()
         .stable_step(2.0, 0.5);
     let steps = (60.0 / dt) as u64;
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps).unwrap();
     run.run(|_| Control::Continue).unwrap();
     assert!(run.system().operator().broken_bonds() > 100);
     let energies = run.snapshot().energies();

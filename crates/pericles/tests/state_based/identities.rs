@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::bodies::{bodies, families, jittered, noise, solid, wave};
 use crate::common::{boxed, material as bond_based};
 use crate::twin::Twin;
+use pericles::domain::Field;
 use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
@@ -314,7 +315,8 @@ fn solids_without_a_dilatational_part_are_bond_based() {
             no_fail: &[],
         },
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     let u = wave(&cloud, 0.1);
     let (a, b) = (force_of(&*state_based, &u), force_of(&bond_based, &u));
     assert!(distance(&a, &b) < 1e-13 * largest(&b));
@@ -357,7 +359,8 @@ fn a_solid_with_poissons_ratio_a_quarter_is_the_bond_based_material_inside() {
         &bond_constants,
         &[],
         DamageMeasure::default(),
-    );
+    )
+    .unwrap();
     let u = wave(&cloud, 0.01);
     let (a, b) = (force_of(&*state_based, &u), force_of(&bond_based, &u));
     let (n, middle) = (cloud.len(), cloud.nearest([4.5; 3]));
@@ -436,7 +439,7 @@ fn the_virial_stress_of_a_uniform_strain_is_that_of_elasticity() {
     }
     let bonds = operator.as_bonds().unwrap();
     let mut stress = [[0.0; 2]; 2];
-    bonds.for_each_bond(&u, middle, &mut |bond| {
+    bonds.for_each_bond(Field::new(&u, &[]), middle, &mut |bond| {
         for a in 0..2 {
             for b in 0..2 {
                 stress[a][b] += 0.5 * bond.force[a] * bond.xi[b];
@@ -471,7 +474,7 @@ fn the_forces_of_single_bonds_add_up_to_the_force() {
         let bonds = operator.as_bonds().unwrap();
         for i in 0..cloud.len() {
             let mut sum = [0.0; 3];
-            bonds.for_each_bond(&u, i, &mut |bond| {
+            bonds.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
                 (0..3).for_each(|c| sum[c] += bond.force[c]);
             });
             for c in 0..cloud.dimension() {

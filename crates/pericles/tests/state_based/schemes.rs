@@ -41,7 +41,7 @@ fn thrown(cloud: &PointCloud, speed: f64) -> State {
 
 fn run(system: System, scheme: Box<dyn Integrator>, speed: f64, dt: f64, end: f64) -> Simulation {
     let state = thrown(system.cloud(), speed);
-    let mut run = Simulation::new(system, scheme, state, dt, (end / dt).round() as u64);
+    let mut run = Simulation::new(system, scheme, state, dt, (end / dt).round() as u64).unwrap();
     run.run(|_| Control::Continue).unwrap();
     run
 }

@@ -27,7 +27,7 @@ struct Bond {
 impl Twin<'_> {
     fn bond(&self, u: &[f64], i: usize, j: usize) -> Bond {
         let (n, dimension) = (self.cloud.len(), self.cloud.dimension());
-        let xi = self.bonds.vector(self.cloud, i, j);
+        let xi = self.bonds.vector(i, j);
         let y: Vec<f64> = (0..dimension)
             .map(|c| xi[c] + u[c * n + j] - u[c * n + i])
             .collect();
@@ -38,7 +38,7 @@ impl Twin<'_> {
             extension: now - r,
             normal: y.iter().map(|y| y / now).collect(),
             weight: self.influence.alpha_of(xi, self.horizon)
-                * self.bonds.volume_factor(self.cloud, i, j)
+                * self.bonds.volume_factor(i, j)
                 * self.cloud.volumes()[j],
         }
     }

@@ -3,6 +3,7 @@
 use super::failure::BondLimits;
 use super::linear_solid::LinearSolidConstants;
 use crate::error::{PericlesError, Result};
+use crate::space::Sites;
 
 /// The material of every point, and what bonds between each pair of materials can bear.
 ///
@@ -82,6 +83,15 @@ impl SolidClasses {
         assert!(a < count && b < count, "a pair of materials given");
         self.limits[a * count + b] = limits;
         self.limits[b * count + a] = limits;
+    }
+
+    /// The same by the sites that bonds lead to.
+    pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
+        let numbers: Vec<f64> = self.of_point.iter().map(|&k| f64::from(k)).collect();
+        Self {
+            of_point: sites.spread(&numbers).iter().map(|&k| k as u8).collect(),
+            ..self.clone()
+        }
     }
 
     /// The number of a point's material.

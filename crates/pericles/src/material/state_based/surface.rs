@@ -4,7 +4,9 @@ use super::classes::SolidClasses;
 use crate::family::BondList;
 use crate::kernel::Influence;
 use crate::material::lattice::{Cells, for_each_offset};
-use crate::material::surface_correction::{Directions, SurfaceFactors, Tensor, ellipsoid};
+use crate::material::surface_correction::{
+    Directions, SurfaceFactors, ellipsoid, tensors_of_sites,
+};
 use crate::parallel::for_each_point;
 use crate::solve::principal_axes;
 use crate::space::PointCloud;
@@ -37,7 +39,6 @@ impl SolidSurface {
     /// The factors of a body.
     pub(crate) fn factors(
         self,
-        cloud: &PointCloud,
         bonds: &BondList,
         influence: &Influence,
         classes: &SolidClasses,
@@ -46,7 +47,7 @@ impl SolidSurface {
             Self::None => SurfaceFactors::None,
             Self::Energy => {
                 let body = Body {
-                    cloud,
+                    cloud: bonds.sites().cloud(),
                     bonds,
                     influence,
                     classes,
@@ -55,7 +56,7 @@ impl SolidSurface {
                 for _ in 0..PASSES {
                     body.improve(&mut points);
                 }
-                SurfaceFactors::Directional(points.iter().map(Directions::tensor).collect())
+                SurfaceFactors::Directional(tensors_of_sites(bonds, &points))
             }
         }
     }
@@ -86,7 +87,7 @@ impl Body<'_> {
     /// The strain across a uniaxial tension over that along it, with the sign changed.
     fn contraction(&self, i: usize) -> f64 {
         let dimension = self.cloud.dimension() as f64;
-        let [dilatational, deviatoric] = self.classes.constants(i);
+        let [dilatational, deviatoric] = self.classes.constants(self.bonds.site(i));
         let shear = deviatoric / (dimension * (dimension + 2.0));
         let kappa = (dilatational + (dimension + 2.0) * shear) / dimension;
         match self.cloud.dimension() {
@@ -133,10 +134,10 @@ impl Body<'_> {
         })
     }
 
-    /// ω r² of a bond.
-    fn weight(&self, i: usize, j: usize, xi: [f64; 3]) -> f64 {
+    /// ω r² of the bond between two sites.
+    fn weight(&self, a: usize, b: usize, xi: [f64; 3]) -> f64 {
         let influence = self.influence.alpha_of(xi, self.bonds.horizon());
-        let volume = self.bonds.volume_factor(self.cloud, i, j) * self.cloud.volumes()[j];
+        let volume = self.bonds.volume_factor(a, b) * self.bonds.volume(b);
         influence * volume * square(xi)
     }
 
@@ -145,9 +146,10 @@ impl Body<'_> {
         /// Rounding of the sums, far below what bends an axis.
         const NOTHING: f64 = 1e-9;
         let mut moment = [[0.0; 3]; 3];
-        for (_, j) in self.bonds.family(i) {
-            let xi = self.bonds.vector(self.cloud, i, j);
-            let weight = self.weight(i, j, xi) / square(xi);
+        let here = self.bonds.site(i);
+        for (_, b) in self.bonds.family(i) {
+            let xi = self.bonds.vector(here, b);
+            let weight = self.weight(here, b, xi) / square(xi);
             for (row, a) in moment.iter_mut().zip(xi) {
                 for (entry, b) in row.iter_mut().zip(xi) {
                     *entry += weight * a * b;
@@ -165,16 +167,16 @@ impl Body<'_> {
 
     /// Takes factors under which the energies of corrected bonds are nearer those of the interior.
     fn improve(&self, points: &mut [Directions]) {
-        let tensors: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
+        let tensors = tensors_of_sites(self.bonds, points);
         let improved: Vec<[f64; 3]> = for_each_point(points.len(), &|i| {
-            let own = &points[i];
+            let (own, here) = (&points[i], self.bonds.site(i));
             let nu = self.contraction(i);
             let (mut whole, mut sums) = (0.0, [0.0; 3]);
-            for (_, j) in self.bonds.family(i) {
-                let xi = self.bonds.vector(self.cloud, i, j);
-                let weight = self.weight(i, j, xi);
+            for (_, b) in self.bonds.family(i) {
+                let xi = self.bonds.vector(here, b);
+                let weight = self.weight(here, b, xi);
                 whole += weight;
-                let factor = ellipsoid([&tensors[i], &tensors[j]], xi);
+                let factor = ellipsoid([&tensors[here], &tensors[b]], xi);
                 let terms = stretches(&own.axes, nu, xi);
                 (0..3).for_each(|c| sums[c] += factor * weight * terms[c]);
             }

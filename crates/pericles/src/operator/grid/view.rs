@@ -6,15 +6,13 @@ use crate::operator::fast_law::FastLaw;
 use crate::operator::view::{BondAt, BondView};
 
 impl<L: FastLaw, const D: usize> BondView for GridForce<L, D> {
-    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let place = self.layout.place_of(i);
         let (chunk, lane) = self.layout.chunk_at(place);
         let block = self.layout.block_of(chunk);
         let offsets = self.stencil.offsets();
         let first = (chunk - self.layout.chunks_of(block).start) * offsets.len();
         let intact = &self.blocks[block].intact[first..first + offsets.len()];
-        let ghosts = self.cloud.domain().ghosts(u);
-        let u = Field::new(u, &ghosts);
         let spatial =
             |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
         let left = offsets.iter().zip(intact);

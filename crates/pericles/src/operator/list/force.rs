@@ -5,9 +5,10 @@ use std::sync::Arc;
 use super::arrays::Bonds;
 use super::breaking::{BreakRule, PairThresholds};
 use super::kernels::accept_rows;
+use super::other_ends::other_ends;
 use super::packed::{Packed, Reach};
 use super::stiffness::{Formula, Stiffness};
-use crate::domain::{Field, Letter};
+use crate::domain::Field;
 use crate::error::{PericlesError, Result};
 use crate::family::BondList;
 use crate::lanes::LANES;
@@ -165,7 +166,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         Ok(Self {
             reach: Reach::new(&bonds),
             packed: Pool::new(1, make),
-            breakable: breakable(&bonds, breaking.no_fail),
+            breakable: bonds.breakable(breaking.no_fail),
             cloud,
             bonds,
             reference,
@@ -305,40 +306,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
 
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
     fn tell_the_other_ends(&mut self) {
-        let (n, sites) = (self.cloud.len(), self.bonds.shared_sites());
-        let (mut here, mut away) = (Vec::new(), Vec::new());
-        for block in &mut self.blocks {
-            for event in block.tally.events.drain(..) {
-                let site = self.bonds.neighbour(event.entry);
-                let [x, y, z] = sites.shift(site).map(|periods| -f64::from(periods));
-                let letter = Letter {
-                    from: event.point as usize,
-                    to: sites.point(site),
-                    numbers: [event.dissipated, x, y, z],
-                };
-                match letter.to.checked_sub(n) {
-                    None => here.push(letter),
-                    Some(ghost) => away.push(Letter {
-                        to: ghost,
-                        ..letter
-                    }),
-                }
-            }
-        }
-        let arrived = self.cloud.domain().deliver(&away);
-        here.extend(arrived.into_iter().map(|letter| Letter {
-            from: n + letter.from,
-            ..letter
-        }));
-        for letter in here {
-            let [dissipated, x, y, z] = letter.numbers;
-            let leads_back = |&(_, site): &(usize, usize)| {
-                sites.point(site) == letter.from && sites.shift(site).map(f64::from) == [x, y, z]
-            };
-            let Some((back, _)) = self.bonds.family(letter.to).find(leads_back) else {
-                continue;
-            };
-            let block = letter.to / BLOCK;
+        for (j, back, dissipated) in other_ends(&self.bonds, &mut self.blocks) {
+            let block = j / BLOCK;
             let group = back / LANES - self.bonds.start()[block * BLOCK];
             self.blocks[block].break_other_end(group, back % LANES, dissipated);
         }
@@ -369,25 +338,4 @@ fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, f64) {
     };
     let unit = cloud.lattice().map_or(1.0, |lattice| lattice.spacing);
     ((0..cloud.len()).map(row).collect(), unit)
-}
-
-/// One bit per entry that may break; none if all may.
-fn breakable(bonds: &BondList, no_fail: &[u32]) -> Option<Vec<u8>> {
-    if bonds.sites().cloud().domain().all(no_fail.is_empty()) {
-        return None;
-    }
-    let mut held = vec![false; bonds.len()];
-    for &i in no_fail {
-        held[i as usize] = true;
-    }
-    let held = bonds.sites().spread_marks(&held);
-    let mut breakable = vec![0u8; bonds.geometric().len()];
-    for i in (0..bonds.len()).filter(|&i| !held[bonds.site(i)]) {
-        for (entry, b) in bonds.family(i) {
-            if !held[b] {
-                breakable[entry / LANES] |= 1 << (entry % LANES);
-            }
-        }
-    }
-    Some(breakable)
 }

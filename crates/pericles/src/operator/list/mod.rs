@@ -6,6 +6,7 @@ mod damage;
 mod force;
 mod kernels;
 mod operator;
+pub(super) mod other_ends;
 mod packed;
 mod springs;
 pub(super) mod stiffness;

@@ -131,9 +131,8 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
 }
 
 impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
-    fn for_each_bond(&self, u: &[f64], i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let ghosts = self.cloud.domain().ghosts(u);
-        let (bonds, u, sites) = (self.view(), Field::new(u, &ghosts), self.bonds.sites());
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (bonds, sites) = (self.view(), self.bonds.sites());
         let here = sites.of_point(i);
         let spatial =
             |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));

@@ -34,16 +34,6 @@ impl<L: FastLaw, const D: usize> SplitForce for BondForce<L, D> {
 
 impl<L: FastLaw, const D: usize> LocalForce for BondForce<L, D> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let sites = self.bonds.sites();
-        let family = self.bonds.family(i);
-        let near = family.filter(|&(entry, _)| self.bonds.is_present(entry));
-        if sites.are_points() {
-            return near.for_each(|(_, j)| visit(j));
-        }
-        // A point may be a neighbour more than once, and its own.
-        let mut points: Vec<usize> = near.filter_map(|(_, b)| sites.own_point(b)).collect();
-        points.sort_unstable();
-        points.dedup();
-        points.into_iter().filter(|&j| j != i).for_each(visit);
+        self.bonds.for_each_neighbour(i, visit);
     }
 }

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::force::LinearSolidForce;
 use super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::material::{LinearSolidConstants, SolidClasses, SolidSurface, Strains};
-use crate::operator::{BondForm, DamageMeasure, Force, TwoPassForce};
+use crate::operator::{DamageMeasure, Force, TwoPassForce};
 use crate::space::PointCloud;
 
 /// A body of linear peridynamic solids: all that its operator is made of.
@@ -56,7 +56,7 @@ impl<'a> LinearSolidBody<'a> {
     /// The operator, and what each pre-crack removed.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack, periodic faces.
+    /// A horizon that reaches no neighbour, an unusable crack.
     pub fn operator(&self) -> Result<(Box<dyn Force>, Vec<Cut>)> {
         match (self.strains, self.cloud.dimension()) {
             (Strains::Finite, 1) => self.listed::<FiniteStrain, 1>(),
@@ -84,14 +84,8 @@ impl<'a> LinearSolidBody<'a> {
     pub fn solid<L: Kinematics, const D: usize>(
         &self,
     ) -> Result<(LinearSolidForce<L, D>, Vec<Cut>)> {
-        if self.cloud.is_periodic() {
-            return Err(PericlesError::FormNotUsable {
-                form: BondForm::List.name(),
-                reason: "a list does not follow bonds through periodic faces",
-            });
-        }
         let mut bonds = BondList::new(self.cloud, self.constants.horizon, self.volume_correction)?;
-        let cut = |(crack, rule): &(Crack, EndRule)| bonds.cut(self.cloud, crack, *rule);
+        let cut = |(crack, rule): &(Crack, EndRule)| bonds.cut(crack, *rule);
         let cuts = self.cracks.iter().map(cut).collect::<Result<Vec<_>>>()?;
         let classes = match self.classes {
             Some(classes) => classes.clone(),

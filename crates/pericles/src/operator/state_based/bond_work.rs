@@ -91,7 +91,7 @@ fn break_by_work<L: Kinematics, const D: usize>(
     tally: &mut Tally,
 ) -> bool {
     let bonds = &worked.bonds;
-    let first = bonds.list.start()[i];
+    let (first, here) = (bonds.list.start()[i], bonds.list.site(i));
     let mut broken = vec![0; intact.len()];
     for (k, broken) in broken.iter_mut().enumerate() {
         let kept = &kept[k * KEPT..(k + 1) * KEPT];
@@ -99,9 +99,9 @@ fn break_by_work<L: Kinematics, const D: usize>(
         let neighbours = bonds.list.group(first + k);
         for lane in (0..LANES).filter(|lane| candidates >> lane & 1 == 1) {
             let j = neighbours[lane];
-            let xi = bonds.vector::<D>(i, j);
+            let xi = bonds.vector::<D>(here, j);
             let energy = worked.bond_energy((first + k) * LANES + lane, xi, kept[lane]);
-            if energy > rule.classes.limits(i, j).energy && kept[2 * LANES + lane] > 0.0 {
+            if energy > rule.classes.limits(here, j).energy && kept[2 * LANES + lane] > 0.0 {
                 *broken |= 1 << lane;
             }
         }

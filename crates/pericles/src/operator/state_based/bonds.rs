@@ -9,9 +9,9 @@ use crate::lanes::{Lanes, Row, dot, vector};
 use crate::operator::list::stiffness::Stiffness;
 use crate::operator::records::Records;
 use crate::parallel::BLOCK;
-use crate::space::PointCloud;
+use crate::space::Sites;
 
-/// What the loops read of the points, in rows of four numbers, and of their bonds.
+/// What the loops read of the sites, in rows of four numbers, and of their bonds.
 pub(super) struct Layout {
     /// Reference coordinates in units of `unit`; behind them the stiffness s = B/m of the point's own force state, N/m⁴ per weighted volume, or the volume of the point where volumes or cells differ.
     reference: Vec<Row>,
@@ -22,16 +22,10 @@ pub(super) struct Layout {
     cell: f64,
 }
 
-/// The row of a neighbour among the rows of all points.
-///
-/// Neighbours of a list are numbers of points of the process; rows of ghosts come behind those of its own points.
-pub(super) fn slot(neighbour: usize) -> usize {
-    neighbour
-}
-
 impl Layout {
-    /// The layout of a body whose points have the stiffness s.
-    pub fn new(cloud: &PointCloud, stiffness: &[f64]) -> Self {
+    /// The layout of sites that have the stiffness s.
+    pub fn new(sites: &Sites, stiffness: &[f64]) -> Self {
+        let cloud = sites.places();
         let volumes = cloud.volumes();
         let first = cloud.cell_size(0);
         let alike =
@@ -66,22 +60,23 @@ impl Layout {
     }
 }
 
-/// Writes a vector on points and, behind its components, a number per point to rows.
+/// Writes a vector on points and, behind its components, a number for each site to the rows of all sites.
 pub(super) fn pack<const D: usize>(
     u: Field<'_>,
+    sites: &Sites,
     last: impl Fn(usize) -> f64 + Sync,
     rows: &mut [Row],
 ) {
-    let n = u.owned.len() / D;
     rows.par_chunks_mut(8 * BLOCK)
         .enumerate()
         .for_each(|(part, rows)| {
             let first = part * 8 * BLOCK;
-            for (k, row) in rows.iter_mut().enumerate() {
+            for (site, row) in (first..).zip(rows) {
+                let point = sites.point(site);
                 for c in 0..D {
-                    row[c] = u.owned[c * n + first + k];
+                    row[c] = u.at::<D>(c, point);
                 }
-                row[3] = last(first + k);
+                row[3] = last(site);
             }
         });
 }
@@ -127,6 +122,7 @@ pub(super) struct Bond<T, const D: usize> {
 impl<'a> SolidBonds<'a> {
     #[inline(always)]
     pub fn here<T: Lanes, const D: usize>(&self, i: usize, u: &Records) -> Here<T, D> {
+        let i = self.list.site(i);
         let reference = &self.layout.reference[i];
         let (stiffness, cell) = match &self.layout.own {
             Some(own) => (own[i][0], own[i][1]),
@@ -144,12 +140,12 @@ impl<'a> SolidBonds<'a> {
     /// The rows of the neighbours of a group.
     #[inline(always)]
     pub fn there<T: Lanes>(&self, group: usize, rows: &Records) -> [T; 4] {
-        assert!(rows.len() == self.list.len(), "a row for every point");
-        let mut indices = self.list.group(group);
-        for index in &mut indices {
-            *index = slot(*index);
-        }
-        // SAFETY: neighbours are below the number of points, which `BondList` guarantees, and there are as many rows.
+        assert!(
+            rows.len() == self.layout.reference.len(),
+            "a row for every site"
+        );
+        let indices = self.list.group(group);
+        // SAFETY: neighbours are below the number of sites, which `BondList` guarantees, and there are as many rows.
         unsafe { T::gather(rows, indices) }
     }
 
@@ -197,16 +193,16 @@ impl<'a> SolidBonds<'a> {
         }
     }
 
-    /// ξ of one bond, m.
-    pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
-        let (from, to) = (&self.layout.reference[i], &self.layout.reference[slot(j)]);
+    /// ξ of the bond between two sites, m.
+    pub fn vector<const D: usize>(&self, a: usize, b: usize) -> [f64; D] {
+        let (from, to) = (&self.layout.reference[a], &self.layout.reference[b]);
         std::array::from_fn(|c| (to[c] - from[c]) * self.layout.unit)
     }
 
-    /// ω of one entry that leads from i to j along ξ.
-    pub fn weight_of<const D: usize>(&self, entry: usize, [i, j]: [usize; 2], xi: [f64; D]) -> f64 {
-        let [_, from] = self.layout.volume_and_cell(i);
-        let [volume, to] = self.layout.volume_and_cell(slot(j));
+    /// ω of one entry that leads from site a to site b along ξ.
+    pub fn weight_of<const D: usize>(&self, entry: usize, [a, b]: [usize; 2], xi: [f64; D]) -> f64 {
+        let [_, from] = self.layout.volume_and_cell(a);
+        let [volume, to] = self.layout.volume_and_cell(b);
         let r = dot(xi, xi).sqrt();
         self.weight.of_entry(entry, r, volume, [from, to])
     }
@@ -220,7 +216,7 @@ impl SolidBonds<'_> {
     }
 }
 
-/// Difference of the vectors of two rows.
-pub(super) fn difference<const D: usize>(u: &Records, i: usize, j: usize) -> [f64; D] {
-    std::array::from_fn(|c| u[slot(j)][c] - u[i][c])
+/// Difference of the vectors of two sites.
+pub(super) fn difference<const D: usize>(u: &Records, a: usize, b: usize) -> [f64; D] {
+    std::array::from_fn(|c| u[b][c] - u[a][c])
 }

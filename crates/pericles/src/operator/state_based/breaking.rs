@@ -5,19 +5,20 @@
 
 use super::bonds::{SolidBonds, difference};
 use super::kinematics::Kinematics;
+use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
 use crate::material::{PairForce, SolidClasses};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
-use crate::step_end::{Path, StepEnd};
+use crate::step_end::StepEnd;
 
 /// The factors of every point's force state.
 pub(super) struct States {
     /// D/m: the dilatation is this times Σ ω r e.
     pub dilatation: Vec<f64>,
-    /// A/m: p over θ.
+    /// A/m of each site: p over θ.
     pub pressure: Vec<f64>,
-    /// s = B/m.
+    /// s = B/m of each site.
     pub stiffness: Vec<f64>,
     /// A/D, Pa: the energy density is this times θ²/2, and s/2 Σ g ω e².
     pub bulk: Vec<f64>,
@@ -37,6 +38,8 @@ pub(super) struct BreakRule<'a> {
     pub volumes: &'a [f64],
     /// The step that ended.
     pub step: &'a StepEnd<'a>,
+    /// Mean velocities over the step, where breaking asks for them.
+    pub velocity: Option<Field<'a>>,
     /// Note what breaks, so that the other end can be cleared.
     pub note_events: bool,
 }
@@ -65,16 +68,16 @@ pub(super) fn break_row<L: Kinematics, const D: usize>(
     intact: &mut [u8],
     tally: &mut Tally,
 ) -> bool {
-    let first = bonds.list.start()[i];
+    let (first, here) = (bonds.list.start()[i], bonds.list.site(i));
     let mut broken = vec![0; intact.len()];
     for (k, broken) in broken.iter_mut().enumerate() {
         let candidates = rule.candidates(first + k, intact[k]);
         let neighbours = bonds.list.group(first + k);
         for lane in (0..LANES).filter(|lane| candidates >> lane & 1 == 1) {
             let j = neighbours[lane];
-            let (xi, eta) = (bonds.vector::<D>(i, j), difference::<D>(u, i, j));
+            let (xi, eta) = (bonds.vector::<D>(here, j), difference::<D>(u, here, j));
             let (measure, square) = L::Measure::stretch_measure(xi, eta);
-            let limit = rule.classes.limits(i, j).stretch;
+            let limit = rule.classes.limits(here, j).stretch;
             if measure > L::Measure::threshold(limit) * square {
                 *broken |= 1 << lane;
             }
@@ -98,7 +101,9 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
         return false;
     }
     tally.broken.add(u64::from(count));
-    tally.dissipated += dissipated::<L, D>(bonds, rule, u, i, intact, broken);
+    tally
+        .dissipated
+        .add(dissipated::<L, D>(bonds, rule, u, i, intact, broken));
     let first = bonds.list.start()[i];
     for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
         *intact &= !broken;
@@ -132,31 +137,25 @@ fn dissipated<L: Kinematics, const D: usize>(
     intact: &[u8],
     broken: &[u8],
 ) -> f64 {
-    let velocity = match rule.step.path {
-        Path::MeanVelocity(velocity) => Some(velocity),
-        _ => None,
-    };
-    let first = bonds.list.start()[i];
+    let (first, here) = (bonds.list.start()[i], bonds.list.site(i));
+    let sites = bonds.list.sites();
     let (mut whole, mut lost) = (Sums::default(), Sums::default());
     for (k, intact) in intact.iter().enumerate() {
         let neighbours = bonds.list.group(first + k);
         for lane in (0..LANES).filter(|lane| intact >> lane & 1 == 1) {
             let j = neighbours[lane];
             let entry = (first + k) * LANES + lane;
-            let (xi, eta) = (bonds.vector::<D>(i, j), difference::<D>(u, i, j));
+            let (xi, eta) = (bonds.vector::<D>(here, j), difference::<D>(u, here, j));
             let square = dot(xi, xi);
             let t = strain::<L, D>(xi, eta);
             let stretch = L::exact_stretch(F64x8([t; LANES])).0[0];
             // dψ/dt with the mean velocity.
-            let rate = velocity.map_or(0.0, |velocity| {
-                let n = velocity.len() / D;
-                let direction = direction::<L, D>(xi, eta);
-                let along: f64 = (0..D)
-                    .map(|c| direction[c] * (velocity[c * n + j] - velocity[c * n + i]))
-                    .sum();
+            let rate = rule.velocity.map_or(0.0, |velocity| {
+                let relative = velocity.difference::<D>([i, sites.point(j)]);
+                let along = dot(direction::<L, D>(xi, eta), relative);
                 along * L::contraction(F64x8([t; LANES])).0[0] / square
             });
-            let weight = bonds.weight_of(entry, [i, j], xi) * square;
+            let weight = bonds.weight_of(entry, [here, j], xi) * square;
             let factor = bonds.factor_of(entry);
             whole.add(weight, factor, stretch, rate);
             if broken[k] >> lane & 1 == 1 {
@@ -169,10 +168,10 @@ fn dissipated<L: Kinematics, const D: usize>(
     let [loss, loss_rate] = lost.extension.map(|sum| states.dilatation[i] * sum);
     // θ² and its rate before less those after.
     let left = theta - loss;
-    let energy =
-        0.5 * states.bulk[i] * loss * (theta + left) + 0.5 * states.stiffness[i] * lost.square[0];
+    let energy = 0.5 * states.bulk[i] * loss * (theta + left)
+        + 0.5 * states.stiffness[here] * lost.square[0];
     let power = states.bulk[i] * (loss_rate * left + theta_rate * loss)
-        + states.stiffness[i] * lost.square[1];
+        + states.stiffness[here] * lost.square[1];
     let volume = rule.volumes[i];
     rule.step.dissipated_energy(volume * energy, volume * power)
 }

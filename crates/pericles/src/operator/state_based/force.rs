@@ -14,13 +14,14 @@ use crate::kernel::Influence;
 use crate::lanes::{LANES, Row, dot};
 use crate::material::{BondLimits, PairForce, SolidClasses, SolidSurface, SurfaceFactors};
 use crate::operator::damage::{BlockDamage, DamageMeasure};
+use crate::operator::list::other_ends::other_ends;
 use crate::operator::list::stiffness::Stiffness;
 use crate::operator::pool::{Lent, Pool};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::{InstructionSet, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block, for_each_point};
-use crate::space::PointCloud;
+use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
 
 /// The force density of linear peridynamic solids, N/m³, in two passes over a bond list:
@@ -82,8 +83,10 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let n = cloud.len();
         let weight = Weight::of_volumes(&cloud, &bonds, influence);
         let volumes = weighted_volumes::<D>(&cloud, &bonds, &weight);
-        let states = States::new::<D>(&volumes, &classes);
-        let layout = Layout::new(&cloud, &states.stiffness);
+        let sites = bonds.shared_sites();
+        let states = States::new::<D>(&volumes, &classes, &sites);
+        let classes = classes.on_sites(&sites);
+        let layout = Layout::new(&sites, &states.stiffness);
         let blocks = (0..n.div_ceil(BLOCK))
             .map(|block| {
                 let (from, to) = (block * BLOCK, ((block + 1) * BLOCK).min(n));
@@ -99,8 +102,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 true => vec![0.0; KEPT * bonds.present().len()],
                 false => Vec::new(),
             },
-            packed: Pool::new(1, move || vec![Row::default(); n]),
-            breakable: breakable(&bonds, no_fail),
+            packed: Pool::new(1, move || vec![Row::default(); sites.len()]),
+            breakable: bonds.breakable(no_fail),
             cloud,
             bonds,
             layout,
@@ -118,10 +121,11 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// The same with corrected surfaces; every bond keeps a number, a byte where there are few.
     pub fn with_surface(self, surface: SolidSurface, influence: &Influence) -> Self {
-        let factors = match surface.factors(&self.cloud, &self.bonds, influence, &self.classes) {
+        let factors = match surface.factors(&self.bonds, influence, &self.classes) {
             SurfaceFactors::None => None,
-            factors => Some(Stiffness::of_pairs(&self.bonds, &|i, j| {
-                factors.of_bond(i, j, self.bonds.vector(&self.cloud, i, j))
+            factors => Some(Stiffness::of_pairs(&self.bonds, &|i, b| {
+                let a = self.bonds.site(i);
+                factors.of_bond(a, b, self.bonds.vector(a, b))
             })),
         };
         Self {
@@ -159,15 +163,17 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Rows of displacements.
     pub(super) fn packed(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
         let mut rows = self.packed.take();
-        pack::<D>(u, |_| 0.0, &mut rows);
+        pack::<D>(u, self.bonds.sites(), |_| 0.0, &mut rows);
         rows
     }
 
     /// Rows of a vector and of p for the dilatations given.
     pub(super) fn packed_with(&self, u: Field<'_>, dilatations: Field<'_>) -> Lent<'_, Vec<Row>> {
         let mut rows = self.packed.take();
-        let pressure = |i: usize| self.states.pressure[i] * dilatations.owned[i];
-        pack::<D>(u, pressure, &mut rows);
+        let sites = self.bonds.sites();
+        let pressure =
+            |site: usize| self.states.pressure[site] * dilatations.at::<1>(0, sites.point(site));
+        pack::<D>(u, sites, pressure, &mut rows);
         rows
     }
 
@@ -202,7 +208,13 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         });
     }
 
-    fn rule<'a>(&'a self, step: &'a StepEnd<'a>, on: &On<'_>) -> BreakRule<'a> {
+    /// The rule of breaking for the points named by `on`; `velocity` holds the mean velocities over the step, where breaking asks for them.
+    fn rule<'a>(
+        &'a self,
+        step: &'a StepEnd<'a>,
+        velocity: Option<Field<'a>>,
+        on: &On<'_>,
+    ) -> BreakRule<'a> {
         BreakRule {
             threshold: L::Measure::threshold(self.weakest.stretch),
             energy: self.weakest.energy,
@@ -211,6 +223,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             states: &self.states,
             volumes: self.cloud.volumes(),
             step,
+            velocity,
             note_events: !matches!(on, On::All),
         }
     }
@@ -226,7 +239,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let n = self.cloud.len();
         let mut blocks = std::mem::take(&mut self.blocks);
         let bonds = self.view();
-        let rule = self.rule(step, on);
+        let ghosts = self.ghost_velocities(step);
+        let rule = self.rule(step, with_ghosts(step, &ghosts), on);
         let u = self.packed(u);
         for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
             let len = n.min(first + BLOCK) - first;
@@ -268,7 +282,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let ghosts = self.cloud.domain().ghosts(dilatations);
         // These rows hold the dilatations from before: those of points that lose bonds change.
         let u = self.packed_with(u, Field::new(dilatations, &ghosts));
-        let rule = self.rule(step, on);
+        let moved = self.ghost_velocities(step);
+        let rule = self.rule(step, with_ghosts(step, &moved), on);
         let worked = Worked {
             bonds: self.view(),
             influence,
@@ -298,30 +313,31 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         self.work = work;
     }
 
+    /// The mean velocities of ghosts over a step, m/s; none where breaking does not ask for them.
+    fn ghost_velocities(&self, step: &StepEnd<'_>) -> Vec<f64> {
+        let velocities = step.mean_velocities();
+        velocities.map_or_else(Vec::new, |own| self.cloud.domain().ghosts(own))
+    }
+
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
     fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
+        if !rule.note_events {
+            return;
+        }
         let bonds = self.view();
         let rule = BreakRule {
             note_events: false,
             ..*rule
         };
-        for b in 0..blocks.len() {
-            let events = std::mem::take(&mut blocks[b].tally.events);
-            for event in events {
-                let here = event.point as usize;
-                let j = self.bonds.neighbour(event.entry);
-                let Some((back, _)) = self.bonds.family(j).find(|&(_, other)| other == here) else {
-                    continue;
-                };
-                let BlockDamage { intact, tally } = &mut blocks[j / BLOCK];
-                let first = self.bonds.start()[j / BLOCK * BLOCK];
-                let groups = self.bonds.groups(j);
-                let intact = &mut intact[groups.start - first..groups.end - first];
-                let mut broken = vec![0; intact.len()];
-                let group = back / LANES - groups.start;
-                broken[group] = intact[group] & 1 << (back % LANES);
-                take_bonds::<L, D>(&bonds, &rule, u, j, intact, &broken, tally);
-            }
+        for (j, back, _) in other_ends(&self.bonds, blocks) {
+            let BlockDamage { intact, tally } = &mut blocks[j / BLOCK];
+            let first = self.bonds.start()[j / BLOCK * BLOCK];
+            let groups = self.bonds.groups(j);
+            let intact = &mut intact[groups.start - first..groups.end - first];
+            let mut broken = vec![0; intact.len()];
+            let group = back / LANES - groups.start;
+            broken[group] = intact[group] & 1 << (back % LANES);
+            take_bonds::<L, D>(&bonds, &rule, u, j, intact, &broken, tally);
         }
     }
 
@@ -338,7 +354,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
 impl States {
     /// The factors for these weighted volumes; points without bonds have none.
-    fn new<const D: usize>(volumes: &[f64], classes: &SolidClasses) -> Self {
+    fn new<const D: usize>(volumes: &[f64], classes: &SolidClasses, sites: &Sites) -> Self {
         let over = |value: f64, volume: f64| if volume > 0.0 { value / volume } else { 0.0 };
         let of = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
             let volumes = volumes.iter().enumerate();
@@ -346,13 +362,18 @@ impl States {
         };
         Self {
             dilatation: of(&|_| D as f64),
-            pressure: of(&|i| classes.constants(i)[0]),
-            stiffness: of(&|i| classes.constants(i)[1]),
+            pressure: sites.spread(&of(&|i| classes.constants(i)[0])).into_owned(),
+            stiffness: sites.spread(&of(&|i| classes.constants(i)[1])).into_owned(),
             bulk: (0..volumes.len())
                 .map(|i| classes.constants(i)[0] / D as f64)
                 .collect(),
         }
     }
+}
+
+fn with_ghosts<'a>(step: &StepEnd<'a>, ghosts: &'a [f64]) -> Option<Field<'a>> {
+    let velocities = step.mean_velocities();
+    velocities.map(|own| Field::new(own, ghosts))
 }
 
 /// The blocks with the part of what is kept of bonds that belongs to each.
@@ -375,8 +396,8 @@ fn weighted_volumes<const D: usize>(
     bonds: &BondList,
     weight: &Weight,
 ) -> Vec<f64> {
-    let nothing = vec![0.0; cloud.len()];
-    let layout = Layout::new(cloud, &nothing);
+    let nothing = vec![0.0; bonds.sites().len()];
+    let layout = Layout::new(bonds.sites(), &nothing);
     let view = SolidBonds {
         list: bonds,
         layout: &layout,
@@ -388,28 +409,11 @@ fn weighted_volumes<const D: usize>(
             .family(i)
             .filter(|&(entry, _)| bonds.is_present(entry));
         family
-            .map(|(entry, j)| {
-                let xi = view.vector::<D>(i, j);
-                view.weight_of(entry, [i, j], xi) * dot(xi, xi)
+            .map(|(entry, b)| {
+                let a = bonds.site(i);
+                let xi = view.vector::<D>(a, b);
+                view.weight_of(entry, [a, b], xi) * dot(xi, xi)
             })
             .sum()
     })
-}
-
-/// One bit per entry that may break; none if all may.
-fn breakable(bonds: &BondList, no_fail: &[u32]) -> Option<Vec<u8>> {
-    if no_fail.is_empty() {
-        return None;
-    }
-    let mut held = vec![false; bonds.len()];
-    for &i in no_fail {
-        held[i as usize] = true;
-    }
-    let mut breakable = vec![0u8; bonds.geometric().len()];
-    for i in (0..bonds.len()).filter(|&i| !held[i]) {
-        for (entry, _) in bonds.family(i).filter(|&(_, j)| !held[j]) {
-            breakable[entry / LANES] |= 1 << (entry % LANES);
-        }
-    }
-    Some(breakable)
 }

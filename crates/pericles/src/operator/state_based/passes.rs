@@ -61,7 +61,8 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
                 let theta = at.values.owned[i];
-                let (bulk, stiffness) = (self.states.bulk[i], self.states.stiffness[i]);
+                let stiffness = self.states.stiffness[self.bonds.site(i)];
+                let bulk = self.states.bulk[i];
                 *energy += 0.5 * (bulk * theta * theta + stiffness * squares[i]);
             }
         });
@@ -71,19 +72,19 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let bonds = self.view();
         let dimension = D as f64;
-        let stiffness = |i: usize, factor: f64| {
-            let dilatational = (dimension * self.states.pressure[i]).max(0.0);
-            dilatational + factor * self.states.stiffness[i]
+        let stiffness = |site: usize, factor: f64| {
+            let dilatational = (dimension * self.states.pressure[site]).max(0.0);
+            dilatational + factor * self.states.stiffness[site]
         };
         let mut largest: f64 = 0.0;
         for i in 0..self.cloud.len() {
-            let family = self.bonds.family(i);
+            let (family, here) = (self.bonds.family(i), self.bonds.site(i));
             let row: f64 = family
                 .filter(|&(entry, _)| self.is_intact(i, entry))
-                .map(|(entry, j)| {
-                    let weight = bonds.weight_of(entry, [i, j], bonds.vector::<D>(i, j));
+                .map(|(entry, b)| {
+                    let weight = bonds.weight_of(entry, [here, b], bonds.vector::<D>(here, b));
                     let factor = bonds.factor_of(entry);
-                    weight.abs() * (stiffness(i, factor) + stiffness(j, factor))
+                    weight.abs() * (stiffness(here, factor) + stiffness(b, factor))
                 })
                 .sum();
             largest = largest.max(2.0 * row / density(i));
@@ -96,9 +97,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let family = self.bonds.family(i);
-        let present = family.filter(|&(entry, _)| self.bonds.is_present(entry));
-        present.for_each(|(_, j)| visit(j));
+        self.bonds.for_each_neighbour(i, visit);
     }
 
     /// A critical stretch is decided in the pass over points itself; the bond energy after it, for it needs the dilatations of both ends.
@@ -135,8 +134,9 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         Some(self)
     }
 
+    /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
     fn bonds(&self) -> Option<&dyn BondView> {
-        Some(self)
+        (!self.cloud.domain().is_divided()).then_some(self)
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -163,7 +163,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
 
 impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     fn dissipated(&self) -> f64 {
-        damage::dissipated(&self.blocks)
+        damage::dissipated(self.cloud.domain(), &self.blocks)
     }
 
     fn dissipate(&mut self, energy: f64) {
@@ -176,7 +176,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     }
 
     fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(&self.blocks)
+        damage::broken_bonds(self.cloud.domain(), &self.blocks)
     }
 
     fn can_break(&self) -> bool {
@@ -187,14 +187,15 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         for_each_chunk(out, &|first, out| {
             for (i, damage) in (first..).zip(out) {
                 let (mut whole, mut left) = (0.0, 0.0);
-                for (entry, j) in self.bonds.family(i) {
+                let here = self.bonds.site(i);
+                for (entry, b) in self.bonds.family(i) {
                     if !(self.bonds.is_present(entry) || self.damage.count_precut) {
                         continue;
                     }
                     let weight = if self.damage.count {
                         1.0
                     } else {
-                        self.bonds.volume_factor(&self.cloud, i, j) * self.cloud.volumes()[j]
+                        self.bonds.volume_factor(here, b) * self.bonds.volume(b)
                     };
                     whole += weight;
                     if self.is_intact(i, entry) {
@@ -209,8 +210,10 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         for i in 0..self.cloud.len() {
             let family = self.bonds.family(i);
-            for (_, j) in family.filter(|&(entry, j)| j > i && self.is_intact(i, entry)) {
-                visit(i, j);
+            for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
+                if let Some(j) = self.bonds.sites().own_point(b).filter(|&j| j > i) {
+                    visit(i, j);
+                }
             }
         }
     }
@@ -229,9 +232,10 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         };
         let ghosts = self.cloud.domain().ghosts(u);
         let u = self.packed(Field::new(u, &ghosts));
-        let over = |i: usize, entry: usize, j: usize| {
-            let (xi, limits) = (bonds.vector::<D>(i, j), self.classes.limits(i, j));
-            let (measure, square) = L::Measure::stretch_measure(xi, difference::<D>(&u, i, j));
+        let over = |i: usize, entry: usize, b: usize| {
+            let a = self.bonds.site(i);
+            let (xi, limits) = (bonds.vector::<D>(a, b), self.classes.limits(a, b));
+            let (measure, square) = L::Measure::stretch_measure(xi, difference::<D>(&u, a, b));
             let worked = worked.as_ref().is_some_and(|worked| {
                 let kept = self.work[entry / LANES * KEPT + entry % LANES];
                 worked.bond_energy(entry, xi, kept) > fraction * limits.energy

@@ -17,9 +17,8 @@ pub(super) struct Weight {
 impl Weight {
     /// w b V.
     pub fn of_volumes(cloud: &PointCloud, bonds: &BondList, influence: &Influence) -> Self {
-        let volumes = cloud.volumes();
-        Self::new(cloud, bonds, influence, bonds.correction(), &|i, j| {
-            bonds.volume_factor(cloud, i, j) * volumes[j]
+        Self::new(cloud, bonds, influence, bonds.correction(), &|a, b| {
+            bonds.volume_factor(a, b) * bonds.volume(b)
         })
     }
 
@@ -40,8 +39,9 @@ impl Weight {
             .uniform_horizon()
             .and_then(|horizon| first_degree(&influence.function, horizon));
         let Some((coefficients, over_length)) = first_degree else {
-            let weight = |i: usize, j: usize| {
-                influence.alpha_of(bonds.vector(cloud, i, j), horizon) * volume(i, j)
+            let weight = |i: usize, b: usize| {
+                let a = bonds.site(i);
+                influence.alpha_of(bonds.vector(a, b), horizon) * volume(a, b)
             };
             return Self {
                 values: Stiffness::of_pairs(bonds, &weight),

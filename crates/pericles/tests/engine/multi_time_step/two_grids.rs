@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pericles::domain::Field;
 use pericles::family::VolumeCorrection;
 use pericles::material::{
     BondMaterial, CubicLaw, ElasticModulus, Fracture, FractureCalibration, InterfaceRule, Modulus,
@@ -269,7 +270,7 @@ fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
         let mut left = [0; 3];
         for i in 0..cloud.len() {
             let view = force.as_bonds().unwrap();
-            view.for_each_bond(&u, i, &mut |bond| {
+            view.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
                 left[usize::from(is_fine(i)) + usize::from(is_fine(bond.neighbour))] += 1;
             });
         }
@@ -299,7 +300,7 @@ fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
         let mut energy = 0.0;
         for i in (0..cloud.len()).filter(inside) {
             let view = force.as_bonds().unwrap();
-            view.for_each_bond(&u, i, &mut |bond| {
+            view.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
                 let [a, b] = [i, bond.neighbour].map(|i| cloud.axis(0)[i]);
                 if (a - line) * (b - line) > 0.0 {
                     return;
