@@ -77,9 +77,8 @@ impl Assembler<'_> {
                 "a surface correction",
             ),
         ];
-        let others = others
-            .into_iter()
-            .filter_map(|(feature, present, words)| present.then(|| (feature, words.to_owned())));
+        let others = others.into_iter().filter(|(_, present, _)| *present);
+        let others = others.map(|(feature, _, words)| (feature, words.to_owned()));
         of_law.into_iter().chain(others).collect()
     }
 }
