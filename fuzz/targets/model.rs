@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use pericles_deck::Deck;
-use pericles_run::{Resources, build};
+use pericles_run::{FileError, Resources, build};
 use pericles_fuzz::{Memory, advance};
 
 /// Bytes that a body may take: some hundred points, so that most inputs take less than a millisecond.
@@ -32,7 +32,8 @@ pericles_fuzz::target!(|content: &str| {
     let Ok(deck) = Deck::parse(content, "a.toml", &[]) else {
         return;
     };
-    let read_points = |_: &std::path::Path, _: usize| Err("no file".to_owned());
+    let read_points =
+        |_: &std::path::Path, _: usize, _: u64| Err(FileError::Wrong("no file".to_owned()));
     let resources = Resources {
         memory: MEMORY,
         cache: &*KEPT,
@@ -40,6 +41,8 @@ pericles_fuzz::target!(|content: &str| {
         ..Resources::default()
     };
     if let Ok(model) = build(&deck, &resources) {
-        advance(&mut model.simulation(), STEPS);
+        let simulation = model.simulation();
+        let mut simulation = simulation.unwrap_or_else(|error| panic!("{error}"));
+        advance(&mut simulation, STEPS);
     }
 });

@@ -26,7 +26,8 @@ thread_local! {
 fn begun(text: &str) -> Run {
     let deck = Deck::parse(text, "a.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
     let model = build(&deck, &Resources::default()).unwrap_or_else(|error| panic!("{error}"));
-    let mut simulation = model.simulation();
+    let simulation = model.simulation();
+    let mut simulation = simulation.unwrap_or_else(|error| panic!("{error}"));
     advance(&mut simulation, BEFORE);
     let stored = state(&simulation);
     Run { simulation, stored }
