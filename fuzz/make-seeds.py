@@ -72,6 +72,33 @@ def gmsh():
     write("gmsh", "4-binary", binary + b"\n$EndElements\n")
 
 
+def abaqus():
+    nodes = "*NODE, NSET=N\n" + "".join(f"{k + 1}, " + ", ".join(map(str, x)) + "\n" for k, x in enumerate(X))
+    tet = "*ELEMENT, TYPE=C3D4, ELSET=E\n1, 1, 2, 3, 4\n"
+    write("abaqus", "flat", "*HEADING\n" + nodes + tet + "*ELSET, ELSET=G, GENERATE\n1, 9, 2\n*SURFACE, NAME=S\nE, S2\n*SURFACE, NAME=F\nE,\n*STEP\n")
+    write("abaqus", "instances", "*PART, NAME=P\n" + nodes + tet + "*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=I, PART=P\n1, 0, 0\n0, 0, 0, 0, 0, 1, 90\n"
+          "*END INSTANCE\n*INSTANCE, NAME=J, PART=P\n*END INSTANCE\n*NSET, NSET=M\nI.N, J.N\n*ELSET, ELSET=O, INSTANCE=J\n1\n*END ASSEMBLY\n")
+
+
+def exodus():
+    text = lambda word: struct.pack(">I", len(word)) + word.encode() + bytes(-len(word) % 4)
+    dimensions = [("nodes", 4), ("elements", 1), ("num_el_blk", 1), ("num_node_sets", 1), ("num_side_sets", 1)]
+    variables = [(f"coord{axis}", [0], 6, struct.pack(">4d", *(x[c] for x in X)), None) for c, axis in enumerate("xyz")]
+    variables += [("connect1", [1, 0], 4, struct.pack(">4i", 1, 2, 3, 4), "TETRA"), ("eb_prop1", [2], 4, struct.pack(">i", 1), None),
+                  ("node_ns1", [3], 4, struct.pack(">i", 2), None), ("elem_ss1", [4], 4, struct.pack(">i", 1), None), ("side_ss1", [4], 4, struct.pack(">i", 3), None)]
+    for version in (1, 2):
+        def header(begin):
+            out = b"CDF" + bytes([version]) + struct.pack(">III", 0, 10, len(dimensions))
+            out += b"".join(text(name) + struct.pack(">I", length) for name, length in dimensions) + struct.pack(">IIII", 0, 0, 11, len(variables))
+            for name, own, kind, data, attribute in variables:
+                out += text(name) + struct.pack(f">I{len(own)}I", len(own), *own)
+                out += struct.pack(">II", 12, 1) + text("elem_type") + struct.pack(">I", 2) + text(attribute) if attribute else struct.pack(">II", 0, 0)
+                out += struct.pack(">IIQ" if version == 2 else ">III", kind, len(data), begin)
+                begin += len(data)
+            return out
+        write("exodus", f"cdf-{version}", header(len(header(0))) + b"".join(data for _, _, _, data, _ in variables))
+
+
 def vtk_arrays(kind):
     """Arrays as (name, type, components, numbers)."""
     flat = lambda rows: [v for row in rows for v in row]
@@ -192,7 +219,7 @@ def texts():
             write(target, f"{k}", bytes([k]) + bytes(range(1, 20)))
 
 
-for make in [obj, off, ply, stl, gmsh, points, checkpoint, models, texts]:
+for make in [obj, off, ply, stl, gmsh, abaqus, exodus, points, checkpoint, models, texts]:
     make()
 for kind in ["vtu", "vtp"]:
     vtk(kind)

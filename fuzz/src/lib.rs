@@ -138,6 +138,13 @@ pub fn surface(name: &str, content: &[u8]) {
     }
 }
 
+/// Reads a mesh; one that can be read becomes points with sets.
+pub fn mesh(name: &str, content: &[u8]) {
+    if let Ok(mesh) = pericles_io::parse_mesh(name, content, MEMORY) {
+        let _ = mesh.points(&Default::default());
+    }
+}
+
 /// Bytes taken from the front of an input; zeros once it is used up.
 pub struct Choices<'a>(pub &'a [u8]);
 

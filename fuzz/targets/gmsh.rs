@@ -1,4 +1,7 @@
 #![no_main]
-//! Surfaces from `.msh` files.
+//! Surfaces and meshes from `.msh` files.
 
-pericles_fuzz::target!(|content: &[u8]| pericles_fuzz::surface("a.msh", content));
+pericles_fuzz::target!(|content: &[u8]| {
+    pericles_fuzz::surface("a.msh", content);
+    pericles_fuzz::mesh("a.msh", content);
+});

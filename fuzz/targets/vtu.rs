@@ -1,7 +1,8 @@
 #![no_main]
-//! Surfaces and fields from `.vtu` files.
+//! Surfaces, meshes and fields from `.vtu` files.
 
 pericles_fuzz::target!(|content: &[u8]| {
     pericles_fuzz::surface("a.vtu", content);
+    pericles_fuzz::mesh("a.vtu", content);
     let _ = pericles_io::parse_fields("a.vtu", content, pericles_fuzz::MEMORY);
 });

@@ -8,7 +8,7 @@ use pericles_mesh::fill::{
 
 type Point = [f64; 3];
 
-/// Triangles of the convex hull of a prism over a polygon in the plane z = 0, from z = 0 to 1; the polygon runs counter-clockwise.
+/// Triangles of a prism over a convex polygon that runs counter-clockwise, between two heights.
 fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
     let n = polygon.len() as u32;
     let at = |z: f64| polygon.iter().map(move |p| [p[0], p[1], z]);
@@ -76,8 +76,7 @@ fn nodes(filled: &Filled) -> Vec<[i64; 3]> {
 
 #[test]
 fn a_cut_through_nodes_gives_each_node_to_exactly_one_half() {
-    // A cube of side 15 + 1 around the origin with nodes at multiples of 1, cut along its diagonal plane x = y, which passes through nodes, and along the plane x = 0 of nodes.
-    // The boxes of the halves differ, so the cube and its halves are put beside a far small box that keeps the lattice the same.
+    // A cube of side 16 with nodes at −7.5, −6.5, … along each axis, cut along its diagonal plane x = y and along the plane x = 0.5, which both pass through nodes.
     let h = 8.0;
     let frame = [[-h, -h], [h, -h], [h, h], [-h, h]];
     let halves: [[Vec<[f64; 2]>; 2]; 2] = [
@@ -90,7 +89,6 @@ fn a_cut_through_nodes_gives_each_node_to_exactly_one_half() {
             vec![[0.5, -h], [h, -h], [h, h], [0.5, h]],
         ],
     ];
-    // 16 nodes along each axis at −7.5, −6.5, …: x = 0.5 and x = y pass through nodes.
     for symmetry in symmetries() {
         let whole = fill(&surface(prism(&frame, -h, h), symmetry), [1.0; 3]).unwrap();
         assert_eq!(whole.len(), 4096);
@@ -206,7 +204,9 @@ fn balls_overlaps_and_cavities_hold_the_right_nodes() {
     };
     let ball = |radius, centre| ball(5, radius, [centre, 0.0, 0.0]);
     type Inside<'a> = Box<dyn Fn(Point) -> bool + 'a>;
-    let cases: Vec<(TriangleSurface, Inside<'_>, Vec<(f64, f64)>)> = vec![
+    // Surface, what is inside, centres and radii of the spheres.
+    type Case<'a> = (TriangleSurface, Inside<'a>, Vec<(f64, f64)>);
+    let cases: Vec<Case<'_>> = vec![
         (
             together(&[ball(1.0, 0.0)], &[false]),
             Box::new(|x| is_in(x, 0.0, 1.0)),

@@ -35,7 +35,7 @@ impl Lattice {
                 .ceil()
                 .max(1.0);
             nodes *= count;
-            if !(nodes <= MOST_NODES) {
+            if nodes > MOST_NODES || nodes.is_nan() {
                 let most = MOST_NODES;
                 return Err(FillError::TooMany { nodes, most });
             }

@@ -297,7 +297,7 @@ impl MeshPoints {
         };
         // Centroids lie half an element inside.
         let side = (0..3).map(extent).fold(0.0, f64::max) + self.mean_size();
-        if side < LIKELY_SIDES[0] || side > LIKELY_SIDES[1] {
+        if !(LIKELY_SIDES[0]..=LIKELY_SIDES[1]).contains(&side) {
             self.warnings.push(Problem::DoubtfulUnit { side });
         }
     }

@@ -66,7 +66,7 @@ pub fn blue_noise(
     for c in 0..dimension {
         let count = ((bounds[1][c] - bounds[0][c]) / side).ceil().max(1.0);
         cells *= count;
-        if !(cells <= MOST_CELLS) {
+        if cells > MOST_CELLS || cells.is_nan() {
             return Err(FillError::TooMany {
                 nodes: cells,
                 most: MOST_CELLS,
