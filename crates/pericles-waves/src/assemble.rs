@@ -80,7 +80,8 @@ fn convolution_is_fastest(body: &BondBody<'_>, features: Features) -> bool {
     if ForceForm::Convolution.refusal(features).is_some() {
         return false;
     }
-    if ForceForm::List.refusal(features).is_some() || features.has(Feature::GaussNodes) {
+    // The estimate of costs is that of free faces.
+    if features.has(Feature::PeriodicFaces) || features.has(Feature::GaussNodes) {
         return true;
     }
     let (material, cloud) = (body.material, body.cloud);

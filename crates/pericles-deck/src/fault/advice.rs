@@ -65,11 +65,6 @@ impl Subject for Fault {
             }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
             Self::NoTensors { .. } => "leave these fields out".into(),
-            Self::NotPeriodic { .. } => {
-                "a periodic body needs model = \"linear\" and bonds that never break, without pre-cracks, inclusions, parts and surface correction; \
-                 `bonds` is then left out, \"fastest\", \"convolution\" or \"spectral\""
-                    .into()
-            }
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::EmptyWindow { .. } => {
                 "give a larger window, or move the centre of the exact solution into the body".into()
@@ -149,7 +144,6 @@ impl Subject for Fault {
             Self::FineSetsOverlap { .. } => "overlap",
             Self::UnknownArea { .. } => "which area?",
             Self::NoTensors { .. } => "not available",
-            Self::NotPeriodic { .. } => "not with periodic faces",
             Self::NoExactSolution { .. } => "of another problem",
             Self::EmptyWindow { .. } => "no point",
             Self::LongSum { .. } => "too many terms",

@@ -318,12 +318,6 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
-    /// A periodic body with what periodic bodies cannot have.
-    #[error("a periodic body cannot have {}", conflicts.join(", "))]
-    NotPeriodic {
-        /// The keys that stand against it.
-        conflicts: Vec<String>,
-    },
     /// An exact solution of another problem.
     #[error("this exact solution does not belong to this deck: {reason}")]
     NoExactSolution {

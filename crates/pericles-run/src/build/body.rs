@@ -71,11 +71,6 @@ impl Assembler<'_> {
         let (bonds, cracks) = self.bonds(solid, composite, (grids, &materials), warnings)?;
         let refused = bonds.form.refusal(Feature::Tensors.into());
         if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
-            // A periodic body has no choice of forms.
-            let reason = match solid.shape.is_periodic() {
-                true => "periodic bodies keep no list of bonds",
-                false => reason,
-            };
             return Err(at_path(self.tensor_key(), Fault::NoTensors { reason }));
         }
         Ok(BodyParts {
@@ -209,13 +204,8 @@ impl Assembler<'_> {
         } else {
             let form = match solid.material.form {
                 ForceForm::Fastest
-                    if self.model.output.wants_tensors() && !solid.shape.is_periodic() =>
-                {
-                    ForceForm::List
-                }
-                ForceForm::Fastest
-                    if has_need(&self.model.time.scheme, Need::FiniteReach)
-                        && !solid.shape.is_periodic() =>
+                    if self.model.output.wants_tensors()
+                        || has_need(&self.model.time.scheme, Need::FiniteReach) =>
                 {
                     composite.fastest_form().into()
                 }

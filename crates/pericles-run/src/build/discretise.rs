@@ -55,10 +55,7 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
             let (surface, cloud) = assembler.surface_points(body, resources)?;
             (GradedCloud::of_one_grid(cloud), Some(Arc::new(surface)))
         }
-        Body::Solid(solid) => {
-            assembler.check_periodic(solid)?;
-            (assembler.points(solid, resources, &mut warnings)?, None)
-        }
+        Body::Solid(solid) => (assembler.points(solid, resources, &mut warnings)?, None),
     };
     Ok(Discretisation {
         sets: assembler.select(&points.cloud)?,

@@ -19,7 +19,6 @@ mod graded;
 mod loads;
 mod memory;
 mod parts;
-mod periodic;
 mod plausible;
 mod points;
 mod refusal;

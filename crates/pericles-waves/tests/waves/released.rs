@@ -57,6 +57,7 @@ fn pulled(law: PairLaw, held: bool) -> System {
             &still,
             cloud.len(),
         )
+        .unwrap()
     };
     let mut right = motion("right", 37..40, 0.01);
     right.until = Some(UNTIL);
@@ -118,7 +119,7 @@ fn simulation(law: PairLaw, held: bool, make: Make, dt: f64) -> Simulation {
     let scheme = make(&system);
     let mut state = State::at_rest(system.points());
     state.v[37..40].fill(0.01);
-    Simulation::new(system, scheme, state, dt, (END / dt).round() as u64)
+    Simulation::new(system, scheme, state, dt, (END / dt).round() as u64).unwrap()
 }
 
 fn ended(law: PairLaw, held: bool, make: Make, dt: f64) -> Simulation {

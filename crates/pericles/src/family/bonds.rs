@@ -79,7 +79,7 @@ impl BondList {
     ) -> Result<Self> {
         positive("the horizon", horizon)?;
         let reach = correction.reach(horizon, cloud.spacing());
-        let sites = Sites::new(cloud, reach);
+        let sites = Sites::new(cloud, reach)?;
         let horizons = Horizons::Uniform(horizon);
         Self::of_sites(sites, reach, horizons, correction, &|_, _, r| r <= reach)
     }
@@ -99,7 +99,7 @@ impl BondList {
         }
         let largest = horizons.iter().copied().fold(0.0, f64::max);
         let reach = correction.reach(cloud.domain().max(largest), cloud.spacing());
-        let sites = Sites::new(cloud, reach);
+        let sites = Sites::new(cloud, reach)?;
         let horizons = sites.spread(&horizons).into_owned();
         let places = sites.places();
         let wanted = |a: usize, b: usize, distance: f64| {

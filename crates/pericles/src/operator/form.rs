@@ -17,20 +17,12 @@ pub enum BondForm {
     List,
 }
 
-const PERIODIC_FACES: Limit = Limit::new(
-    Feature::PeriodicFaces,
-    "it does not follow bonds through periodic faces; use \"convolution\" or \"spectral\"",
-);
-
 const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
-
-const OF_LIST: &[Limit] = &[PERIODIC_FACES];
 
 const OF_GRID: &[Limit] = &[
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,
-    PERIODIC_FACES,
     Limit::listed_law(Feature::GreenStrainBar),
     Limit::listed_law(Feature::GreenStrain),
     Limit::listed_law(Feature::OtherCubic),
@@ -56,7 +48,7 @@ impl BondForm {
     /// What the form does not represent; the first limit that a body exceeds is the reason of its refusal. The fastest form is a list where a grid is not possible.
     pub fn limits(self) -> &'static [Limit] {
         match self {
-            Self::Fastest | Self::List => OF_LIST,
+            Self::Fastest | Self::List => &[],
             Self::Grid | Self::FloatGrid => OF_GRID,
         }
     }

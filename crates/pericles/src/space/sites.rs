@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{Lattice, PointCloud};
 use crate::domain::Domain;
+use crate::error::{PericlesError, Result};
 
 /// The places that the bonds of a body lead to: own points, *ghosts* that other processes own, and *images* of both beyond periodic faces.
 ///
@@ -33,11 +34,28 @@ struct Map {
 }
 
 impl Sites {
+    /// Periods that bonds may lead through a body at most.
+    pub const PERIODS: f64 = 100.0;
+
     /// The sites of a cloud that bonds up to this length (m) may lead to.
-    pub fn new(cloud: &Arc<PointCloud>, reach: f64) -> Self {
+    ///
+    /// # Errors
+    /// Bonds that lead through a periodic body more than [`Sites::PERIODS`] times.
+    pub fn new(cloud: &Arc<PointCloud>, reach: f64) -> Result<Self> {
         let domain = cloud.domain();
         if domain.ghost_points() == 0 && !cloud.is_periodic() {
-            return Self::of_points(cloud);
+            return Ok(Self::of_points(cloud));
+        }
+        if let (Some(lattice), true) = (cloud.lattice(), cloud.is_periodic()) {
+            let sides = &lattice.shape[..cloud.dimension()];
+            let shortest = sides.iter().copied().min().unwrap_or(1) as f64 * lattice.spacing;
+            if reach / shortest > Self::PERIODS {
+                return Err(PericlesError::OutOfRange {
+                    quantity: "the reach of bonds over the shortest side of the periodic body",
+                    value: reach / shortest,
+                    allowed: "at most 100; bonds = \"convolution\" and \"spectral\" reach any distance",
+                });
+            }
         }
         let points = cloud.with_ghost_points();
         let shifts = match (cloud.is_periodic(), points.lattice()) {
@@ -63,7 +81,7 @@ impl Sites {
             }
         }
         let moved: Vec<([i16; 3], u32)> = sites.iter().map(|&(s, point, _)| (s, point)).collect();
-        Self {
+        Ok(Self {
             places: Arc::new(points.moved_points(&moved)),
             cloud: cloud.clone(),
             map: Some(Map {
@@ -72,7 +90,7 @@ impl Sites {
                 shift: moved.iter().map(|&(shift, _)| shift).collect(),
                 number: sites.iter().map(|&(_, _, number)| number).collect(),
             }),
-        }
+        })
     }
 
     /// The own points alone.

@@ -229,7 +229,7 @@ fn bell(case: &Case, dt: f64) -> Simulation {
     for (v, x) in state.v.iter_mut().zip(system.cloud().axis(0)) {
         *v = 2.0 * (x - 8.0) * (-(x - 8.0).powi(2)).exp() + 0.1;
     }
-    Simulation::new(system, scheme, state, dt, (15.0 / dt).round() as u64)
+    Simulation::new(system, scheme, state, dt, (15.0 / dt).round() as u64).unwrap()
 }
 
 /// Displacements at the end, the energy balance over the energy at the start, and what the momentum is off by from the impulse of the layer, over the impulse.
@@ -312,7 +312,7 @@ fn schemes_without_a_velocity_to_damp_are_refused() {
     assert!(newton.contains("fixed-point"), "{newton}");
     // A layer made for other steps is found when the run begins.
     let state = pulse(&system, 0.0);
-    let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, DT, 10);
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, DT, 10).unwrap();
     let refused = run.run(|_| Control::Continue).err().unwrap().to_string();
     assert!(refused.contains("velocity-verlet"), "{refused}");
 }

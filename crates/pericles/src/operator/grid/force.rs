@@ -127,7 +127,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
                 constants.micromodulus * material.influence.alpha_of(xi, material.horizon)
             },
         };
-        let sites = Sites::new(&cloud, rule.reach);
+        let sites = Sites::new(&cloud, rule.reach)?;
         let lattice = sites.places().lattice().unwrap_or(lattice);
         let layout = GridLayout::new(&sites, lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);

@@ -363,7 +363,7 @@ fn torn() -> Simulation {
     }
     let omega = highest_frequency(&system, &start.u).unwrap();
     let dt = omega.stable_step(2.0, 0.5);
-    Simulation::new(system, Box::new(VelocityVerlet), start, dt, 300)
+    Simulation::new(system, Box::new(VelocityVerlet), start, dt, 300).unwrap()
 }
 
 #[test]
@@ -425,7 +425,7 @@ fn several_materials_divided_everywhere_are_those_of_small_cells() {
         .each_ref()
         .map(|own| own.constants(&plain, state).unwrap());
     let mut classes = PairClasses::new(number(&plain), &constants, InterfaceRule::Weaker).unwrap();
-    classes.set_critical_stretch([0, 1], 2e-4);
+    classes.set_critical_stretch([0, 1], 2e-4).unwrap();
     let composite = CompositeBody {
         body: BondBody::new(&plain, &own[0], &constants[0]),
         classes: Some(&classes),
