@@ -94,6 +94,11 @@ impl SolidClasses {
         }
     }
 
+    /// Whether there is a material for each of so many points.
+    pub fn covers(&self, points: usize) -> bool {
+        self.of_point.is_empty() || self.of_point.len() == points
+    }
+
     /// The number of a point's material.
     pub fn of_point(&self, i: usize) -> usize {
         self.of_point

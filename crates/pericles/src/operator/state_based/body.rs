@@ -56,7 +56,7 @@ impl<'a> LinearSolidBody<'a> {
     /// The operator, and what each pre-crack removed.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack.
+    /// A horizon that reaches no neighbour, an unusable crack, materials of another number of points.
     pub fn operator(&self) -> Result<(Box<dyn Force>, Vec<Cut>)> {
         match (self.strains, self.cloud.dimension()) {
             (Strains::Finite, 1) => self.listed::<FiniteStrain, 1>(),
@@ -91,6 +91,13 @@ impl<'a> LinearSolidBody<'a> {
             Some(classes) => classes.clone(),
             None => SolidClasses::uniform(self.constants),
         };
+        if !classes.covers(self.cloud.len()) {
+            return Err(PericlesError::OutOfRange {
+                quantity: "the number of points of the body",
+                value: self.cloud.len() as f64,
+                allowed: "as many points as have a material",
+            });
+        }
         let force = LinearSolidForce::new(
             self.cloud.clone(),
             bonds,
