@@ -6,12 +6,14 @@ use crate::common::{listed, material, points};
 use crate::processes::on_processes;
 use pericles::domain::{Comm, Domain, Peer};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::kernel::InfluenceFunction;
 use pericles::material::{
-    BondMaterial, BondStretch, Fracture, GreenBond, InterfaceRule, LinearBond, PairClasses,
-    PairLaw, StressState, SurfaceCorrection,
+    BondFailure, BondMaterial, BondStretch, Fracture, GivenConstants, GreenBond, InterfaceRule,
+    LinearBond, LinearSolid, PairClasses, PairLaw, SolidClasses, SolidSurface, StateInfluence,
+    StressState, SurfaceCorrection,
 };
 use pericles::operator::{
-    BondBody, BondForm, CompositeBody, DamageMeasure, FastLaw, Force, GridForce,
+    BondBody, BondForm, CompositeBody, DamageMeasure, FastLaw, Force, GridForce, LinearSolidBody,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{
@@ -173,6 +175,35 @@ fn composite(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     body.operator(BondForm::List).unwrap().operator
 }
 
+/// Two state-based materials with corrected surfaces.
+fn solid(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+    let material = |young: f64, poisson_ratio: f64| LinearSolid {
+        density: 1.0,
+        elastic: GivenConstants {
+            young: Some(young),
+            poisson_ratio: Some(poisson_ratio),
+            ..GivenConstants::default()
+        },
+        horizon: 3.0,
+        influence: StateInfluence::Function(InfluenceFunction::Conical),
+        volume_correction: VolumeCorrection::Extended,
+        failure: BondFailure::CriticalStretch(0.02),
+    };
+    let constants = |material: LinearSolid| material.constants(cloud, STATE).unwrap();
+    let materials = [constants(material(1.0, 0.2)), constants(material(0.6, 0.4))];
+    let number = |i: usize| u8::from(cloud.point(i)[0] > 10.0);
+    let classes = SolidClasses::new((0..cloud.len()).map(number).collect(), &materials).unwrap();
+    let (held, cracks) = (held(cloud), [(notch(), EndRule::Closed)]);
+    let body = LinearSolidBody {
+        classes: Some(&classes),
+        surface: SolidSurface::Energy,
+        cracks: &cracks,
+        no_fail: &held,
+        ..LinearSolidBody::new(cloud, &materials[0], VolumeCorrection::Extended)
+    };
+    body.operator().unwrap().0
+}
+
 type MakeScheme = fn(&System) -> Box<dyn Integrator>;
 
 /// What a run ends with: displacements, velocities and damage by the numbers of points; energies, momentum, energy dissipated and bonds broken.
@@ -235,7 +266,7 @@ const VERLET: MakeScheme = |_| Box::new(VelocityVerlet);
 
 #[test]
 fn a_divided_body_of_bonds_moves_by_the_same_bits() {
-    let forces: [(&str, Make); 5] = [
+    let forces: [(&str, Make); 6] = [
         ("list", |cloud| {
             list::<BondStretch>(PairLaw::BondStretch, cloud)
         }),
@@ -243,6 +274,7 @@ fn a_divided_body_of_bonds_moves_by_the_same_bits() {
             list::<GreenBond>(PairLaw::GreenStrain, cloud)
         }),
         ("list of several materials", composite),
+        ("state-based list", solid),
         ("stencil", |cloud| {
             grid::<BondStretch>(PairLaw::BondStretch, cloud)
         }),
@@ -253,9 +285,6 @@ fn a_divided_body_of_bonds_moves_by_the_same_bits() {
     for periodic in [false, true] {
         let whole = plate(periodic);
         for (name, make) in forces {
-            if periodic && name.contains("several") {
-                continue;
-            }
             let alone = run(whole.clone(), make, VERLET);
             let broken = f64::from_bits(alone.1[4]);
             assert!(broken > 50.0, "{name}: {broken} bonds broken");

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::force::LinearSolidForce;
 use super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
-use crate::error::Result;
+use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::material::{LinearSolidConstants, SolidClasses, SolidSurface, Strains};
 use crate::operator::{DamageMeasure, Force, TwoPassForce};
