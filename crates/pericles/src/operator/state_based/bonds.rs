@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::weight::Weight;
 use crate::domain::Field;
 use crate::family::BondList;
-use crate::lanes::{Lanes, Row, dot, vector};
+use crate::lanes::{Lanes, Row, dot};
 use crate::operator::list::stiffness::Stiffness;
 use crate::operator::records::Records;
 use crate::parallel::BLOCK;
@@ -128,9 +128,15 @@ impl<'a> SolidBonds<'a> {
             Some(own) => (own[i][0], own[i][1]),
             None => (reference[3], self.layout.cell),
         };
+        // No closures: one that is not inlined would take the baseline's instructions.
+        let (mut place, mut moved) = ([T::splat(0.0); D], [T::splat(0.0); D]);
+        for c in 0..D {
+            place[c] = T::splat(reference[c]);
+            moved[c] = T::splat(u[i][c]);
+        }
         Here {
-            reference: vector(|c| T::splat(reference[c])),
-            u: vector(|c| T::splat(u[i][c])),
+            reference: place,
+            u: moved,
             stiffness: T::splat(stiffness),
             cell: T::splat(cell),
             last: T::splat(u[i][3]),
@@ -160,8 +166,11 @@ impl<'a> SolidBonds<'a> {
         let reference = self.there::<T>(group, &self.layout.reference);
         let there = self.there::<T>(group, u);
         let unit = T::splat(self.layout.unit);
-        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * unit);
-        let eta: [T; D] = vector(|c| there[c] - here.u[c]);
+        let (mut xi, mut eta) = ([T::splat(0.0); D], [T::splat(0.0); D]);
+        for c in 0..D {
+            xi[c] = (reference[c] - here.reference[c]) * unit;
+            eta[c] = there[c] - here.u[c];
+        }
         let mut square = xi[0] * xi[0];
         for c in 1..D {
             square = xi[c].mul_add(xi[c], square);

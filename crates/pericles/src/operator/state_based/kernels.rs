@@ -7,7 +7,7 @@ use super::bonds::SolidBonds;
 use super::breaking::{BreakRule, break_row};
 use super::kinematics::Kinematics;
 use crate::family::BondList;
-use crate::lanes::{F64x8, Lanes, for_each_instruction_set, vector};
+use crate::lanes::{F64x8, Lanes, for_each_instruction_set};
 use crate::operator::damage::Tally;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
@@ -285,14 +285,20 @@ fn dilatation_change_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     for k in 0..rows.count() {
         let i = rows.at(k);
         let here = bonds.here::<T, D>(i, u);
-        let direction_here: [T; D] = vector(|c| T::splat(direction[i][c]));
+        let mut direction_here = [T::splat(0.0); D];
+        for c in 0..D {
+            direction_here[c] = T::splat(direction[i][c]);
+        }
         let groups = groups_of(bonds.list, i, rows.first);
         let first = bonds.list.start()[i];
         let mut total = T::splat(0.0);
         for k in 0..groups.len() {
             let bond = bonds.group(first + k, &here, u);
             let there = bonds.there::<T>(first + k, direction);
-            let d: [T; D] = vector(|c| there[c] - direction_here[c]);
+            let mut d = direction_here;
+            for c in 0..D {
+                d[c] = there[c] - direction_here[c];
+            }
             let t = L::strain(bond.xi, bond.eta, bond.inverse_square);
             let stretch = stretch_change::<T, L, D>(bond.xi, bond.eta, d, t, bond.inverse_square);
             let change = bond.weight * bond.square * stretch;
@@ -314,7 +320,10 @@ fn tangent_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     for k in 0..rows.count() {
         let i = rows.at(k);
         let here = bonds.here::<T, D>(i, u);
-        let direction_here: [T; D] = vector(|c| T::splat(direction[i][c]));
+        let mut direction_here = [T::splat(0.0); D];
+        for c in 0..D {
+            direction_here[c] = T::splat(direction[i][c]);
+        }
         let change_here = T::splat(direction[i][3]);
         let groups = groups_of(bonds.list, i, rows.first);
         let first = bonds.list.start()[i];
@@ -322,7 +331,10 @@ fn tangent_rows_body<T: Lanes, L: Kinematics, const D: usize>(
         for k in 0..groups.len() {
             let bond = bonds.group(first + k, &here, u);
             let there = bonds.there::<T>(first + k, direction);
-            let d: [T; D] = vector(|c| there[c] - direction_here[c]);
+            let mut d = direction_here;
+            for c in 0..D {
+                d[c] = there[c] - direction_here[c];
+            }
             let (xi, eta, p, s) = (bond.xi, bond.eta, bond.last, bond.stiffness);
             let t = L::strain(xi, eta, bond.inverse_square);
             let stretch = stretch_change::<T, L, D>(xi, eta, d, t, bond.inverse_square);
