@@ -12,7 +12,7 @@ use super::hash::{bits, uniform};
 use crate::fill::FillError;
 
 /// Rounds, each with the number of times that cells have been halved.
-const LEVELS: [u32; 12] = [0, 0, 0, 0, 1, 1, 2, 3, 4, 5, 6, 7];
+const LEVELS: [u32; 8] = [0, 0, 1, 2, 3, 4, 5, 6];
 
 /// The largest number of cells.
 const MOST_CELLS: f64 = 4e9;
