@@ -155,7 +155,7 @@ pub(crate) fn read(
 pub(crate) fn gaussian_length(material: &Material) -> Option<f64> {
     /// Lengths beyond which the Gaussian is below 1e-16 of its height.
     const ALL: f64 = 6.1;
-    let bonds = &material.bonds;
+    let bonds = material.bonds()?;
     match &bonds.influence.function {
         InfluenceFunction::Gaussian { length, cutoff }
             if bonds.influence.acts_on == ActsOn::Displacement

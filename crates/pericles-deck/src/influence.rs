@@ -2,7 +2,7 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
-use pericles::material::StressState;
+use pericles::material::{StateInfluence, StressState};
 use pericles_dispersion::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
 
 use crate::quantity::Quantity;
@@ -53,6 +53,41 @@ pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<Influenc
     Some(InfluenceRead { influence, tuned })
 }
 
+/// The influence function of a state-based material; none is taken for the conical one, which is nearest to isotropic on most lattices.
+pub(crate) fn state_influence(table: &Table<'_>, setting: &Setting) -> Option<StateInfluence> {
+    const FORMS: [(&str, Option<Form>); 7] = [
+        ("conical", Some(Form::Conical)),
+        ("constant", Some(Form::Constant)),
+        ("inverse", Some(Form::Inverse)),
+        ("power", Some(Form::Power)),
+        ("gaussian", Some(Form::Gaussian)),
+        ("tabulated", Some(Form::Tabulated)),
+        ("isotropic", None),
+    ];
+    let table = table.table_or_empty("influence")?;
+    table.forbid(
+        "acts_on",
+        "the influence function of a state-based material weighs the extensions of bonds; leave it out",
+    );
+    let form = table.choice_or_first("function", "influence function", &FORMS);
+    let influence = match form? {
+        None => StateInfluence::Isotropic,
+        Some(form) => {
+            let function = of_form(form, &table, setting, &mut None)?;
+            if let (Some(dimension), Some(horizon)) = (setting.dimension, setting.horizon) {
+                let influence = Influence {
+                    function: function.clone(),
+                    ..Influence::default()
+                };
+                table.accept(influence.check(dimension, horizon));
+            }
+            StateInfluence::Function(function)
+        }
+    };
+    table.finish();
+    Some(influence)
+}
+
 #[derive(Clone, Copy)]
 enum Form {
     Constant,
@@ -82,7 +117,18 @@ fn function(
         ("classes", Form::Classes),
         ("tuned", Form::Tuned),
     ];
-    match table.choice_or_first("function", "influence function", &FORMS)? {
+    let form = table.choice_or_first("function", "influence function", &FORMS)?;
+    of_form(form, table, setting, tuned_table)
+}
+
+/// A function of a form, with its own keys.
+fn of_form(
+    form: Form,
+    table: &Table<'_>,
+    setting: &Setting,
+    tuned_table: &mut Option<TunedTable>,
+) -> Option<InfluenceFunction> {
+    match form {
         Form::Constant => Some(InfluenceFunction::Constant),
         Form::Conical => Some(InfluenceFunction::Conical),
         Form::Inverse => Some(InfluenceFunction::Inverse),

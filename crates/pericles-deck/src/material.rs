@@ -2,7 +2,10 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
-use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Treatment};
+use pericles::material::{
+    BondMaterial, CubicLaw, LinearSolid, PairLaw, StateInfluence, Strains, SurfaceCorrection,
+    Treatment,
+};
 use pericles::operator::DamageMeasure;
 use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
@@ -12,11 +15,12 @@ use crate::body::BodyRead;
 use crate::constants::{
     ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
 };
-use crate::influence::{InfluenceRead, Setting, influence};
-use crate::part::{self, MaterialInterface, Part};
+use crate::influence::{InfluenceRead, Setting, influence, state_influence};
+use crate::part::{self, MaterialInterface, Part, PartRules};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
+use crate::state_based::{SolidRules, StateBased};
 use crate::vocabulary::HORIZONS;
 
 /// The material with what goes with it.
@@ -27,8 +31,7 @@ pub struct Material {
     #[serde(default)]
     pub name: Option<String>,
     /// Law, constants, horizon and breaking.
-    #[serde(with = "crate::form")]
-    pub bonds: BondMaterial,
+    pub model: MaterialModel,
     /// How the coefficients of the influence function were found, if it is tuned against dispersion.
     #[serde(default, with = "crate::form")]
     pub tuned: Option<TunedTable>,
@@ -55,12 +58,35 @@ pub struct Material {
     pub form: ForceForm,
 }
 
+/// The model of a material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MaterialModel {
+    /// A pair force for each bond: Poisson's ratio is fixed.
+    Bonds(#[serde(with = "crate::form")] BondMaterial),
+    /// Forces that depend on all bonds of both ends: any Poisson's ratio.
+    StateBased(StateBased),
+}
+
 impl From<BondMaterial> for Material {
     /// One material for the whole body, whose bonds are kept as is fastest.
     fn from(bonds: BondMaterial) -> Self {
+        Self::from(MaterialModel::Bonds(bonds))
+    }
+}
+
+impl From<StateBased> for Material {
+    /// One material for the whole body.
+    fn from(solid: StateBased) -> Self {
+        Self::from(MaterialModel::StateBased(solid))
+    }
+}
+
+impl From<MaterialModel> for Material {
+    fn from(model: MaterialModel) -> Self {
         Self {
             name: None,
-            bonds,
+            model,
             tuned: None,
             no_fail: Vec::new(),
             inclusions: Vec::new(),
@@ -74,9 +100,60 @@ impl From<BondMaterial> for Material {
 }
 
 impl Material {
-    /// The word of `material.model` for its law, whatever its treatment.
+    /// The bond-based material, if it is one.
+    pub fn bonds(&self) -> Option<&BondMaterial> {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => Some(bonds),
+            MaterialModel::StateBased(_) => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn bonds_mut(&mut self) -> Option<&mut BondMaterial> {
+        match &mut self.model {
+            MaterialModel::Bonds(bonds) => Some(bonds),
+            MaterialModel::StateBased(_) => None,
+        }
+    }
+
+    /// The state-based material, if it is one.
+    pub fn state_based(&self) -> Option<&StateBased> {
+        match &self.model {
+            MaterialModel::Bonds(_) => None,
+            MaterialModel::StateBased(solid) => Some(solid),
+        }
+    }
+
+    /// Mass density ρ, kg/m³.
+    pub fn density(&self) -> f64 {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => bonds.density,
+            MaterialModel::StateBased(state) => state.solid.density,
+        }
+    }
+
+    /// Horizon δ, m.
+    pub fn horizon(&self) -> f64 {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => bonds.horizon,
+            MaterialModel::StateBased(state) => state.solid.horizon,
+        }
+    }
+
+    /// Partial volumes at the horizon.
+    pub fn volume_correction(&self) -> VolumeCorrection {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => bonds.volume_correction,
+            MaterialModel::StateBased(state) => state.solid.volume_correction,
+        }
+    }
+
+    /// The word of `material.model`, whatever the treatment of a law.
     pub fn model_name(&self) -> &'static str {
-        match self.bonds.law {
+        let MaterialModel::Bonds(bonds) = &self.model else {
+            return "state-based";
+        };
+        match bonds.law {
             PairLaw::BondStretch => "bond-stretch",
             PairLaw::Linear => "linear",
             PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
@@ -96,24 +173,50 @@ pub struct Inclusion {
 }
 
 pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
+    match model(&table) {
+        Some(ModelWord::StateBased) => state_based(table, body, sets),
+        Some(ModelWord::Law(law)) => bond_based(table, Some(law), body, sets),
+        None => bond_based(table, None, body, sets),
+    }
+}
+
+/// The word of `model`.
+#[derive(Clone, Copy)]
+enum ModelWord {
+    Law(PairLaw),
+    StateBased,
+}
+
+fn model(table: &Table<'_>) -> Option<ModelWord> {
+    table.choice_or_first(
+        "model",
+        "model",
+        &[
+            ("bond-stretch", ModelWord::Law(PairLaw::BondStretch)),
+            ("linear", ModelWord::Law(PairLaw::Linear)),
+            ("green-strain", ModelWord::Law(PairLaw::GreenStrain)),
+            ("literal57", ModelWord::Law(PairLaw::Literal57)),
+            ("state-based", ModelWord::StateBased),
+        ],
+    )
+}
+
+fn bond_based(
+    table: Table<'_>,
+    law: Option<PairLaw>,
+    body: &BodyRead,
+    sets: &SetNames,
+) -> Option<Material> {
+    for key in ["strains", "failure", "stretch_definition"] {
+        table.forbid(key, "it belongs to model = \"state-based\"");
+    }
     let dimension = body.frame.dimension;
     let name = table.maybe("name", |item| item.text());
-    let law = law(&table);
-    let density = table
-        .required("density")
-        .and_then(|item| item.positive(Quantity::Density));
+    let law = treated(&table, law);
+    let density = density(&table);
     let modulus = modulus(&table, body.state);
     let extent = horizon(&table, body.frame.spacing);
-    let horizon = extent.as_ref().and_then(Extent::length);
-    let volume_correction = table.choice_or_first(
-        "volume_correction",
-        "volume correction",
-        &[
-            ("extended", VolumeCorrection::Extended),
-            ("linear", VolumeCorrection::Linear),
-            ("none", VolumeCorrection::None),
-        ],
-    );
+    let volume_correction = volume_correction(&table);
     let surface_correction = table.choice_or_first(
         "surface_correction",
         "surface correction",
@@ -124,17 +227,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         ],
     );
     poisson_ratio(&table, body.state);
-    let influence = influence(
-        &table,
-        &Setting {
-            dimension,
-            state: body.state,
-            spacing: body.frame.spacing,
-            cells: body.frame.cells,
-            horizon,
-            correction: volume_correction,
-        },
-    );
+    let influence = influence(&table, &setting(body, extent.as_ref(), volume_correction));
     let (influence, tuned) = match influence {
         Some(InfluenceRead { influence, tuned }) => (Some(influence), tuned),
         None => (None, None),
@@ -142,9 +235,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
     let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
     let fracture = fracture(&table);
     let fracture_calibration = fracture_calibration(&table, body);
-    let no_fail = table
-        .optional("no_fail")
-        .map_or(Some(Vec::new()), |item| sets.references(&item));
+    let no_fail = no_fail(&table, sets);
     let inclusions: Vec<Option<Inclusion>> = table
         .tables("inclusion")
         .into_iter()
@@ -161,12 +252,12 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
     rules.judge_volume_correction(&table);
     let modulus = rules.modulus(&table, modulus);
     let fracture = rules.fracture(fracture);
-    let parts = part::parts(parts, &rules, sets);
-    let interface = interface(&table, name.as_ref(), parts.as_deref());
+    let parts = part::parts(parts, &PartRules::Bonds(&rules), sets);
+    let interface = interface(&table, name.as_ref(), parts.as_deref(), false);
     table.finish();
     Some(Material {
         name: name?,
-        bonds: BondMaterial {
+        model: MaterialModel::Bonds(BondMaterial {
             law: law?,
             density: density?,
             modulus: modulus?,
@@ -174,7 +265,7 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
             influence: influence?,
             volume_correction: volume_correction?,
             fracture: fracture?,
-        },
+        }),
         tuned,
         no_fail: no_fail?,
         inclusions: inclusions.into_iter().collect::<Option<_>>()?,
@@ -184,6 +275,123 @@ pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         damage: damage?,
         form: form?,
     })
+}
+
+fn state_based(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
+    table.forbid(
+        "treatment",
+        "it belongs to model = \"green-strain\" or \"literal57\"",
+    );
+    table.forbid(
+        "inclusion",
+        "inclusions scale the constant of bonds; give a [[material.part]] with elastic constants of its own",
+    );
+    let name = table.maybe("name", |item| item.text());
+    let strains = table.choice_or_first(
+        "strains",
+        "strains",
+        &[("finite", Strains::Finite), ("small", Strains::Small)],
+    );
+    let density = density(&table);
+    let extent = horizon(&table, body.frame.spacing);
+    let volume_correction = volume_correction(&table);
+    let surface_correction = solid_surface(&table);
+    let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));
+    let given = match &influence {
+        Some(StateInfluence::Function(function)) => Some(Influence {
+            function: function.clone(),
+            ..Influence::default()
+        }),
+        _ => None,
+    };
+    let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
+    let rules = SolidRules::read(&table, body.state, fracture_calibration(&table, body));
+    let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
+    let no_fail = no_fail(&table, sets);
+    let damage = damage(&table);
+    let form = form(&table);
+    let parts = part::parts(table.tables("part"), &PartRules::StateBased(&rules), sets);
+    let interface = interface(&table, name.as_ref(), parts.as_deref(), true);
+    table.finish();
+    let solid = LinearSolid {
+        density: density?,
+        elastic: elastic?,
+        horizon: horizon?,
+        influence: influence?,
+        volume_correction: volume_correction?,
+        failure: failure?,
+    };
+    Some(Material {
+        name: name?,
+        no_fail: no_fail?,
+        parts: parts?,
+        interface: interface?,
+        surface_correction: surface_correction?,
+        damage: damage?,
+        form: form?,
+        ..Material::from(StateBased {
+            solid,
+            strains: strains?,
+        })
+    })
+}
+
+fn density(table: &Table<'_>) -> Option<f64> {
+    let item = table.required("density");
+    item.and_then(|item| item.positive(Quantity::Density))
+}
+
+fn volume_correction(table: &Table<'_>) -> Option<VolumeCorrection> {
+    table.choice_or_first(
+        "volume_correction",
+        "volume correction",
+        &[
+            ("extended", VolumeCorrection::Extended),
+            ("linear", VolumeCorrection::Linear),
+            ("none", VolumeCorrection::None),
+        ],
+    )
+}
+
+/// The correction of surfaces that a state-based material can have.
+fn solid_surface(table: &Table<'_>) -> Option<SurfaceCorrection> {
+    if let Some(item) = table.optional("surface_correction")
+        && item.is_keyword("volume")
+    {
+        item.out_of_range(
+            "\"none\" or \"energy\": the weighted volume of a state-based material accounts for missing bonds already, and the volume method would make bodies 6 to 15 % too stiff",
+        );
+        return None;
+    }
+    table.choice_or_first(
+        "surface_correction",
+        "surface correction",
+        &[
+            ("none", SurfaceCorrection::None),
+            ("energy", SurfaceCorrection::Energy),
+        ],
+    )
+}
+
+fn no_fail(table: &Table<'_>, sets: &SetNames) -> Option<Vec<String>> {
+    let item = table.optional("no_fail");
+    item.map_or(Some(Vec::new()), |item| sets.references(&item))
+}
+
+/// What an influence function is made for.
+fn setting(
+    body: &BodyRead,
+    extent: Option<&Extent<'_>>,
+    correction: Option<VolumeCorrection>,
+) -> Setting {
+    Setting {
+        dimension: body.frame.dimension,
+        state: body.state,
+        spacing: body.frame.spacing,
+        cells: body.frame.cells,
+        horizon: extent.and_then(Extent::length),
+        correction,
+    }
 }
 
 /// How bonds are kept.
@@ -207,6 +415,7 @@ fn interface(
     table: &Table<'_>,
     name: Option<&Option<String>>,
     parts: Option<&[Part]>,
+    state_based: bool,
 ) -> Option<MaterialInterface> {
     if !table.has("part") {
         table.forbid(
@@ -219,24 +428,10 @@ fn interface(
     let own = name.cloned().flatten();
     let others = parts?.iter().map(|part| Some(part.name.clone()));
     let names: Vec<Option<String>> = std::iter::once(own).chain(others).collect();
-    part::interface(interface?, &names)
+    part::interface(interface?, &names, state_based)
 }
 
 /// The law as it is taken.
-fn law(table: &Table<'_>) -> Option<PairLaw> {
-    let law = table.choice_or_first(
-        "model",
-        "model",
-        &[
-            ("bond-stretch", PairLaw::BondStretch),
-            ("linear", PairLaw::Linear),
-            ("green-strain", PairLaw::GreenStrain),
-            ("literal57", PairLaw::Literal57),
-        ],
-    );
-    treated(table, law)
-}
-
 fn treated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
     #[derive(Clone, Copy)]
     enum Kind {

@@ -179,7 +179,7 @@ impl Body {
     /// Horizon of the bonds, m.
     pub fn horizon(&self) -> f64 {
         match self {
-            Self::Solid(solid) => solid.material.bonds.horizon,
+            Self::Solid(solid) => solid.material.horizon(),
             Self::Surface(surface) => surface.material.horizon,
         }
     }

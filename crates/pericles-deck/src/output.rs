@@ -412,7 +412,7 @@ fn quantity(field: Field) -> Quantity {
         Field::Velocity => Quantity::Velocity,
         Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
         Field::Stress => Quantity::Traction,
-        Field::Damage | Field::Strain => Quantity::Number,
+        Field::Damage | Field::Strain | Field::Dilatation => Quantity::Number,
         Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
         Field::Volume => Quantity::Number,
     }
@@ -427,8 +427,17 @@ impl Output {
         })
     }
 
+    /// Whether a field is wanted.
+    pub fn wants(&self, wanted: Field) -> bool {
+        self.wants_any(|field| field == wanted)
+    }
+
     /// Whether stress or strain is wanted, which only listed bonds give.
     pub fn wants_tensors(&self) -> bool {
+        self.wants_any(Field::is_tensor)
+    }
+
+    fn wants_any(&self, is_wanted: impl Fn(Field) -> bool) -> bool {
         let drawn = self.pictures.iter().map(|picture| picture.field);
         let extremes = self.extremes.iter().map(|(field, _)| *field);
         self.names
@@ -436,7 +445,7 @@ impl Output {
             .copied()
             .chain(drawn)
             .chain(extremes)
-            .any(Field::is_tensor)
+            .any(is_wanted)
     }
 }
 

@@ -1,6 +1,6 @@
 //! `[[material.part]]` and `[material.interface]`: several materials in one body.
 
-use pericles::material::{Fracture, InterfaceRule, Modulus};
+use pericles::material::{BondFailure, Fracture, GivenConstants, InterfaceRule, Modulus};
 use serde::{Deserialize, Serialize};
 
 use crate::constants::{self, ConstantRules};
@@ -8,6 +8,7 @@ use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::{self, SetNames};
+use crate::state_based::SolidRules;
 use crate::vocabulary::PLACES;
 
 /// A material that some points have in place of the body's.
@@ -20,12 +21,61 @@ pub struct Part {
     pub place: PartPlace,
     /// Mass density ρ, kg/m³.
     pub density: f64,
-    /// Elastic modulus.
-    #[serde(with = "crate::form")]
-    pub modulus: Modulus,
-    /// Breaking.
-    #[serde(with = "crate::form")]
-    pub fracture: Fracture,
+    /// Elastic constants and breaking, of the kind of the body's material.
+    pub constants: PartConstants,
+}
+
+/// Elastic constants and breaking of a part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum PartConstants {
+    /// Of a bond-based material.
+    Bonds {
+        /// Elastic modulus.
+        #[serde(with = "crate::form")]
+        modulus: Modulus,
+        /// Breaking.
+        #[serde(with = "crate::form")]
+        fracture: Fracture,
+    },
+    /// Of a state-based material.
+    StateBased {
+        /// Two of the elastic constants.
+        #[serde(with = "crate::form")]
+        elastic: GivenConstants,
+        /// Breaking.
+        #[serde(with = "crate::form")]
+        failure: BondFailure,
+    },
+}
+
+/// How the constants of a part are read.
+pub(crate) enum PartRules<'r> {
+    Bonds(&'r ConstantRules),
+    StateBased(&'r SolidRules),
+}
+
+impl PartRules<'_> {
+    fn constants(&self, table: &Table<'_>) -> Option<PartConstants> {
+        match self {
+            Self::Bonds(rules) => {
+                let modulus = rules.modulus(table, constants::modulus(table, rules.state));
+                constants::poisson_ratio(table, rules.state);
+                let fracture = rules.fracture(constants::fracture(table));
+                Some(PartConstants::Bonds {
+                    modulus: modulus?,
+                    fracture: fracture?,
+                })
+            }
+            Self::StateBased(rules) => {
+                let (elastic, failure) = (rules.elastic(table), rules.failure(table));
+                Some(PartConstants::StateBased {
+                    elastic: elastic?,
+                    failure: failure?,
+                })
+            }
+        }
+    }
 }
 
 /// The points of a part.
@@ -53,7 +103,7 @@ pub struct MaterialInterface {
 /// All parts, in the order in which later ones replace earlier ones.
 pub(crate) fn parts(
     tables: Vec<Table<'_>>,
-    rules: &ConstantRules,
+    rules: &PartRules<'_>,
     sets: &SetNames,
 ) -> Option<Vec<Part>> {
     let mut names: Vec<String> = Vec::new();
@@ -66,7 +116,7 @@ pub(crate) fn parts(
 
 fn part(
     table: Table<'_>,
-    rules: &ConstantRules,
+    rules: &PartRules<'_>,
     sets: &SetNames,
     names: &mut Vec<String>,
 ) -> Option<Part> {
@@ -90,9 +140,7 @@ fn part(
     let density = table
         .required("density")
         .and_then(|item| item.positive(Quantity::Density));
-    let modulus = rules.modulus(&table, constants::modulus(&table, rules.state));
-    constants::poisson_ratio(&table, rules.state);
-    let fracture = rules.fracture(constants::fracture(&table));
+    let constants = rules.constants(&table);
     for key in [
         "model",
         "horizon",
@@ -101,6 +149,9 @@ fn part(
         "volume_correction",
         "surface_correction",
         "fracture_calibration",
+        "strains",
+        "failure",
+        "stretch_definition",
     ] {
         table.forbid(key, "[material] says it for all bonds of the body");
     }
@@ -109,22 +160,26 @@ fn part(
         name: name?,
         place: place?,
         density: density?,
-        modulus: modulus?,
-        fracture: fracture?,
+        constants: constants?,
     })
 }
 
-/// `[material.interface]`; `names` are those of the materials, the body's first.
-pub(crate) fn interface(table: Table<'_>, names: &[Option<String>]) -> Option<MaterialInterface> {
-    let rule = table.choice_or_first(
-        "rule",
-        "rule of interfaces",
-        &[
-            ("harmonic", InterfaceRule::Harmonic),
-            ("arithmetic", InterfaceRule::Arithmetic),
-            ("weaker", InterfaceRule::Weaker),
-        ],
-    );
+/// `[material.interface]`; `names` are those of the materials, the body's first. Bonds of state-based materials have no constant of their own.
+pub(crate) fn interface(
+    table: Table<'_>,
+    names: &[Option<String>],
+    state_based: bool,
+) -> Option<MaterialInterface> {
+    let rule = if state_based {
+        table.forbid(
+            "rule",
+            "each end of a bond has the constants of its own state-based material: there is nothing to average",
+        );
+        Some(InterfaceRule::default())
+    } else {
+        rule(&table)
+    };
+
     let mut given: Vec<[u8; 2]> = Vec::new();
     let pairs: Vec<Option<([u8; 2], f64)>> = table
         .tables("pair")
@@ -145,6 +200,19 @@ pub(crate) fn interface(table: Table<'_>, names: &[Option<String>]) -> Option<Ma
         rule: rule?,
         critical_stretches: pairs.into_iter().collect::<Option<_>>()?,
     })
+}
+
+/// How the constant of a bond between two materials follows from both.
+fn rule(table: &Table<'_>) -> Option<InterfaceRule> {
+    table.choice_or_first(
+        "rule",
+        "rule of interfaces",
+        &[
+            ("harmonic", InterfaceRule::Harmonic),
+            ("arithmetic", InterfaceRule::Arithmetic),
+            ("weaker", InterfaceRule::Weaker),
+        ],
+    )
 }
 
 /// A pair of materials that no earlier entry names.

@@ -41,6 +41,7 @@ const TENSORS: Limit = Limit::new(
 );
 
 const OF_CONVOLUTION: &[Limit] = &[
+    Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,
@@ -68,6 +69,7 @@ const FULL_BOX: &str =
     "a Fourier series needs a full box of cells (bar, plate or block without holes)";
 
 const OF_SPECTRAL: &[Limit] = &[
+    Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,

@@ -1,15 +1,19 @@
 //! Ranges of `[body]` and `[material]`.
 
 use pericles::kernel::Influence;
-use pericles::material::{ElasticModulus, Fracture, Modulus, StressState};
+use pericles::material::{
+    BondFailure, ElasticModulus, Fracture, Modulus, StressState, SurfaceCorrection,
+};
 use pericles::space::{Region, Shape};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use super::ranges::{Check, POSITIVE};
 use crate::body::{Lattice, Quadrature, SolidShape, VertexAreas};
 use crate::key_path::KeyPath;
-use crate::material::{Inclusion, Material};
+use crate::material::{Inclusion, Material, MaterialModel};
 use crate::model::Solid;
+use crate::part::PartConstants;
+use crate::state_based::StateBased;
 use crate::surface::SurfaceBody;
 
 impl Check {
@@ -116,18 +120,40 @@ impl Check {
 
     fn material(&mut self, material: &Material, state: StressState, dimension: usize) {
         let key = KeyPath::from("material");
-        let bonds = &material.bonds;
-        self.positive(key.key("density"), bonds.density);
-        self.positive(key.key("horizon"), bonds.horizon);
-        self.modulus(&key, &bonds.modulus, state);
-        self.fracture(&key, &bonds.fracture);
-        self.influence(&key, &bonds.influence, dimension, bonds.horizon);
+        self.positive(key.key("density"), material.density());
+        self.positive(key.key("horizon"), material.horizon());
+        match &material.model {
+            MaterialModel::Bonds(bonds) => {
+                self.modulus(&key, &bonds.modulus, state);
+                self.fracture(&key, &bonds.fracture);
+                self.influence(&key, &bonds.influence, dimension, bonds.horizon);
+            }
+            MaterialModel::StateBased(solid) => {
+                self.state_based(&key, solid, state, dimension);
+                let allowed =
+                    "allowed: none or energy; weighted volumes account for missing bonds already";
+                let right = material.surface_correction != SurfaceCorrection::Volume;
+                self.within(right, key.key("surface_correction"), "volume", allowed);
+            }
+        }
         self.inclusions(&material.inclusions);
         for (k, part) in material.parts.iter().enumerate() {
             let key = key.key("part").index(k);
             self.positive(key.key("density"), part.density);
-            self.modulus(&key, &part.modulus, state);
-            self.fracture(&key, &part.fracture);
+            match (&part.constants, &material.model) {
+                (PartConstants::Bonds { modulus, fracture }, MaterialModel::Bonds(_)) => {
+                    self.modulus(&key, modulus, state);
+                    self.fracture(&key, fracture);
+                }
+                (PartConstants::StateBased { elastic, failure }, MaterialModel::StateBased(_)) => {
+                    self.engine(key.clone(), elastic.resolve(state));
+                    self.failure(&key, failure);
+                }
+                _ => {
+                    let allowed = "allowed: constants of the kind of the body's material, bond-based or state-based";
+                    self.within(false, key, &part.name, allowed);
+                }
+            }
         }
         let pairs = material.interface.critical_stretches.iter().enumerate();
         for (k, (pair, stretch)) in pairs {
@@ -137,6 +163,36 @@ impl Check {
             let right = pair.iter().all(known) && pair[0] != pair[1];
             let allowed = "allowed: the numbers of two different materials, 0 for the body's, from 1 on for the parts'";
             self.within(right, key.key("between"), format!("{pair:?}"), allowed);
+        }
+    }
+
+    fn state_based(
+        &mut self,
+        key: &KeyPath,
+        state_based: &StateBased,
+        state: StressState,
+        dimension: usize,
+    ) {
+        let solid = &state_based.solid;
+        self.engine(key.clone(), solid.elastic.resolve(state));
+        self.failure(key, &solid.failure);
+        if let Some(influence) = state_based.given_influence() {
+            self.influence(key, &influence, dimension, solid.horizon);
+        }
+    }
+
+    fn failure(&mut self, key: &KeyPath, failure: &BondFailure) {
+        match *failure {
+            BondFailure::Unbreakable => {}
+            BondFailure::CriticalStretch(stretch) => {
+                self.positive(key.key("critical_stretch"), stretch);
+            }
+            BondFailure::Stretch {
+                fracture_energy, ..
+            }
+            | BondFailure::BondEnergy {
+                fracture_energy, ..
+            } => self.positive(key.key("fracture_energy"), fracture_energy),
         }
     }
 

@@ -64,7 +64,7 @@ impl Subject for Fault {
                 "reaction_below needs a set that a [[prescribe]] holds, damage_above a material that can break".into()
             }
             Self::UnknownArea { .. } => "give `area`, such as \"100 mm2\"".into(),
-            Self::NoTensors { .. } => "leave these fields out".into(),
+            Self::NoFields { .. } => "leave these fields out".into(),
             Self::NoExactSolution { .. } => "leave [exact] out, or change the deck".into(),
             Self::EmptyWindow { .. } => {
                 "give a larger window, or move the centre of the exact solution into the body".into()
@@ -143,7 +143,7 @@ impl Subject for Fault {
             Self::ThinFineSet { .. } => "too thin",
             Self::FineSetsOverlap { .. } => "overlap",
             Self::UnknownArea { .. } => "which area?",
-            Self::NoTensors { .. } => "not available",
+            Self::NoFields { .. } => "not available",
             Self::NoExactSolution { .. } => "of another problem",
             Self::EmptyWindow { .. } => "no point",
             Self::LongSum { .. } => "too many terms",

@@ -312,9 +312,11 @@ pub enum Fault {
         /// Why.
         reason: &'static str,
     },
-    /// Stress or strain of bonds that are not listed.
-    #[error("the fields Stress and Strain are not available here: {reason}")]
-    NoTensors {
+    /// A field that the forces do not have.
+    #[error("{fields} not available here: {reason}")]
+    NoFields {
+        /// Which, with the verb.
+        fields: &'static str,
         /// Why.
         reason: &'static str,
     },

@@ -1,9 +1,10 @@
 //! Materials of bonds.
 
 use pericles::family::VolumeCorrection;
-use pericles::kernel::Influence;
+use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, PairLaw,
+    BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration,
+    GivenConstants, LinearSolid, Modulus, PairLaw, StateInfluence, StretchDefinition,
 };
 use pericles::operator::DamageMeasure;
 use serde::{Deserialize, Serialize};
@@ -60,6 +61,64 @@ enum FractureForm {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "LinearSolid", deny_unknown_fields)]
+struct LinearSolidForm {
+    density: f64,
+    #[serde(with = "crate::form")]
+    elastic: GivenConstants,
+    horizon: f64,
+    #[serde(with = "crate::form")]
+    influence: StateInfluence,
+    #[serde(with = "crate::form")]
+    volume_correction: VolumeCorrection,
+    #[serde(with = "crate::form")]
+    failure: BondFailure,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "GivenConstants", deny_unknown_fields)]
+struct GivenConstantsForm {
+    #[serde(default, rename = "youngs_modulus")]
+    young: Option<f64>,
+    #[serde(default)]
+    poisson_ratio: Option<f64>,
+    #[serde(default, rename = "bulk_modulus")]
+    bulk: Option<f64>,
+    #[serde(default, rename = "shear_modulus")]
+    shear: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    remote = "StateInfluence",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+enum StateInfluenceForm {
+    Function(#[serde(with = "crate::form")] InfluenceFunction),
+    Isotropic,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "BondFailure", rename_all = "snake_case", deny_unknown_fields)]
+enum BondFailureForm {
+    Unbreakable,
+    CriticalStretch(f64),
+    Stretch {
+        fracture_energy: f64,
+        #[serde(with = "crate::form")]
+        definition: StretchDefinition,
+        #[serde(with = "crate::form")]
+        calibration: FractureCalibration,
+    },
+    BondEnergy {
+        fracture_energy: f64,
+        #[serde(with = "crate::form")]
+        calibration: FractureCalibration,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
 #[serde(remote = "DamageMeasure", deny_unknown_fields)]
 struct DamageMeasureForm {
     count: bool,
@@ -71,5 +130,9 @@ described!(
     Modulus: ModulusForm,
     ElasticModulus: ElasticModulusForm,
     Fracture: FractureForm,
+    LinearSolid: LinearSolidForm,
+    GivenConstants: GivenConstantsForm,
+    StateInfluence: StateInfluenceForm,
+    BondFailure: BondFailureForm,
     DamageMeasure: DamageMeasureForm,
 );

@@ -4,8 +4,8 @@ use pericles::boundary::MotionKind;
 use pericles::family::{EndRule, VolumeCorrection};
 use pericles::kernel::ActsOn;
 use pericles::material::{
-    Calibration, CubicLaw, FractureCalibration, InterfaceRule, PairLaw, StressState,
-    SurfaceCorrection, Treatment,
+    Calibration, CubicLaw, FractureCalibration, InterfaceRule, PairLaw, Strains, StressState,
+    StretchDefinition, SurfaceCorrection, Treatment,
 };
 use pericles::observe::Field;
 use pericles::space::Face;
@@ -63,6 +63,12 @@ words! {
     FractureCalibration: [
         ("lattice", FractureCalibration::Lattice),
         ("continuum", FractureCalibration::Continuum),
+    ];
+    Strains: [("finite", Strains::Finite), ("small", Strains::Small)];
+    StretchDefinition: [
+        ("closing", StretchDefinition::Closing),
+        ("bond", StretchDefinition::Bond),
+        ("iso", StretchDefinition::Isotropic),
     ];
     InterfaceRule: [
         ("harmonic", InterfaceRule::Harmonic),

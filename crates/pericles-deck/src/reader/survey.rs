@@ -81,6 +81,8 @@ pub(crate) struct TableSurvey {
     keys: Vec<(&'static str, usize)>,
     /// Keys of which at most one may be given, with the number of visits that needed one.
     choices: Vec<(&'static [&'static str], usize)>,
+    /// Choices that some decks give together.
+    together: Vec<&'static [&'static str]>,
 }
 
 impl TableSurvey {
@@ -98,7 +100,9 @@ impl TableSurvey {
 
     /// Keys that exclude each other, and whether one of them is always needed: by choice, or by its own name where the others have no place.
     pub(crate) fn choices(&self) -> impl Iterator<Item = (&'static [&'static str], bool)> {
-        self.choices.iter().map(|(keys, chosen)| {
+        let exclusive =
+            |(keys, _): &&(&'static [&'static str], usize)| !self.together.contains(keys);
+        self.choices.iter().filter(exclusive).map(|(keys, chosen)| {
             let named = self.keys.iter().filter(|(key, _)| keys.contains(key));
             let needed = chosen + named.map(|(_, needed)| needed).sum::<usize>();
             (*keys, needed == self.visits)
@@ -212,6 +216,14 @@ impl Survey {
         match choices.iter_mut().find(|(known, _)| *known == keys) {
             Some((_, count)) => *count += needed,
             None => choices.push((keys, needed)),
+        }
+    }
+
+    /// Keys of which other decks may give one only.
+    pub(super) fn together(&mut self, table: &KeyPath, keys: &'static [&'static str]) {
+        let together = &mut self.table_at(table).together;
+        if !together.contains(&keys) {
+            together.push(keys);
         }
     }
 

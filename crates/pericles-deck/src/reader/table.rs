@@ -131,6 +131,11 @@ impl<'a> Table<'a> {
         self.choice_of(keys, false)
     }
 
+    /// Notes that keys which exclude each other in other decks may be given together.
+    pub(crate) fn together(&self, keys: &'static [&'static str]) {
+        self.ledger.note(|survey| survey.together(&self.path, keys));
+    }
+
     fn choice_of(
         &self,
         keys: &'static [&'static str],

@@ -164,6 +164,11 @@ pub enum PericlesError {
         /// The field.
         field: &'static str,
     },
+    /// The dilatation of a body that has none.
+    #[error(
+        "Dilatation is a field of state-based materials (model = \"state-based\"), which this body does not have: leave the field out"
+    )]
+    NoDilatation,
     /// An influence function that cannot be used here.
     #[error("influence function: {reason}")]
     BadInfluence {

@@ -34,6 +34,8 @@ pub enum Field {
     Volume,
     /// Kinetic energy density ½ ρ v², J/m³.
     KineticEnergyDensity,
+    /// Dilatation of a state-based material: the relative change of volume, in the plane of area. Else not a number.
+    Dilatation,
 }
 
 impl Field {
@@ -47,7 +49,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -59,6 +61,7 @@ impl Field {
         Self::Strain,
         Self::Volume,
         Self::KineticEnergyDensity,
+        Self::Dilatation,
     ];
 
     /// Name in files.
@@ -75,6 +78,7 @@ impl Field {
             Self::Strain => "Strain",
             Self::Volume => "Volume",
             Self::KineticEnergyDensity => "Kinetic_Energy_Density",
+            Self::Dilatation => "Dilatation",
         }
     }
 
@@ -85,7 +89,7 @@ impl Field {
             Self::Velocity => "m/s",
             Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
             Self::Stress => "Pa",
-            Self::Damage | Self::Strain => "",
+            Self::Damage | Self::Strain | Self::Dilatation => "",
             Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
             Self::Volume => "m³",
         }
@@ -173,6 +177,7 @@ pub struct Snapshot<'a> {
     reaction: OnceCell<Vec<f64>>,
     stress: OnceCell<Vec<f64>>,
     strain: OnceCell<Vec<f64>>,
+    dilatation: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Snapshot<'a> {
@@ -192,6 +197,7 @@ impl<'a> Snapshot<'a> {
             reaction: OnceCell::new(),
             stress: OnceCell::new(),
             strain: OnceCell::new(),
+            dilatation: OnceCell::new(),
         }
     }
 
@@ -216,12 +222,16 @@ impl<'a> Snapshot<'a> {
         self.state
     }
 
-    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have.
+    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have; only state-based materials have a dilatation.
     ///
     /// # Errors
     /// A field that cannot.
     pub fn check(&self, field: Field) -> Result<()> {
-        if field.is_tensor() && self.system.operator().as_bonds().is_none() {
+        let capabilities = self.system.operator().capabilities();
+        if field == Field::Dilatation && capabilities.dilatation.is_none() {
+            return Err(PericlesError::NoDilatation);
+        }
+        if field.is_tensor() && capabilities.bonds.is_none() {
             return Err(PericlesError::NoSuchField {
                 field: field.name(),
             });
@@ -266,6 +276,13 @@ impl<'a> Snapshot<'a> {
             }),
             Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
             Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
+            Field::Dilatation => self.dilatation.get_or_init(|| {
+                let mut dilatation = vec![f64::NAN; self.system.points()];
+                if let Some(view) = self.system.operator().capabilities().dilatation {
+                    view.dilatation_into(t, u, &mut dilatation);
+                }
+                dilatation
+            }),
             Field::Volume => self.system.cloud().volumes(),
             Field::KineticEnergyDensity => self
                 .kinetic_density

@@ -144,6 +144,9 @@ impl Force for Forces {
         let exact = linear.iter().all(|one| matches!(one, Linearity::Exact(_)));
         let rounded = !linear.iter().any(|one| matches!(one, Linearity::Nonlinear));
         Capabilities {
+            dilatation: self
+                .iter()
+                .find_map(|force| force.capabilities().dilatation),
             linear: match (exact, rounded) {
                 (true, _) => Linearity::Exact(self),
                 (false, true) => Linearity::Rounded,

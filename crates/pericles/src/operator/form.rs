@@ -20,6 +20,7 @@ pub enum BondForm {
 const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 
 const OF_GRID: &[Limit] = &[
+    Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,

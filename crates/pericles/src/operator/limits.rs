@@ -14,6 +14,8 @@ pub enum Feature {
     GreenStrain,
     /// The other cubic laws, which are defined for bars: equation 57 as printed, and treatments of a cubic law.
     OtherCubic,
+    /// State-based materials, whose bonds depend on the dilatations of both ends.
+    StateBased,
     /// Bonds that break.
     Breaking,
     /// Pre-cracks.
@@ -40,11 +42,12 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
         Self::OtherCubic,
+        Self::StateBased,
         Self::Breaking,
         Self::PreCracks,
         Self::SeveralMaterials,
@@ -65,6 +68,7 @@ impl Feature {
             Self::GreenStrainBar => "Green-strain law, bars",
             Self::GreenStrain => "Green-strain law, plates and blocks",
             Self::OtherCubic => "other cubic laws (bars)",
+            Self::StateBased => "state-based materials",
             Self::Breaking => "breaking",
             Self::PreCracks => "pre-cracks",
             Self::SeveralMaterials => "several materials",
@@ -142,6 +146,12 @@ impl Limit {
 
     /// Of forms whose bonds all have one constant.
     pub const SURFACE_CORRECTION: Self = Self::new(Feature::SurfaceCorrection, LISTED_PAIRS);
+
+    /// Of forms that compute pair forces only.
+    pub const STATE_BASED: Self = Self::new(
+        Feature::StateBased,
+        "state-based materials are computed on a list of bonds only; leave `bonds` out or give \"list\"",
+    );
 
     /// Of forms that need one lattice.
     pub const SEVERAL_SPACINGS: Self = Self::new(

@@ -54,7 +54,7 @@ pub use own_law::PlainLaw;
 pub use springs::{LatticeSpring, LatticeSprings};
 pub use state_based::{FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, SmallStrain};
 pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
-pub use view::{BondAt, BondView};
+pub use view::{BondAt, BondView, DilatationView};
 pub use zoned::{LocalForce, SplitForce};
 
 pub use crate::lanes::InstructionSet;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
-    BondView, Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity,
-    LocalForce, On,
+    BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, LinearOperator,
+    Linearity, LocalForce, On,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -77,6 +77,11 @@ pub trait TwoPass: Saved + Send + Sync {
 
     /// The same, to be changed.
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        None
+    }
+
+    /// The number of the value that is the dilatation of a point, if one is.
+    fn dilatation(&self) -> Option<usize> {
         None
     }
 
@@ -245,6 +250,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             // What a bond exerts depends on all bonds of its ends.
             split: None,
             bonds: self.force.bonds(),
+            dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
             ..Capabilities::default()
         }
     }
@@ -268,6 +274,21 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
 
     fn use_instruction_set(&mut self, set: InstructionSet) {
         self.force.use_instruction_set(set);
+    }
+}
+
+impl<F: TwoPass> DilatationView for TwoPassForce<F> {
+    fn dilatation_into(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        let Some(number) = self.force.dilatation() else {
+            out.fill(f64::NAN);
+            return;
+        };
+        let ghosts = self.cloud.domain().ghosts(u);
+        let mut own = self.work.take();
+        self.force
+            .values_into(t, Field::new(u, &ghosts), &On::All, &mut own);
+        let n = self.cloud.len();
+        out.copy_from_slice(&own[number * n..(number + 1) * n]);
     }
 }
 

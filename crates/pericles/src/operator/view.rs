@@ -1,4 +1,4 @@
-//! Bonds one by one, for fields that are made of them.
+//! Bonds one by one and dilatations, for fields.
 
 use crate::domain::Field;
 
@@ -19,4 +19,10 @@ pub struct BondAt {
 pub trait BondView: Sync {
     /// Calls `visit` for every bond of point i that is left, at displacement u.
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt));
+}
+
+/// An operator whose force on a bond depends on the dilatations of its ends.
+pub trait DilatationView: Sync {
+    /// Sets the dilatation of every point, dimensionless: the relative change of volume in three dimensions, of area in the plane, of length in a bar.
+    fn dilatation_into(&self, t: f64, u: &[f64], out: &mut [f64]);
 }

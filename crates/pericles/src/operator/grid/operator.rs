@@ -167,6 +167,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
             split: in_doubles.then_some(self),
             bonds: Some(self),
             single_precision: !in_doubles,
+            dilatation: None,
         }
     }
 

@@ -118,6 +118,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
             split: Some(self),
             bonds: Some(self),
             single_precision: false,
+            dilatation: None,
         }
     }
 

@@ -7,7 +7,7 @@ use super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
 use crate::material::{LinearSolidConstants, SolidClasses, SolidSurface, Strains};
-use crate::operator::{DamageMeasure, Force, TwoPassForce};
+use crate::operator::{DamageMeasure, Feature, Features, Force, Limit, TwoPassForce};
 use crate::space::PointCloud;
 
 /// A body of linear peridynamic solids: all that its operator is made of.
@@ -33,7 +33,28 @@ pub struct LinearSolidBody<'a> {
     pub damage: DamageMeasure,
 }
 
+/// What state-based bodies do not represent.
+const LIMITS: &[Limit] = &[
+    Limit::new(
+        Feature::Inclusions,
+        "inclusions scale the stiffness of bonds, which state-based materials do not have; give a [[material.part]] with elastic constants of its own",
+    ),
+    Limit::new(
+        Feature::SeveralSpacings,
+        "state-based materials need cells of one size; leave `body.refine` out or use a bond-based model",
+    ),
+    Limit::new(
+        Feature::GaussNodes,
+        "Gauss nodes belong to linear bond-based bars; leave `quadrature` out",
+    ),
+];
+
 impl<'a> LinearSolidBody<'a> {
+    /// Why a body with these features cannot be state-based; none if it can.
+    pub fn refusal(features: Features) -> Option<&'static str> {
+        Limit::refusal(LIMITS, features)
+    }
+
     /// A body of one material without pre-cracks, all of whose bonds may break, for displacements of any size.
     pub fn new(
         cloud: &'a Arc<PointCloud>,

@@ -134,6 +134,10 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         Some(self)
     }
 
+    fn dilatation(&self) -> Option<usize> {
+        Some(0)
+    }
+
     /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
     fn bonds(&self) -> Option<&dyn BondView> {
         (!self.cloud.domain().is_divided()).then_some(self)

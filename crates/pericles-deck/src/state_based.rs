@@ -1,0 +1,163 @@
+//! `model = "state-based"`: elastic constants and failure of linear peridynamic solids.
+
+use pericles::material::{
+    BondFailure, Fracture, FractureCalibration, GivenConstants, LinearSolid, StateInfluence,
+    Strains, StressState, StretchDefinition,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::constants;
+use crate::quantity::Quantity;
+use crate::reader::Table;
+use crate::vocabulary::{MODULI, STRENGTHS};
+
+/// A state-based material, with how its extensions follow from displacements.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateBased {
+    /// Elastic constants, horizon, influence function and failure.
+    #[serde(with = "crate::form")]
+    pub solid: LinearSolid,
+    /// Finite or small displacements.
+    #[serde(default, with = "crate::form")]
+    pub strains: Strains,
+}
+
+impl StateBased {
+    /// The influence function as a function of the bond's length; none if it is computed from the lattice.
+    pub fn given_influence(&self) -> Option<pericles::kernel::Influence> {
+        match &self.solid.influence {
+            StateInfluence::Isotropic => None,
+            StateInfluence::Function(function) => Some(pericles::kernel::Influence {
+                function: function.clone(),
+                ..Default::default()
+            }),
+        }
+    }
+}
+
+/// How the constants of state-based materials are read: the same for all materials of a body.
+pub(crate) struct SolidRules {
+    state: Option<StressState>,
+    criterion: Option<Criterion>,
+    definition: Option<StretchDefinition>,
+    calibration: Option<FractureCalibration>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Criterion {
+    Stretch,
+    BondEnergy,
+}
+
+impl SolidRules {
+    /// The rules in a material's table; `calibration` follows from the body.
+    pub(crate) fn read(
+        table: &Table<'_>,
+        state: Option<StressState>,
+        calibration: Option<FractureCalibration>,
+    ) -> Self {
+        let breaks = STRENGTHS.iter().any(|key| table.has(key)) || table.has("part");
+        if !breaks {
+            for key in ["failure", "stretch_definition"] {
+                table.forbid(key, "bonds without `fracture_energy` never break");
+            }
+            return Self {
+                state,
+                criterion: Some(Criterion::Stretch),
+                definition: Some(StretchDefinition::default()),
+                calibration,
+            };
+        }
+        let criterion = table.choice_or_first(
+            "failure",
+            "failure criterion",
+            &[
+                ("stretch", Criterion::Stretch),
+                ("bond-energy", Criterion::BondEnergy),
+            ],
+        );
+        let definition = match criterion {
+            Some(Criterion::BondEnergy) => {
+                table.forbid(
+                    "stretch_definition",
+                    "it belongs to failure = \"stretch\": the critical bond energy does not depend on it",
+                );
+                Some(StretchDefinition::default())
+            }
+            _ => table.choice_or_first(
+                "stretch_definition",
+                "definition of the critical stretch",
+                &[
+                    ("closing", StretchDefinition::Closing),
+                    ("bond", StretchDefinition::Bond),
+                    ("iso", StretchDefinition::Isotropic),
+                ],
+            ),
+        };
+        Self {
+            state,
+            criterion,
+            definition,
+            calibration,
+        }
+    }
+
+    /// The elastic constants in a table: two of four, of a bar Young's modulus.
+    pub(crate) fn elastic(&self, table: &Table<'_>) -> Option<GivenConstants> {
+        table.together(MODULI);
+        let modulus = |key| table.maybe(key, |item| item.positive(Quantity::Modulus));
+        let [young, bulk, shear] = ["youngs_modulus", "bulk_modulus", "shear_modulus"].map(modulus);
+        table.forbid(
+            "modulus",
+            "a state-based material has the stiffness of its elastic constants: the dilatation is exact on every lattice, and influence = { function = \"isotropic\" } makes shear exact too",
+        );
+        let poisson_ratio = if self.state == Some(StressState::Uniaxial) {
+            table.forbid(
+                "poisson_ratio",
+                "a bar contracts across its axis without any effect on its motion; leave it out",
+            );
+            Some(None)
+        } else {
+            table.maybe("poisson_ratio", |item| {
+                item.within(
+                    Quantity::Number,
+                    "a number above -1 and below 0.5, where bulk and shear modulus are positive",
+                    |ratio| ratio > -1.0 && ratio < 0.5,
+                )
+            })
+        };
+        let given = GivenConstants {
+            young: young?,
+            poisson_ratio: poisson_ratio?,
+            bulk: bulk?,
+            shear: shear?,
+        };
+        table.accept(given.resolve(self.state?))?;
+        Some(given)
+    }
+
+    /// When the bonds of the material in a table break.
+    pub(crate) fn failure(&self, table: &Table<'_>) -> Option<BondFailure> {
+        if self.criterion == Some(Criterion::BondEnergy) {
+            table.forbid(
+                "critical_stretch",
+                "failure = \"bond-energy\" needs `fracture_energy`, from which the critical bond energy follows",
+            );
+        }
+        let fracture = constants::fracture(table)?;
+        Some(match (fracture, self.criterion?) {
+            (Fracture::Unbreakable, _) => BondFailure::Unbreakable,
+            (Fracture::CriticalStretch(stretch), _) => BondFailure::CriticalStretch(stretch),
+            (Fracture::Energy { energy, .. }, Criterion::Stretch) => BondFailure::Stretch {
+                fracture_energy: energy,
+                definition: self.definition?,
+                calibration: self.calibration?,
+            },
+            (Fracture::Energy { energy, .. }, Criterion::BondEnergy) => BondFailure::BondEnergy {
+                fracture_energy: energy,
+                calibration: self.calibration?,
+            },
+        })
+    }
+}
