@@ -88,7 +88,7 @@ fn every_entry_arrives() {
         },
     };
     assert_eq!(solid.material.name.as_deref(), Some("soda-lime glass"));
-    assert_eq!(solid.material.bonds, bonds);
+    assert_eq!(solid.material.bonds(), Some(&bonds));
     assert_eq!(solid.material.no_fail, ["top", "bottom"]);
     let damage = solid.material.damage.unwrap();
     assert!(damage.count && damage.count_precut);
@@ -278,9 +278,12 @@ fn defaults_are_filled_in_and_recorded() {
     let deck = parse(LEAST);
     assert_eq!(solid(&deck).state, StressState::Uniaxial);
     assert_eq!(grid(&deck).section, 1.0);
-    assert_eq!(solid(&deck).material.bonds.fracture, Fracture::Unbreakable);
     assert_eq!(
-        solid(&deck).material.bonds.volume_correction,
+        solid(&deck).material.bonds().unwrap().fracture,
+        Fracture::Unbreakable
+    );
+    assert_eq!(
+        solid(&deck).material.bonds().unwrap().volume_correction,
         VolumeCorrection::Extended
     );
     assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
@@ -455,10 +458,10 @@ fn overrides_change_what_is_read() {
         }
     );
     assert_eq!(
-        solid(&deck).material.bonds.modulus.value,
+        solid(&deck).material.bonds().unwrap().modulus.value,
         ElasticModulus::Bulk(48e9)
     );
-    assert_eq!(solid(&deck).material.bonds.horizon, 2e-3);
+    assert_eq!(solid(&deck).material.bonds().unwrap().horizon, 2e-3);
     assert_eq!(deck.model.output.history, Schedule::Interval(1e-6));
     assert_eq!(deck.model.title.as_deref(), Some("Another one"));
     assert_eq!(deck.model.checkpoint, Checkpoint::Wall(60.0));

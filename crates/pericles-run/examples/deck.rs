@@ -38,9 +38,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // The model changed in Rust. It could as well come from JSON, or be written from scratch.
     model.title = Some("Aluminium bar in tension".into());
-    if let Some(solid) = model.body.solid_mut() {
-        solid.material.bonds.modulus.value = ElasticModulus::Young(70e9);
-        solid.material.bonds.density = 2700.0;
+    let solid = model.body.solid_mut();
+    if let Some(material) = solid.and_then(|solid| solid.material.bonds_mut()) {
+        material.modulus.value = ElasticModulus::Young(70e9);
+        material.density = 2700.0;
     }
     let folder = place.path().join("aluminium");
     let aluminium = end_displacement(&Source::of_model(model, Path::new("")), &folder)?;

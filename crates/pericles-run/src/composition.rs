@@ -34,7 +34,7 @@ pub struct Form {
     pub name: &'static str,
     /// The needs of schemes that its forces meet.
     pub offers: &'static [Need],
-    /// The choice that a deck makes; none for surfaces, which have no other form.
+    /// The choice that a deck makes; none for surfaces and state-based bodies, which have no other form.
     pub choice: Option<ForceForm>,
 }
 
@@ -118,7 +118,7 @@ pub const SCHEMES: [Scheme; 12] = [
 ];
 
 /// All forms.
-pub const FORMS: [Form; 6] = [
+pub const FORMS: [Form; 7] = [
     Form {
         words: "list of bonds (any body)",
         name: "list",
@@ -141,6 +141,12 @@ pub const FORMS: [Form; 6] = [
         words: "bonds of surfaces",
         name: "surface",
         offers: &OF_FORMS,
+        choice: None,
+    },
+    Form {
+        words: "state-based bodies",
+        name: "state-based",
+        offers: &[Need::DoublePrecision, Need::FiniteReach],
         choice: None,
     },
     Form {

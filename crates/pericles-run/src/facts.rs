@@ -1,13 +1,11 @@
 //! What is known of a run before its first step: what reports, `check` and `run.json` say of a model.
 
-use pericles::material::{
-    BondConstants, BondMaterial, Fracture, FractureCalibration, SurfaceCorrection,
-};
+use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles_deck::{Body, Deck, Model, ModelWarning};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
-use crate::build::{Assembly, LoadReport};
+use crate::build::{Assembly, LoadReport, MaterialConstants};
 use crate::refinement::RefinementFacts;
 use crate::units::{bytes, count, quantity, significant};
 
@@ -32,10 +30,22 @@ pub struct Facts {
     pub operator: &'static str,
     /// Young's modulus, Pa; none for a surface.
     pub youngs_modulus: Option<f64>,
-    /// The bond constant c; none for a surface.
+    /// Poisson's ratio; of state-based materials in two and three dimensions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub poisson_ratio: Option<f64>,
+    /// Bulk modulus, Pa; of state-based materials in two and three dimensions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bulk_modulus: Option<f64>,
+    /// Shear modulus, Pa; of state-based materials in two and three dimensions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shear_modulus: Option<f64>,
+    /// The bond constant c; none for a surface and for state-based materials.
     pub micromodulus: Option<f64>,
-    /// None if bonds never break.
+    /// None if bonds never break, or not by their stretch.
     pub critical_stretch: Option<f64>,
+    /// Critical bond energy, J/m⁶; none if bonds do not break by their energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub critical_bond_energy: Option<f64>,
     /// Fracture energy, J/m²; none if bonds never break.
     pub fracture_energy: Option<f64>,
     /// How the critical stretch follows from the fracture energy; none if the deck gives no fracture energy.
@@ -44,10 +54,13 @@ pub struct Facts {
     /// Cracks along the planes of the lattice, if bonds break and there is a lattice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub crack_planes: Vec<PlaneFacts>,
-    /// Bulk stiffness of the grid's interior over the continuum's, less one; none for a surface.
+    /// Bulk stiffness of the grid's interior over the continuum's, less one; none for a surface; of state-based materials zero.
     pub stiffness_error: Option<f64>,
     /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one; none for a surface.
     pub shear_error: Option<f64>,
+    /// The same against a shear along the diagonals; of state-based materials on square and cubic cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diagonal_shear_error: Option<f64>,
     /// Time step, s.
     pub dt: f64,
     /// Steps of the whole run.
@@ -200,6 +213,12 @@ impl Facts {
         let directed_bonds = operator.directed_bonds();
         let constants = assembly.constants.as_ref();
         let finite = |x: f64| x.is_finite().then_some(x);
+        let bonds = constants.and_then(MaterialConstants::bonds);
+        let state_based = constants.and_then(MaterialConstants::state_based);
+        let elastic = state_based
+            .filter(|_| dimension > 1)
+            .map(|constants| constants.elastic);
+        let shear = state_based.and_then(|constants| constants.lattice_shear);
         Self {
             dimension,
             points,
@@ -209,21 +228,33 @@ impl Facts {
             directed_bonds,
             precut_bonds: assembly.precut_bonds,
             operator: assembly.form.name(),
-            youngs_modulus: constants.map(|constants| constants.young),
-            micromodulus: constants.map(|constants| constants.micromodulus),
+            youngs_modulus: constants.map(MaterialConstants::young),
+            poisson_ratio: elastic.map(|elastic| elastic.poisson_ratio()),
+            bulk_modulus: elastic.map(|elastic| elastic.bulk()),
+            shear_modulus: elastic.map(|elastic| elastic.shear()),
+            micromodulus: bonds.map(|constants| constants.micromodulus),
             critical_stretch: finite(match (&model.body, constants) {
                 (Body::Solid(_), constants) => {
-                    constants.map_or(f64::INFINITY, |constants| constants.critical_stretch)
+                    constants.map_or(f64::INFINITY, MaterialConstants::critical_stretch)
                 }
                 (Body::Surface(surface), _) => surface.material.critical_stretch,
             }),
-            fracture_energy: constants.and_then(|constants| finite(constants.fracture_energy)),
+            critical_bond_energy: constants
+                .and_then(|constants| finite(constants.critical_bond_energy())),
+            fracture_energy: constants.and_then(|constants| finite(constants.fracture_energy())),
             fracture_calibration: constants
-                .and_then(|constants| constants.fracture_calibration)
+                .and_then(MaterialConstants::fracture_calibration)
                 .map(|given| given.name()),
             crack_planes: constants.map(plane_facts).unwrap_or_default(),
-            stiffness_error: constants.map(|constants| constants.stiffness_error),
-            shear_error: constants.map(|constants| constants.shear_error),
+            stiffness_error: constants.map(|constants| match constants {
+                MaterialConstants::Bonds(constants) => constants.stiffness_error,
+                // The dilatation is exact on any points.
+                MaterialConstants::StateBased(_) => 0.0,
+            }),
+            diagonal_shear_error: shear.map(|shear| shear.diagonals - 1.0),
+            shear_error: bonds
+                .map(|constants| constants.shear_error)
+                .or(shear.map(|shear| shear.axes - 1.0)),
             dt: assembly.dt,
             steps: assembly.steps,
             highest_frequency: assembly.body_frequency.map(|f| f.estimate),
@@ -263,11 +294,11 @@ impl Facts {
 }
 
 /// What cracks along the planes of the lattice cost.
-fn plane_facts(constants: &BondConstants) -> Vec<PlaneFacts> {
-    let planes = constants.crack_planes.iter();
+fn plane_facts(constants: &MaterialConstants) -> Vec<PlaneFacts> {
+    let planes = constants.crack_planes().iter();
     let facts = planes.map(|plane| PlaneFacts {
         plane: plane.to_string(),
-        deviation: plane.energy() / constants.fracture_energy - 1.0,
+        deviation: plane.energy() / constants.fracture_energy() - 1.0,
     });
     facts.collect()
 }
@@ -275,10 +306,14 @@ fn plane_facts(constants: &BondConstants) -> Vec<PlaneFacts> {
 /// What this deck leaves to defaults that differ from those of the last release.
 fn changed_defaults(deck: &Deck, assembly: &Assembly) -> Vec<String> {
     let mut changed = Vec::new();
-    let (Some(solid), Some(constants)) = (deck.model.body.solid(), &assembly.constants) else {
+    let Some(solid) = deck.model.body.solid() else {
         return changed;
     };
-    let material = &solid.material.bonds;
+    let constants = assembly.constants.as_ref();
+    let bonds = constants.and_then(MaterialConstants::bonds);
+    let Some((material, constants)) = solid.material.bonds().zip(bonds) else {
+        return changed;
+    };
     let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
     if lattice && !deck.gives("material.fracture_calibration") {
         let continuum = BondMaterial {

@@ -70,8 +70,8 @@ pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
     Assembly, Discretisation, ExactReference, FileError, Grids, Interior, KernelQuality,
-    LoadReport, PlaneWaves, PointsReader, Resources, Sets, SurfaceReader, TableReader, assemble,
-    body_points, build, discretise,
+    LoadReport, MaterialConstants, PlaneWaves, PointsReader, Resources, Sets, SurfaceReader,
+    TableReader, assemble, body_points, build, discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;

@@ -1,69 +1,42 @@
 //! What `check` says of materials.
 
 use pericles::kernel::ActsOn;
-use pericles::material::{BondConstants, Calibration, ElasticWaves};
-use pericles_deck::{Solid, SurfaceBody, VertexAreas};
+use pericles::material::{
+    BondConstants, BondMaterial, Calibration, LinearSolidConstants, StateInfluence,
+};
+use pericles_deck::{MaterialModel, Part, Solid, StateBased, SurfaceBody, VertexAreas};
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
-use pericles_run::Facts;
 use pericles_run::units::{percent, quantity, significant};
+use pericles_run::{Facts, MaterialConstants};
 use serde_json::json;
 
 use super::line::Line;
 
 pub(super) fn material(
     solid: &Solid,
-    constants: &BondConstants,
+    constants: &MaterialConstants,
     facts: &Facts,
-    parts: &[BondConstants],
+    parts: &[MaterialConstants],
 ) -> Vec<Line> {
-    let mut lines = vec![
-        Line::new("Young's modulus", quantity(constants.young, "Pa")),
-        Line::new(
-            "bond constant c",
-            format!(
-                "{:.6e} (SI, of the force density c α {})",
-                constants.micromodulus,
-                match solid.material.bonds.influence.acts_on {
-                    ActsOn::Stretch => "s",
-                    ActsOn::Displacement => "η",
-                }
-            ),
-        ),
-        Line::new(
-            "stiffness error",
-            stiffness_error(solid, constants, facts.dimension),
-        ),
-    ];
-    let strength = facts.critical_stretch.zip(facts.fracture_energy);
-    lines.push(Line::new("breaking", breaking(strength)));
+    let mut lines = match (&solid.material.model, constants) {
+        (MaterialModel::Bonds(material), MaterialConstants::Bonds(constants)) => {
+            bond_based(material, constants, facts)
+        }
+        (MaterialModel::StateBased(material), MaterialConstants::StateBased(constants)) => {
+            state_based(material, constants, facts)
+        }
+        _ => Vec::new(),
+    };
+    lines.push(Line::new("breaking", breaking(constants)));
     if !facts.crack_planes.is_empty() {
         lines.push(Line::new("crack planes", crack_planes(facts)));
     }
     for (part, own) in solid.material.parts.iter().zip(parts) {
-        let strength = Some((own.critical_stretch, own.fracture_energy))
-            .filter(|(stretch, _)| stretch.is_finite());
-        let text = format!(
-            "{}: Young's modulus {}, {} kg/m³; breaking {}",
-            part.name,
-            quantity(own.young, "Pa"),
-            significant(part.density, 4),
-            breaking(strength)
-        );
-        lines.push(Line::new("besides", text).with_entry(
-            "parts",
-            json!({
-                "name": part.name,
-                "youngs_modulus": own.young,
-                "density": part.density,
-                "critical_stretch": strength.map(|(stretch, _)| stretch),
-                "fracture_energy": strength.map(|(_, energy)| energy),
-            }),
-        ));
+        lines.push(other_material(part, own));
     }
-    let density = solid.material.bonds.density;
-    let speeds = ElasticWaves::of(constants.young, density, solid.state);
+    let speeds = constants.waves(solid.material.density(), solid.state);
     let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
     if let Some(transverse) = speeds.transverse {
         waves += &format!(
@@ -83,6 +56,92 @@ pub(super) fn material(
     lines
 }
 
+fn bond_based(material: &BondMaterial, constants: &BondConstants, facts: &Facts) -> Vec<Line> {
+    vec![
+        Line::new("Young's modulus", quantity(constants.young, "Pa")),
+        Line::new(
+            "bond constant c",
+            format!(
+                "{:.6e} (SI, of the force density c α {})",
+                constants.micromodulus,
+                match material.influence.acts_on {
+                    ActsOn::Stretch => "s",
+                    ActsOn::Displacement => "η",
+                }
+            ),
+        ),
+        Line::new(
+            "stiffness error",
+            stiffness_error(material, constants, facts.dimension),
+        ),
+    ]
+}
+
+/// Elastic constants, and how far the grid's interior is from isotropic.
+fn state_based(
+    material: &StateBased,
+    constants: &LinearSolidConstants,
+    facts: &Facts,
+) -> Vec<Line> {
+    let mut text = format!("E = {}", quantity(constants.elastic.young(), "Pa"));
+    if let (Some(ratio), Some(bulk), Some(shear)) =
+        (facts.poisson_ratio, facts.bulk_modulus, facts.shear_modulus)
+    {
+        text += &format!(
+            ", ν = {}, K = {}, G = {}",
+            significant(ratio, 4),
+            quantity(bulk, "Pa"),
+            quantity(shear, "Pa")
+        );
+    }
+    let mut lines = vec![Line::new("elastic constants", text)];
+    if let (Some(axes), Some(diagonals)) = (facts.shear_error, facts.diagonal_shear_error) {
+        /// Worth a word.
+        const NOTICED: f64 = 0.01;
+        let mut text = format!(
+            "{} in shear along the axes, {} along the diagonals, none in bulk, of the grid's interior",
+            deviation(axes),
+            deviation(diagonals)
+        );
+        let isotropic = material.solid.influence == StateInfluence::Isotropic;
+        if axes.abs() > NOTICED && !isotropic {
+            text += "; influence = { function = \"isotropic\" } makes both 0";
+        }
+        lines.push(Line::new("stiffness error", text));
+    }
+    lines
+}
+
+/// A material of `[[material.part]]`.
+fn other_material(part: &Part, own: &MaterialConstants) -> Line {
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let elastic = own
+        .state_based()
+        .map(|constants| constants.elastic.poisson_ratio());
+    let ratio = elastic.map_or_else(String::new, |ratio| {
+        format!(", ν = {}", significant(ratio, 4))
+    });
+    let text = format!(
+        "{}: Young's modulus {}{ratio}, {} kg/m³; breaking {}",
+        part.name,
+        quantity(own.young(), "Pa"),
+        significant(part.density, 4),
+        breaking(own)
+    );
+    let mut entry = json!({
+        "name": part.name,
+        "youngs_modulus": own.young(),
+        "density": part.density,
+        "critical_stretch": finite(own.critical_stretch()),
+        "fracture_energy": finite(own.fracture_energy()),
+    });
+    if let Some(ratio) = elastic {
+        entry["poisson_ratio"] = ratio.into();
+        entry["critical_bond_energy"] = finite(own.critical_bond_energy()).into();
+    }
+    Line::new("besides", text).with_entry("parts", entry)
+}
+
 /// A speed with whole metres per second, or with three digits where it is small.
 fn speed(speed: f64) -> String {
     match speed.abs() >= 100.0 {
@@ -92,7 +151,7 @@ fn speed(speed: f64) -> String {
 }
 
 /// How far the grid's interior is from the stiffness asked for, and what can be done about it.
-fn stiffness_error(solid: &Solid, constants: &BondConstants, dimension: usize) -> String {
+fn stiffness_error(material: &BondMaterial, constants: &BondConstants, dimension: usize) -> String {
     /// Worth a word.
     const NOTICED: f64 = 0.01;
     let mut line = format!("{} in bulk", deviation(constants.stiffness_error));
@@ -103,7 +162,7 @@ fn stiffness_error(solid: &Solid, constants: &BondConstants, dimension: usize) -
         );
     }
     line += ", of the grid's interior";
-    let calibration = solid.material.bonds.modulus.calibration;
+    let calibration = material.modulus.calibration;
     if constants.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
         line += "; modulus = \"lattice\" makes it 0 in bulk";
     }
@@ -135,16 +194,21 @@ fn crack_planes(facts: &Facts) -> String {
     )
 }
 
-/// From critical stretch and fracture energy (J/m²).
-fn breaking(strength: Option<(f64, f64)>) -> String {
-    match strength {
-        Some((stretch, energy)) => format!(
-            "beyond the stretch {}, fracture energy {}",
-            significant(stretch, 4),
-            quantity(energy, "J/m²")
-        ),
-        None => "never".into(),
-    }
+/// What bonds can bear.
+fn breaking(constants: &MaterialConstants) -> String {
+    let (stretch, energy) = (
+        constants.critical_stretch(),
+        constants.critical_bond_energy(),
+    );
+    let limit = if stretch.is_finite() {
+        format!("beyond the stretch {}", significant(stretch, 4))
+    } else if energy.is_finite() {
+        format!("beyond the bond energy {}", quantity(energy, "J/m⁶"))
+    } else {
+        return "never".into();
+    };
+    let fracture = quantity(constants.fracture_energy(), "J/m²");
+    format!("{limit}, fracture energy {fracture}")
 }
 
 pub(super) fn surface_material(surface: &SurfaceBody) -> Vec<Line> {

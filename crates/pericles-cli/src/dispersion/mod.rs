@@ -2,6 +2,7 @@
 
 mod wavevectors;
 
+use pericles::material::BondMaterial;
 use pericles_deck::Solid;
 use pericles_dispersion::spectrum::{SpectrumRun, measure};
 use pericles_dispersion::tuning::{TunedTable, bond_classes, continuum_speeds};
@@ -34,6 +35,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     let interior = assembly.interior(model);
     let interior = interior.map_err(|error| deck.refusal(error))?;
     let (solid, title) = (interior.solid, model.title.as_deref());
+    let material = interior.material;
     let study = Analysis::of(interior, assembly.dt, args)?;
     if args.measure && !study.stability.is_stable() {
         return Err(CliError::UnstableSpectrum);
@@ -57,7 +59,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
             &["p", "s1", "s2"][..study.lattice.dimension()],
         )?;
     }
-    study.write_classes(solid, &folder)?;
+    study.write_classes((solid, material), &folder)?;
     if !study.wavevectors.is_empty() {
         wavevectors::write(&folder.file("wavevectors.csv"), &study.wavevectors)?;
     }
@@ -103,6 +105,7 @@ impl Analysis {
         let Interior {
             lattice,
             solid,
+            material,
             constants,
         } = interior;
         let dimension = lattice.dimension();
@@ -115,7 +118,7 @@ impl Analysis {
             Ok(AtWaveVector::of(&lattice, k, dt))
         });
         let wavevectors = wavevectors.collect::<Result<_, CliError>>()?;
-        let bar = (constants.young / solid.material.bonds.density).sqrt();
+        let bar = (constants.young / material.density).sqrt();
         let speeds = continuum_speeds(solid.state);
         let speeds: Vec<f64> = (0..lattice.dimension())
             .map(|branch| {
@@ -152,12 +155,15 @@ impl Analysis {
     }
 
     /// α of each class as the deck has it, with its bonds' share κ.
-    fn write_classes(&self, solid: &Solid, folder: &OutputFolder) -> Result<(), IoError> {
+    fn write_classes(
+        &self,
+        (solid, material): (&Solid, &BondMaterial),
+        folder: &OutputFolder,
+    ) -> Result<(), IoError> {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
         }
         let classes = bond_classes(&self.lattice);
-        let material = &solid.material.bonds;
         let spacing = solid.shape.spacing();
         let alpha = classes
             .iter()
@@ -238,7 +244,7 @@ impl Analysis {
             "state": state.name(),
             "poisson_ratio": state.poisson_ratio(),
             "spacing": self.lattice.spacing(),
-            "horizon": solid.material.bonds.horizon,
+            "horizon": solid.material.horizon(),
             "bar_wave_speed": self.bar,
             "continuum_speeds": self.speeds,
             "long_wave_speed_ratios": self.anisotropy(),

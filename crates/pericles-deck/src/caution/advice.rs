@@ -41,6 +41,9 @@ impl Subject for Caution {
             Self::ShearStiffness { .. } => {
                 "a horizon of one spacing joins a point to few neighbours off the axes; take three spacings"
             }
+            Self::ShearAnisotropy { .. } => {
+                "influence = { function = \"isotropic\" } makes it the material's in all directions; \"conical\" is nearer to it than \"constant\""
+            }
             Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
             Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
             Self::LoadedArea(_) => {
@@ -114,6 +117,7 @@ impl Subject for Caution {
             Self::NothingActs => "at rest",
             Self::StiffnessError { .. } => "another stiffness",
             Self::ShearStiffness { .. } => "little shear stiffness",
+            Self::ShearAnisotropy { .. } => "anisotropic shear",
             Self::FastWaves { .. } => "very light",
             Self::IdleClasses { .. } => "no stiffness",
             Self::LoadedArea(_) => "which area?",

@@ -57,6 +57,18 @@ pub enum Caution {
         /// Shear stiffness over the continuum's, less one.
         error: f64,
     },
+    /// A lattice on which a state-based material is far from isotropic.
+    #[error(
+        "inside the body the shear modulus is {} of the material's along the grid's axes and {} along its diagonals",
+        percent(*axes),
+        percent(*diagonals)
+    )]
+    ShearAnisotropy {
+        /// Shear modulus along the axes over the material's.
+        axes: f64,
+        /// Along the diagonals.
+        diagonals: f64,
+    },
     /// Waves that no solid carries.
     #[error("waves run at {speed:.3e} m/s, faster than in any solid")]
     FastWaves {

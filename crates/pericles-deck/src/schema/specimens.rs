@@ -233,6 +233,13 @@ end = 1
 dt = 1
 "#;
 
+/// A material with every key of state-based ones.
+const STATE_BASED: &str = "material={ model = 'state-based', strains = 'small', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, volume_correction = 'none', \
+     surface_correction = 'energy', influence = { function = 'inverse' }, fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond', fracture_calibration = 'lattice', no_fail = 'top', \
+     part = [{ name = 'a', set = 'top', density = 1, youngs_modulus = 1, poisson_ratio = 0.1, fracture_energy = 1 }, \
+             { name = 'b', block = 2, density = 1, bulk_modulus = 2, shear_modulus = 1, critical_stretch = 1 }], \
+     interface = { pair = [{ between = ['a', 'b'], critical_stretch = 1 }] } }";
+
 /// All of them.
 #[rustfmt::skip]
 pub(super) const SPECIMENS: &[Specimen] = &[
@@ -284,6 +291,11 @@ pub(super) const SPECIMENS: &[Specimen] = &[
         PLATE,
         &["material.influence={ function = 'tuned', method = 'least-squares', combination = 'separated', pressure_weight = 1, shear_weight = 1, decay = 1, lower_bound = 0.001 }"],
     ),
+    // State-based materials.
+    specimen(PLATE, &[STATE_BASED]),
+    specimen(PLATE, &["material={ model = 'state-based', density = 1, bulk_modulus = 2, shear_modulus = 1, horizon_ratio = 3, influence = { function = 'isotropic' } }"]),
+    specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'bond-energy', fracture_energy = 1 }"]),
+    specimen(BAR, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, horizon = 3, critical_stretch = 1, failure = 'stretch' }"]),
     // Other laws.
     specimen(BAR, &["material.model=green-strain", "material.treatment=taylor-2"]),
     specimen(PLATE, &["material.shear_modulus=1"]),

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use pericles::material::BondConstants;
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::space::PointCloud;
 use pericles::time::{HighestFrequency, Integrator, State};
@@ -12,6 +11,7 @@ use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
 use pericles_waves::absorbing::{EndReport, Side};
 
+use super::constants::MaterialConstants;
 use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
@@ -25,10 +25,10 @@ pub struct Assembly {
     pub sets: Sets,
     /// The surface, if the body is one.
     pub surface: Option<Arc<Surface>>,
-    /// The constants of the bonds; none for a surface, whose pair law has its own.
-    pub constants: Option<BondConstants>,
+    /// The constants of the material; none for a surface, whose pair law has its own.
+    pub constants: Option<MaterialConstants>,
     /// The constants of the other materials, in the order of `[[material.part]]`.
-    pub parts: Vec<BondConstants>,
+    pub parts: Vec<MaterialConstants>,
     /// How the bonds are kept.
     pub form: ForceForm,
     /// Bonds that pre-cracks cut.

@@ -1,18 +1,20 @@
 //! Force and material of a body.
 
-use pericles::material::{BondConstants, BondMaterial};
-use pericles::observe::TrackedCrack;
+use pericles::family::{Crack, Cut, EndRule};
+use pericles::material::BondMaterial;
+use pericles::observe::{Field, TrackedCrack};
 use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, Fault, Inclusion, KeyPath, ModelWarning, Remark, Scheme, Solid,
-    SurfaceBody,
+    BuildError, Caution, Fault, Inclusion, KeyPath, MaterialModel, ModelWarning, Remark, Scheme,
+    Solid, SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
 
 use super::assembler::Assembler;
+use super::constants::MaterialConstants;
 use super::discretisation::{Discretisation, Grids, Sets};
 use super::parts::Composition;
 use super::refusal::{at_material, at_path};
@@ -21,8 +23,8 @@ use crate::composition::requirements;
 
 /// Force and material of a body.
 pub(super) struct BodyParts {
-    pub(super) constants: Option<BondConstants>,
-    pub(super) parts: Vec<BondConstants>,
+    pub(super) constants: Option<MaterialConstants>,
+    pub(super) parts: Vec<MaterialConstants>,
     pub(super) bonds: AssembledForce,
     pub(super) cracks: Vec<TrackedCrack>,
     pub(super) density: PointScalar,
@@ -36,16 +38,33 @@ impl Assembler<'_> {
         discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
+        match &solid.material.model {
+            MaterialModel::Bonds(material) => {
+                self.bond_based_parts(solid, material, discretisation, warnings)
+            }
+            MaterialModel::StateBased(material) => {
+                self.state_based_parts(solid, material, discretisation, warnings)
+            }
+        }
+    }
+
+    fn bond_based_parts(
+        &self,
+        solid: &Solid,
+        material: &BondMaterial,
+        discretisation: &Discretisation,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<BodyParts, BuildError> {
         let Discretisation {
             cloud, grids, sets, ..
         } = discretisation;
-        let material = &solid.material.bonds;
         let constants = self
             .constants_of(solid, material, cloud)
             .map_err(at_material)?;
-        warnings.extend(self.judge_speed(solid, &constants));
-        warnings.extend(self.judge_classes(solid, &constants));
-        warnings.extend(self.judge_solid(solid, &constants));
+        let known = MaterialConstants::Bonds(constants.clone());
+        warnings.extend(self.judge_speed(solid, &known));
+        warnings.extend(self.judge_classes(material, &constants));
+        warnings.extend(self.judge_solid(solid, &known));
         let no_fail = self.union_of(sets, &solid.material.no_fail)?;
         let stiffness = self.stiffness_of(&solid.material.inclusions, cloud, sets)?;
         let Composition {
@@ -53,7 +72,7 @@ impl Assembler<'_> {
             materials,
             density,
             parts,
-        } = self.parts(solid, cloud, sets, &constants, warnings)?;
+        } = self.parts(solid, (material, &constants), cloud, sets, warnings)?;
         let body = BondBody {
             cloud,
             material,
@@ -71,14 +90,18 @@ impl Assembler<'_> {
         let (bonds, cracks) = self.bonds(solid, composite, (grids, &materials), warnings)?;
         let refused = bonds.form.refusal(Feature::Tensors.into());
         if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
-            return Err(at_path(self.tensor_key(), Fault::NoTensors { reason }));
+            let fields = "the fields Stress and Strain are";
+            return Err(at_path(
+                self.field_key(Field::is_tensor),
+                Fault::NoFields { fields, reason },
+            ));
         }
         Ok(BodyParts {
             bonds,
             cracks,
             density,
-            constants: Some(constants),
-            parts,
+            constants: Some(known),
+            parts: parts.into_iter().map(MaterialConstants::Bonds).collect(),
         })
     }
 
@@ -111,23 +134,30 @@ impl Assembler<'_> {
         })
     }
 
-    /// The key that asks for stress or strain.
-    fn tensor_key(&self) -> KeyPath {
+    /// Refuses the dilatation of a body that has none.
+    pub(super) fn refuse_dilatation(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
+        let is_dilatation = |field| field == Field::Dilatation;
+        let known = bonds.operator.capabilities().dilatation.is_some();
+        if known || !self.model.output.wants(Field::Dilatation) {
+            return Ok(());
+        }
+        let fault = Fault::NoFields {
+            fields: "the field Dilatation is",
+            reason: "only state-based materials (model = \"state-based\") have a dilatation",
+        };
+        Err(at_path(self.field_key(is_dilatation), fault))
+    }
+
+    /// The key that asks for some fields.
+    fn field_key(&self, is_meant: fn(Field) -> bool) -> KeyPath {
         match self
             .model
             .output
             .pictures
             .iter()
-            .position(|picture| picture.field.is_tensor())
+            .position(|picture| is_meant(picture.field))
         {
-            Some(k)
-                if !self
-                    .model
-                    .output
-                    .names
-                    .iter()
-                    .any(|field| field.is_tensor()) =>
-            {
+            Some(k) if !self.model.output.names.iter().any(|field| is_meant(*field)) => {
                 KeyPath::from("output.picture").index(k)
             }
             _ => "output.fields.names".into(),
@@ -177,21 +207,8 @@ impl Assembler<'_> {
         (grids, materials): (&Grids, &[BondMaterial]),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
-        let crack = |k| KeyPath::from("crack").index(k);
-        for (k, pre_crack) in self.model.cracks.iter().enumerate() {
-            // The library tells what is wrong with a crack, not with which.
-            pre_crack
-                .surface
-                .cutter(pre_crack.ends, 0.0)
-                .map_err(|error| at_path(crack(k), error.into()))?;
-        }
         let cloud = composite.body.cloud;
-        let surfaces: Vec<_> = self
-            .model
-            .cracks
-            .iter()
-            .map(|crack| (crack.surface.clone(), crack.ends))
-            .collect();
+        let surfaces = self.crack_surfaces()?;
         let composite = CompositeBody {
             body: BondBody {
                 cracks: &surfaces,
@@ -221,18 +238,46 @@ impl Assembler<'_> {
             };
             pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
+        let tracked = self.tracked_cracks(&surfaces, &assembled.cuts, cloud, warnings);
+        Ok((assembled, tracked))
+    }
+
+    /// The pre-cracks.
+    pub(super) fn crack_surfaces(&self) -> Result<Vec<(Crack, EndRule)>, BuildError> {
+        let crack = |k| KeyPath::from("crack").index(k);
+        for (k, pre_crack) in self.model.cracks.iter().enumerate() {
+            // The library tells what is wrong with a crack, not with which.
+            pre_crack
+                .surface
+                .cutter(pre_crack.ends, 0.0)
+                .map_err(|error| at_path(crack(k), error.into()))?;
+        }
+        let cracks = self.model.cracks.iter();
+        Ok(cracks
+            .map(|crack| (crack.surface.clone(), crack.ends))
+            .collect())
+    }
+
+    /// The pre-cracks with the points at which they cut bonds; warns of those that cut none.
+    pub(super) fn tracked_cracks(
+        &self,
+        surfaces: &[(Crack, EndRule)],
+        cuts: &[Cut],
+        cloud: &PointCloud,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Vec<TrackedCrack> {
         let mut tracked = Vec::new();
-        for (k, ((surface, _), cut)) in surfaces.iter().zip(&assembled.cuts).enumerate() {
+        for (k, ((surface, _), cut)) in surfaces.iter().zip(cuts).enumerate() {
             if cut.bonds == 0 {
                 let caution = Self::useless_crack(surface, cloud);
-                warnings.push(Remark::new(crack(k), caution));
+                warnings.push(Remark::new(KeyPath::from("crack").index(k), caution));
             }
             tracked.push(TrackedCrack {
                 crack: surface.clone(),
                 points: cut.points.clone(),
             });
         }
-        Ok((assembled, tracked))
+        tracked
     }
 }
 

@@ -252,7 +252,7 @@ impl Assembler<'_> {
         stencil: &LatticeStencil,
         cloud: &PointCloud,
     ) -> Option<ModelWarning> {
-        let material = &solid.material.bonds;
+        let material = solid.material.bonds()?;
         if !matches!(material.influence.function, InfluenceFunction::Classes(_)) {
             return None;
         }

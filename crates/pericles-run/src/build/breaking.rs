@@ -1,12 +1,12 @@
 //! Speeds with which bonds break in masses rather than along cracks.
 
 use pericles::System;
-use pericles::material::{BondConstants, ElasticWaves};
 use pericles::operator::On;
 use pericles::time::State;
 use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Scheme};
 
 use super::assembler::Assembler;
+use super::constants::MaterialConstants;
 use super::step::Steps;
 
 /// Times at which prescribed speeds are looked at.
@@ -19,7 +19,7 @@ impl Assembler<'_> {
         &self,
         system: &System,
         state: &State,
-        constants: Option<&BondConstants>,
+        constants: Option<&MaterialConstants>,
         steps: &Steps,
         warnings: &mut Vec<ModelWarning>,
     ) {
@@ -30,8 +30,8 @@ impl Assembler<'_> {
         if !dynamic || !system.operator().can_break() {
             return;
         }
-        let density = solid.material.bonds.density;
-        let waves = ElasticWaves::of(constants.young, density, solid.state);
+        let density = solid.material.density();
+        let waves = constants.waves(density, solid.state);
         let limit = waves.transverse.map_or(waves.pressure, |t| t.rayleigh);
         let first = |key: &str| KeyPath::from(key).index(0);
         // A body that moves as a whole is at rest for an observer that moves with it.

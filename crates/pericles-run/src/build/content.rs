@@ -4,8 +4,8 @@ use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles_deck::{
-    BuildError, Caution, Component, KeyPath, LoadAmplitude, Model, ModelWarning, Remark, Scheme,
-    Solid, TimeHistory,
+    BuildError, Caution, Component, Fault, KeyPath, LoadAmplitude, Model, ModelWarning, Remark,
+    Scheme, Solid, TimeHistory,
 };
 use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
@@ -14,7 +14,7 @@ use pericles_dispersion::{
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
-use super::refusal::{HORIZON, at};
+use super::refusal::{HORIZON, at, at_path};
 
 /// Deviation of the phase speed from which waves count as distorted.
 const TOLERANCE: f64 = 0.05;
@@ -86,16 +86,25 @@ pub struct Interior<'a> {
     pub lattice: BondLattice,
     /// The body.
     pub solid: &'a Solid,
+    /// Its bond-based material.
+    pub material: &'a BondMaterial,
     /// The constants of the bonds.
     pub constants: &'a BondConstants,
 }
 
 impl<'a> Assembler<'a> {
     fn interior(self, assembly: &'a Assembly) -> Result<Interior<'a>, BuildError> {
-        let (Some(solid), Some(constants)) = (self.model.body.solid(), &assembly.constants) else {
+        let Some(solid) = self.model.body.solid() else {
             return Err(at("body", DispersionError::NoLattice.into()));
         };
-        let lattice = self.lattice_of(solid, assembly, &solid.material.bonds, constants);
+        let Some((material, constants)) = bonds_of(solid, assembly) else {
+            let fault = Fault::OutOfRange {
+                value: solid.material.model_name().into(),
+                allowed: "allowed: a bond-based model, whose lattice is one of single bonds".into(),
+            };
+            return Err(at_path("material.model", fault));
+        };
+        let lattice = self.lattice_of(solid, assembly, material, constants);
         let lattice = lattice.map_err(|error| match error.extension() {
             Some(DispersionError::NoLattice) => at("body", error),
             _ => at(HORIZON, error),
@@ -103,6 +112,7 @@ impl<'a> Assembler<'a> {
         Ok(Interior {
             lattice,
             solid,
+            material,
             constants,
         })
     }
@@ -124,11 +134,11 @@ impl<'a> Assembler<'a> {
 
     /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
     fn plane_waves(self, assembly: &Assembly) -> Option<PlaneWaves> {
-        let (solid, constants) = (self.model.body.solid()?, assembly.constants.as_ref()?);
+        let solid = self.model.body.solid()?;
+        let (material, constants) = bonds_of(solid, assembly)?;
         if !solid.material.parts.is_empty() {
             return None;
         }
-        let material = &solid.material.bonds;
         let lattice = self.lattice_of(solid, assembly, material, constants).ok()?;
         let (horizon, end) = (material.horizon, PhaseErrors::new(&lattice).end());
         let kernel = KernelWaves::new(lattice.dimension(), &material.influence, horizon, end);
@@ -162,11 +172,11 @@ impl<'a> Assembler<'a> {
     /// Warns of kernels that do not keep what they are made for, and of loads, motions and initial values whose waves the grid distorts. What the nonlocal model itself does to short waves
     /// is no matter of the grid and not warned of. Bodies that lie on no grid, or are of several materials, are not judged.
     fn judge_waves(self, assembly: &Assembly) -> Vec<ModelWarning> {
-        let body = self.model.body.solid().zip(assembly.constants.as_ref());
-        let Some(((solid, constants), waves)) = body.zip(self.plane_waves(assembly)) else {
+        let body = self.model.body.solid();
+        let Some((solid, waves)) = body.zip(self.plane_waves(assembly)) else {
             return Vec::new();
         };
-        let mut warnings = self.judge_kernel(solid, assembly, constants, &waves);
+        let mut warnings = self.judge_kernel(solid, assembly, &waves);
         if matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
             return warnings;
         }
@@ -259,11 +269,12 @@ impl<'a> Assembler<'a> {
         &self,
         solid: &Solid,
         assembly: &Assembly,
-        constants: &BondConstants,
         waves: &PlaneWaves,
     ) -> Vec<ModelWarning> {
         let mut cautions = Vec::new();
-        let material = &solid.material.bonds;
+        let Some((material, constants)) = bonds_of(solid, assembly) else {
+            return Vec::new();
+        };
         if material.influence.is_signed(material.horizon) {
             let lattice = self.lattice_of(solid, assembly, material, constants).ok();
             let smallest = lattice.map_or(0.0, |lattice| stability(&lattice).smallest);
@@ -285,6 +296,15 @@ impl<'a> Assembler<'a> {
             .map(|caution| Remark::new("material.influence", caution))
             .collect()
     }
+}
+
+/// The bond-based material of a body with its constants, if it is one.
+fn bonds_of<'a>(
+    solid: &'a Solid,
+    assembly: &'a Assembly,
+) -> Option<(&'a BondMaterial, &'a BondConstants)> {
+    let constants = assembly.constants.as_ref()?.bonds()?;
+    Some((solid.material.bonds()?, constants))
 }
 
 /// How a field goes over time, at the origin; 1 where it does not change.

@@ -1,12 +1,12 @@
 //! Damping layers of a model, and the steps that are stable with them.
 
 use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile};
-use pericles::material::BondConstants;
 use pericles::space::{Face, PointCloud};
 use pericles::{PericlesError, StepKind, System};
 use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
 
 use super::assembler::Assembler;
+use super::constants::MaterialConstants;
 use super::refusal::at_path;
 use super::step::Steps;
 
@@ -18,7 +18,7 @@ impl Assembler<'_> {
     pub(super) fn damping_layers(
         &self,
         system: &System,
-        constants: Option<&BondConstants>,
+        constants: Option<&MaterialConstants>,
     ) -> Result<Vec<(usize, Face, DampingProfile)>, BuildError> {
         let is_layer = |boundary: &BoundaryCondition| {
             matches!(boundary, BoundaryCondition::DampingLayer { .. })
@@ -34,7 +34,7 @@ impl Assembler<'_> {
             };
         };
         // Of the first material, where there are several.
-        let modulus = solid.state.longitudinal_modulus(constants.young);
+        let modulus = constants.longitudinal_modulus(solid.state);
         let speed = (modulus / system.density().at(0)).sqrt();
         let layer = |(k, boundary): (usize, &BoundaryCondition)| {
             let BoundaryCondition::DampingLayer {

@@ -1,6 +1,5 @@
 //! The exact solution of a model and the points it is compared at.
 
-use pericles::material::BondConstants;
 use pericles::space::{PointCloud, PointSet};
 use pericles_deck::{
     BuildError, Caution, Fault, KnownSolution, ModelWarning, Pulse, Remark, Solid,
@@ -8,6 +7,7 @@ use pericles_deck::{
 use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
 
 use super::assembler::Assembler;
+use super::constants::MaterialConstants;
 use super::refusal::at_path;
 
 /// What a run is compared with.
@@ -22,7 +22,7 @@ impl Assembler<'_> {
     pub(super) fn exact_reference(
         &self,
         cloud: &PointCloud,
-        constants: Option<&BondConstants>,
+        constants: Option<&MaterialConstants>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Option<ExactReference>, BuildError> {
         let Some(exact) = self.model.exact else {
@@ -32,8 +32,8 @@ impl Assembler<'_> {
             let reason = "they are known for bars only";
             return Err(at_path("exact", Fault::NoExactSolution { reason }));
         };
-        let young = constants.young;
-        let density = solid.material.bonds.density;
+        let young = constants.young();
+        let density = solid.material.density();
         let speed = (young / density).sqrt();
         let (solution, centre): (Box<dyn ExactSolution>, f64) = match exact.solution {
             KnownSolution::NonlocalPulse {

@@ -5,6 +5,8 @@
 //! | a point | [`POINT`] and, for each component, [`COMPONENT`] numbers: place, state, copies for checkpoints and files, what a scheme needs |
 //! | a bond of a grid | a bit |
 //! | a bond of a list | [`LISTED`] while families are found, of which three stay; [`KEPT`] more where the stiffness of every bond is kept |
+//! | a point of a state-based material | [`SOLID`] besides |
+//! | a bond that breaks by its energy | [`WORKED`] besides |
 //! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
 //! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
@@ -13,8 +15,9 @@
 //!
 //! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
 
+use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};
-use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, Scheme, Solid};
+use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, PartConstants, Scheme, Solid};
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
@@ -28,6 +31,9 @@ const POINT: f64 = 120.0;
 const COMPONENT: [f64; 2] = [10.0, 20.0];
 const LISTED: f64 = 16.0;
 const KEPT: f64 = 4.0;
+/// Rows of displacements, references and dilatations of a state-based point, and its constants.
+const SOLID: f64 = 160.0;
+const WORKED: f64 = 24.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
@@ -162,13 +168,16 @@ impl Assembler<'_> {
 
     /// Points within the horizon of a point inside.
     fn neighbours(&self, solid: &Solid, dimension: usize) -> f64 {
-        let material = &solid.material.bonds;
+        let material = &solid.material;
         let spacing = match solid.shape.rectangular() {
             // The side of the square or cube of the same volume.
             Some(sides) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
             None => solid.shape.spacing(),
         };
-        let ratio = material.volume_correction.reach(material.horizon, spacing) / spacing;
+        let ratio = material
+            .volume_correction()
+            .reach(material.horizon(), spacing)
+            / spacing;
         match dimension {
             1 => 2.0 * ratio,
             2 => std::f64::consts::PI * ratio.powi(2),
@@ -186,13 +195,18 @@ impl Assembler<'_> {
         let listed = self.bytes_of_listed_bond(solid);
         let bonds = match solid.material.form {
             ForceForm::List => listed * neighbours,
+            _ if solid.material.state_based().is_some() => listed * neighbours,
             ForceForm::Convolution | ForceForm::Spectral => transform,
             ForceForm::Grid | ForceForm::FloatGrid => neighbours / 8.0,
             _ if solid.shape.is_periodic() => transform,
             _ if self.is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
             _ => listed * neighbours,
         };
-        self.bytes_of_state(dimension) + bonds
+        let own = match solid.material.state_based() {
+            Some(_) => SOLID,
+            None => 0.0,
+        };
+        self.bytes_of_state(dimension) + own + bonds
     }
 
     fn memory_estimate(self, assembly: &Assembly) -> u64 {
@@ -216,11 +230,21 @@ impl Assembler<'_> {
 
     /// Bytes of a bond of a list while families are found.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
-        if self.keeps_every_bond(solid) {
-            LISTED + KEPT
-        } else {
-            LISTED
-        }
+        let Some(state_based) = solid.material.state_based() else {
+            return match self.keeps_every_bond(solid) {
+                true => LISTED + KEPT,
+                false => LISTED,
+            };
+        };
+        let corrected = solid.material.surface_correction != Default::default();
+        let parts = solid.material.parts.iter().map(|part| &part.constants);
+        let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
+        let worked = by_energy(&state_based.solid.failure)
+            || parts.into_iter().any(|constants| match constants {
+                PartConstants::StateBased { failure, .. } => by_energy(failure),
+                PartConstants::Bonds { .. } => false,
+            });
+        LISTED + if corrected { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
     }
 
     /// Whether a stencil can serve all points.

@@ -2,19 +2,19 @@
 
 use pericles::System;
 use pericles::boundary::MotionKind;
-use pericles::material::BondConstants;
 use pericles::observe::Schedule;
 use pericles::time::State;
 use pericles_deck::{Caution, LoadAmplitude, Model, ModelWarning, Remark, Solid};
 
 use super::assembler::Assembler;
+use super::constants::MaterialConstants;
 
 impl Assembler<'_> {
     /// Warns of densities and moduli that no solid has. Decks in units of their own (ρ = 1, E = 1) are left alone.
     pub(super) fn judge_solid(
         &self,
         solid: &Solid,
-        constants: &BondConstants,
+        constants: &MaterialConstants,
     ) -> Vec<ModelWarning> {
         /// kg/m³. Osmium has 22 600.
         const DENSEST: f64 = 1e5;
@@ -22,8 +22,8 @@ impl Assembler<'_> {
         const SOLID: f64 = 100.0;
         /// Pa. The softest gels have 1000.
         const SOFTEST: f64 = 1e3;
-        let density = solid.material.bonds.density;
-        let modulus = constants.young;
+        let density = solid.material.density();
+        let modulus = constants.young();
         let heavy =
             (density > DENSEST).then_some(("material.density", Caution::HeavySolid { density }));
         let soft = (density > SOLID && density <= DENSEST && modulus < SOFTEST)

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use pericles::System;
 use pericles::family::{BondList, Crack};
 use pericles::kernel::InfluenceFunction;
-use pericles::material::BondConstants;
+use pericles::material::{BondConstants, BondMaterial};
 use pericles::space::{Point, PointCloud};
 use pericles_deck::{Caution, KeyPath, LoadAmplitude, ModelWarning, Remark, Scheme, Solid};
 
 use super::assembler::Assembler;
+use super::constants::MaterialConstants;
 use super::refusal::HORIZON;
 
 impl Assembler<'_> {
@@ -33,12 +34,12 @@ impl Assembler<'_> {
     pub(super) fn judge_speed(
         &self,
         solid: &Solid,
-        constants: &BondConstants,
+        constants: &MaterialConstants,
     ) -> Option<ModelWarning> {
         /// m/s. Diamond has 18 000.
         const FASTEST: f64 = 3e4;
-        let modulus = solid.state.longitudinal_modulus(constants.young);
-        let density = solid.material.bonds.density;
+        let modulus = constants.longitudinal_modulus(solid.state);
+        let density = solid.material.density();
         let speed = (modulus / density).sqrt();
         let caution = Caution::FastWaves { speed };
         (speed > FASTEST).then(|| Remark::new("material.density", caution))
@@ -76,12 +77,12 @@ impl Assembler<'_> {
     /// Warns of classes of bonds that carry nothing where bonds can break: they count as damage without ever having resisted.
     pub(super) fn judge_classes(
         &self,
-        solid: &Solid,
+        material: &BondMaterial,
         constants: &BondConstants,
     ) -> Option<ModelWarning> {
         /// Of the largest coefficient; the bound of tuned coefficients is met to round-off.
         const NOTHING: f64 = 1e-9;
-        let InfluenceFunction::Classes(table) = &solid.material.bonds.influence.function else {
+        let InfluenceFunction::Classes(table) = &material.influence.function else {
             return None;
         };
         let values = table.entries().iter().map(|(_, value)| value.abs());
@@ -196,9 +197,10 @@ impl Assembler<'_> {
 
     /// The piece of each point, named by its first point: what bonds join at the start.
     fn pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) -> Option<Vec<usize>> {
-        let material = &solid.material.bonds;
+        let material = &solid.material;
         // What is wrong with families and cracks has been refused when the operator was made.
-        let mut bonds = BondList::new(cloud, material.horizon, material.volume_correction).ok()?;
+        let mut bonds =
+            BondList::new(cloud, material.horizon(), material.volume_correction()).ok()?;
         for crack in &self.model.cracks {
             bonds.cut(&crack.surface, crack.ends).ok()?;
         }

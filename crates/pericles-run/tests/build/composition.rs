@@ -22,6 +22,14 @@ load = [{ set = "all", traction = [0, 1e-3, 0] }]
 time = { end = 4, SCHEME }
 "#;
 
+/// The plate of a state-based material.
+const STATE_BASED: &str = r#"body = { shape = "plate", size = [40, 30], spacing = 1, plane = "stress" }
+material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 1, poisson_ratio = 0.2, horizon_ratio = 3 }
+initial = [{ velocity = [{ expression = "0.01*exp(-((x-17)^2+(y-14)^2)/40)" }, 0.001] }]
+load = [{ set = "all", body_force = [0, 1e-3] }]
+time = { end = 4, SCHEME }
+"#;
+
 /// A notched plate that is pulled until it tears.
 const TORN: &str = r#"body = { shape = "plate", size = [30, 20], spacing = 1, plane = "stress" }
 material = { model = "LAW", density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.004, bonds = "OPERATOR" }
@@ -40,15 +48,24 @@ pub enum Operator {
     Grid,
     FloatGrid,
     Surface,
+    StateBased,
     Convolution,
     Spectral,
 }
 
 use super::common::Build;
-use Operator::{Convolution, FloatGrid, Grid, List, Spectral, Surface};
+use Operator::{Convolution, FloatGrid, Grid, List, Spectral, StateBased, Surface};
 
 impl Operator {
-    pub const ALL: [Self; 6] = [List, Grid, FloatGrid, Surface, Convolution, Spectral];
+    pub const ALL: [Self; 7] = [
+        List,
+        Grid,
+        FloatGrid,
+        Surface,
+        StateBased,
+        Convolution,
+        Spectral,
+    ];
 
     pub fn word(self) -> &'static str {
         match self {
@@ -58,11 +75,16 @@ impl Operator {
             Convolution => "convolution",
             Spectral => "spectral",
             Surface => "surface",
+            StateBased => "state-based",
         }
     }
 
     pub fn deck(self, scheme: &str) -> String {
-        let text = if self == Surface { SURFACE } else { PLATE };
+        let text = match self {
+            Surface => SURFACE,
+            StateBased => STATE_BASED,
+            _ => PLATE,
+        };
         let periodic = if self == Spectral { "true" } else { "false" };
         text.replace("PERIODIC", periodic)
             .replace("OPERATOR", self.word())
@@ -73,7 +95,7 @@ impl Operator {
     fn reference(self) -> String {
         let scheme = "scheme = \"dormand-prince\", tolerance = 1e-10, dt = 0.5";
         match self {
-            Surface | Spectral => self.deck(scheme),
+            Surface | StateBased | Spectral => self.deck(scheme),
             _ => List.deck(scheme),
         }
     }
@@ -170,14 +192,14 @@ fn stored(run: &Simulation) -> Archive {
 }
 
 /// What a finished run leaves.
-struct Ended {
+pub struct Ended {
     archive: Archive,
     u: Vec<f64>,
     momentum: [f64; 3],
     impulse: [f64; 3],
-    broken: u64,
+    pub broken: u64,
     /// What the energy account is off by, over the work done.
-    off: f64,
+    pub off: f64,
     /// The largest force on a point that is not held.
     force: f64,
     steps: u64,
@@ -204,7 +226,7 @@ impl Ended {
 }
 
 /// The finished run of a deck, having seen that other numbers of threads and a stop in its middle lead to the same bits.
-fn run_every_way(text: &str) -> Ended {
+pub fn run_every_way(text: &str) -> Ended {
     let on = |threads: usize, work: &(dyn Fn() -> Ended + Sync)| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(work)
@@ -308,6 +330,17 @@ fn schemes_that_bear_rounding_step_a_grid_in_single_precision() {
 fn every_scheme_steps_a_surface() {
     compare(Surface, &ONE_STEP);
     compare(Surface, &TWO_STEPS);
+}
+
+#[test]
+fn every_scheme_but_respa_steps_a_state_based_body() {
+    compare(StateBased, &ONE_STEP);
+    compare(StateBased, &TWO_STEPS[..2]);
+    refused(
+        StateBased,
+        &TWO_STEPS[2..],
+        "takes the force apart by bonds",
+    );
 }
 
 #[test]

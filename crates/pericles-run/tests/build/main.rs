@@ -20,6 +20,7 @@ mod points;
 mod schemes;
 mod sense;
 mod solutions;
+mod state_based;
 mod tuned;
 mod wrong;
 

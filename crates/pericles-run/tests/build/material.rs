@@ -48,7 +48,7 @@ fn warnings(body: &str, material: &str) -> Vec<String> {
 
 #[test]
 fn coefficients_per_class_take_the_lattice_s_modulus() {
-    let calibration = |deck: Deck| solid(&deck).material.bonds.modulus.calibration;
+    let calibration = |deck: Deck| solid(&deck).material.bonds().unwrap().modulus.calibration;
     assert_eq!(calibration(deck(BAR, CLASSES)), Calibration::Lattice);
     let given = format!("modulus = \"lattice\"\n{CLASSES}");
     assert_eq!(calibration(deck(BAR, &given)), Calibration::Lattice);
@@ -138,7 +138,7 @@ fn a_pair_of_materials_is_given_once() {
 
 #[test]
 fn listed_points_have_the_continuum_s_critical_stretch() {
-    let energy = |deck: Deck| match solid(&deck).material.bonds.fracture {
+    let energy = |deck: Deck| match solid(&deck).material.bonds().unwrap().fracture {
         Fracture::Energy { calibration, .. } => calibration,
         other => panic!("{other:?}"),
     };

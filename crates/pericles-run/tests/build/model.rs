@@ -219,7 +219,8 @@ fn a_model_without_a_deck_names_keys() {
         message.starts_with("initial.0: unknown set `right`"),
         "{message}"
     );
-    model.body.solid_mut().unwrap().material.bonds.horizon = 0.01;
+    let solid = model.body.solid_mut().unwrap();
+    solid.material.bonds_mut().unwrap().horizon = 0.01;
     let points = discretise(&model, &resources).unwrap();
     let message = assemble(&model, points, &resources)
         .err()
@@ -236,7 +237,7 @@ fn numbers_out_of_range_are_refused_all_at_once() {
     model.time.end = f64::NAN;
     model.output.history = Schedule::Every(0);
     let solid = model.body.solid_mut().unwrap();
-    solid.material.bonds.density = -1.0;
+    solid.material.bonds_mut().unwrap().density = -1.0;
     solid.state = StressState::Spatial;
     let hole = Region::Cylinder {
         centre: [0.0; 3],

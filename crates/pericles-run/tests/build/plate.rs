@@ -66,7 +66,7 @@ fn points_bonds_and_sets() {
     let s0 = (5.0 * pi * 135.0 / (12.0 * young * delta)).sqrt();
     assert!((model.constants().micromodulus / c - 1.0).abs() < 1e-12);
     let text = PLATE.replace("no_fail", "fracture_calibration = \"continuum\"\nno_fail");
-    let continuum = build(&text).assembly.constants.unwrap();
+    let continuum = build(&text).constants().clone();
     assert!((continuum.critical_stretch / s0 - 1.0).abs() < 1e-12);
     // By default the mean over the planes (10) and (11) costs what was asked for: 20.779 and 21.224 in place of 20.25 for the continuum.
     let lattice = s0 * (20.25f64 / (0.5 * (20.779 + 21.224))).sqrt();

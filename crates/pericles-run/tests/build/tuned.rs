@@ -27,7 +27,7 @@ fn deck(lines: &str) -> Result<Deck, String> {
 }
 
 fn values(deck: &Deck) -> Vec<f64> {
-    match &solid(deck).material.bonds.influence.function {
+    match &solid(deck).material.bonds().unwrap().influence.function {
         InfluenceFunction::Classes(table) => table.entries().iter().map(|entry| entry.1).collect(),
         other => panic!("{other:?}"),
     }
@@ -239,7 +239,8 @@ fn cosines_as_printed() {
         modulus = "unmodified""#;
     let influence = solid(&deck(lines).unwrap())
         .material
-        .bonds
+        .bonds()
+        .unwrap()
         .influence
         .clone();
     assert!((influence.alpha(1e-3, 3e-3) - 3.738).abs() < 6e-4);

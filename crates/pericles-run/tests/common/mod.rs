@@ -25,7 +25,7 @@ impl Deref for Built {
 impl Built {
     /// The constants of the bonds.
     pub fn constants(&self) -> &BondConstants {
-        self.assembly.constants.as_ref().unwrap()
+        self.assembly.constants.as_ref().unwrap().bonds().unwrap()
     }
 
     /// The run; observers are still to be added.

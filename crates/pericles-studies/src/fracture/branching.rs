@@ -174,8 +174,8 @@ impl Course {
 fn base_rows(deck: &Deck, recorded: &Recorded, course: &Course) -> Vec<Row> {
     let facts = &recorded.facts;
     let waves = deck.model.body.solid().zip(facts.youngs_modulus);
-    let waves = waves
-        .map(|(solid, young)| ElasticWaves::of(young, solid.material.bonds.density, solid.state));
+    let waves =
+        waves.map(|(solid, young)| ElasticWaves::of(young, solid.material.density(), solid.state));
     let rayleigh = waves
         .and_then(|waves| waves.transverse)
         .map_or(f64::NAN, |transverse| transverse.rayleigh);

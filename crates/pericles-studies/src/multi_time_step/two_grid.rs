@@ -97,7 +97,7 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
         .operator()
         .add_force(0.0, &strained, On::All, &mut force);
     // The force density over E e/δ, what a free surface would be pulled with.
-    let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young);
+    let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young());
     let scale = young * STRAIN / deck.model.body.horizon();
     let largest = |of: &dyn Fn(usize) -> bool| {
         (0..n)

@@ -1,0 +1,98 @@
+//! The constants of a material, whatever its model.
+
+use pericles::material::{
+    BondConstants, CrackPlane, ElasticWaves, FractureCalibration, LinearSolidConstants, StressState,
+};
+
+/// The constants of a material's forces.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MaterialConstants {
+    /// Of a bond-based material.
+    Bonds(BondConstants),
+    /// Of a state-based material.
+    StateBased(LinearSolidConstants),
+}
+
+impl MaterialConstants {
+    /// Those of a bond-based material.
+    pub fn bonds(&self) -> Option<&BondConstants> {
+        match self {
+            Self::Bonds(constants) => Some(constants),
+            Self::StateBased(_) => None,
+        }
+    }
+
+    /// Those of a state-based material.
+    pub fn state_based(&self) -> Option<&LinearSolidConstants> {
+        match self {
+            Self::Bonds(_) => None,
+            Self::StateBased(constants) => Some(constants),
+        }
+    }
+
+    /// Young's modulus, Pa.
+    pub fn young(&self) -> f64 {
+        match self {
+            Self::Bonds(constants) => constants.young,
+            Self::StateBased(constants) => constants.elastic.young(),
+        }
+    }
+
+    /// ρ c² of longitudinal waves, Pa.
+    pub fn longitudinal_modulus(&self, state: StressState) -> f64 {
+        match self {
+            Self::Bonds(constants) => state.longitudinal_modulus(constants.young),
+            Self::StateBased(constants) => constants.elastic.longitudinal_modulus(state),
+        }
+    }
+
+    /// Speeds of waves for a density (kg/m³).
+    pub fn waves(&self, density: f64, state: StressState) -> ElasticWaves {
+        match self {
+            Self::Bonds(constants) => ElasticWaves::of(constants.young, density, state),
+            Self::StateBased(constants) => {
+                ElasticWaves::of_solid(&constants.elastic, density, state)
+            }
+        }
+    }
+
+    /// The critical stretch; infinite where bonds do not break by their stretch.
+    pub fn critical_stretch(&self) -> f64 {
+        match self {
+            Self::Bonds(constants) => constants.critical_stretch,
+            Self::StateBased(constants) => constants.limits.stretch,
+        }
+    }
+
+    /// The critical bond energy w_c, J/m⁶; infinite where bonds do not break by their energy.
+    pub fn critical_bond_energy(&self) -> f64 {
+        match self {
+            Self::Bonds(_) => f64::INFINITY,
+            Self::StateBased(constants) => constants.limits.energy,
+        }
+    }
+
+    /// The fracture energy, J/m²; infinite if bonds never break.
+    pub fn fracture_energy(&self) -> f64 {
+        match self {
+            Self::Bonds(constants) => constants.fracture_energy,
+            Self::StateBased(constants) => constants.fracture_energy,
+        }
+    }
+
+    /// How the limits of bonds follow from the fracture energy; none if no fracture energy is given.
+    pub fn fracture_calibration(&self) -> Option<FractureCalibration> {
+        match self {
+            Self::Bonds(constants) => constants.fracture_calibration,
+            Self::StateBased(constants) => constants.fracture_calibration,
+        }
+    }
+
+    /// What cracks along planes of the lattice cost; empty if bonds never break, and for bodies without a lattice.
+    pub fn crack_planes(&self) -> &[CrackPlane] {
+        match self {
+            Self::Bonds(constants) => &constants.crack_planes,
+            Self::StateBased(constants) => &constants.crack_planes,
+        }
+    }
+}
