@@ -1,0 +1,182 @@
+//! Keys that all materials of solids have.
+
+use pericles::family::VolumeCorrection;
+use pericles::kernel::{Influence, InfluenceFunction};
+use pericles::operator::DamageMeasure;
+use pericles_waves::ForceForm;
+
+use crate::body::BodyRead;
+use crate::influence::Setting;
+use crate::part::{self, MaterialInterface, Part};
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::set::SetNames;
+use crate::vocabulary::HORIZONS;
+
+pub(super) fn density(table: &Table<'_>) -> Option<f64> {
+    let item = table.required("density");
+    item.and_then(|item| item.positive(Quantity::Density))
+}
+
+pub(super) fn volume_correction(table: &Table<'_>) -> Option<VolumeCorrection> {
+    table.choice_or_first(
+        "volume_correction",
+        "volume correction",
+        &[
+            ("extended", VolumeCorrection::Extended),
+            ("linear", VolumeCorrection::Linear),
+            ("none", VolumeCorrection::None),
+        ],
+    )
+}
+
+pub(super) fn no_fail(table: &Table<'_>, sets: &SetNames) -> Option<Vec<String>> {
+    let item = table.optional("no_fail");
+    item.map_or(Some(Vec::new()), |item| sets.references(&item))
+}
+
+/// What an influence function is made for.
+pub(super) fn setting(
+    body: &BodyRead,
+    extent: Option<&Extent<'_>>,
+    correction: Option<VolumeCorrection>,
+) -> Setting {
+    Setting {
+        dimension: body.frame.dimension,
+        state: body.state,
+        spacing: body.frame.spacing,
+        cells: body.frame.cells,
+        horizon: extent.and_then(Extent::length),
+        correction,
+    }
+}
+
+/// How bonds are kept.
+pub(super) fn form(table: &Table<'_>) -> Option<ForceForm> {
+    table.choice_or_first(
+        "bonds",
+        "form of bonds",
+        &[
+            ("fastest", ForceForm::Fastest),
+            ("grid", ForceForm::Grid),
+            ("grid-f32", ForceForm::FloatGrid),
+            ("list", ForceForm::List),
+            ("convolution", ForceForm::Convolution),
+            ("spectral", ForceForm::Spectral),
+        ],
+    )
+}
+
+/// Bonds between materials, where there are several.
+pub(super) fn interface(
+    table: &Table<'_>,
+    name: Option<&Option<String>>,
+    parts: Option<&[Part]>,
+    state_based: bool,
+) -> Option<MaterialInterface> {
+    if !table.has("part") {
+        table.forbid(
+            "interface",
+            "only a body with [[material.part]] has interfaces",
+        );
+        return Some(MaterialInterface::default());
+    }
+    let interface = table.table_or_empty("interface");
+    let own = name.cloned().flatten();
+    let others = parts?.iter().map(|part| Some(part.name.clone()));
+    let names: Vec<Option<String>> = std::iter::once(own).chain(others).collect();
+    part::interface(interface?, &names, state_based)
+}
+
+/// A horizon as written.
+pub(super) enum Extent<'a> {
+    /// m
+    Finite(f64),
+    /// As far as the influence function goes.
+    Infinite(Item<'a>),
+}
+
+impl Extent<'_> {
+    pub(super) fn length(&self) -> Option<f64> {
+        match self {
+            Self::Finite(horizon) => Some(*horizon),
+            Self::Infinite(_) => None,
+        }
+    }
+
+    /// The horizon in metres, for a function that is known.
+    pub(super) fn with(
+        self,
+        influence: Option<&Influence>,
+        dimension: Option<usize>,
+    ) -> Option<f64> {
+        /// Lengths of a Gaussian beyond which it is below 1e-21 of its height.
+        const ALL: f64 = 7.0;
+        let item = match self {
+            Self::Finite(horizon) => return Some(horizon),
+            Self::Infinite(item) => item,
+        };
+        match influence.map(|influence| (&influence.function, influence)) {
+            Some((
+                InfluenceFunction::Gaussian {
+                    length,
+                    cutoff: None,
+                },
+                influence,
+            )) => {
+                let horizon = ALL * length;
+                item.accept(influence.check(dimension?, horizon))?;
+                item.record(horizon);
+                Some(horizon)
+            }
+            _ => {
+                item.out_of_range(
+                    "\"infinite\" needs a function that decays: influence = { function = \"gaussian\", length = … } without a cutoff",
+                );
+                None
+            }
+        }
+    }
+}
+
+/// The horizon, given as a length or as a multiple of the spacing.
+pub(super) fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
+    let (kind, item) = table.exactly_one(HORIZONS)?;
+    if kind == "horizon" && item.is_keyword("infinite") {
+        return Some(Extent::Infinite(item));
+    }
+    let length = match kind {
+        "horizon" => item.within(
+            Quantity::Length,
+            "a length of at least one spacing (usual: 3 spacings), or \"infinite\"",
+            // Horizons are mostly whole multiples of the spacing, up to round-off.
+            |horizon| horizon > 0.0 && spacing.is_none_or(|dx| horizon >= dx * (1.0 - 1e-9)),
+        ),
+        _ => {
+            let ratio = item.within(
+                Quantity::Number,
+                "a number of at least 1 (usual: 3)",
+                |ratio| ratio >= 1.0,
+            );
+            ratio.zip(spacing).map(|(ratio, dx)| ratio * dx)
+        }
+    };
+    length.map(Extent::Finite)
+}
+
+pub(super) fn damage(table: &Table<'_>) -> Option<Option<DamageMeasure>> {
+    let given = table.has("damage");
+    let table = table.table_or_empty("damage")?;
+    let count = table.choice_or_first(
+        "measure",
+        "measure of damage",
+        &[("volume", false), ("count", true)],
+    );
+    let count_precut = table.or("count_precut", false, |item| item.boolean());
+    table.finish();
+    let measure = DamageMeasure {
+        count: count?,
+        count_precut: count_precut?,
+    };
+    Some(given.then_some(measure))
+}

@@ -1,0 +1,93 @@
+//! State-based materials.
+
+use pericles::kernel::Influence;
+use pericles::material::{LinearSolid, StateInfluence, Strains, SurfaceCorrection};
+
+use super::keys::{damage, density, form, horizon, interface, no_fail, setting, volume_correction};
+use super::types::Material;
+use crate::body::BodyRead;
+use crate::constants::fracture_calibration;
+use crate::influence::state_influence;
+use crate::part::{self, PartRules};
+use crate::reader::Table;
+use crate::set::SetNames;
+use crate::state_based::{SolidRules, StateBased};
+
+pub(super) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
+    table.forbid(
+        "treatment",
+        "it belongs to model = \"green-strain\" or \"literal57\"",
+    );
+    table.forbid(
+        "inclusion",
+        "inclusions scale the constant of bonds; give a [[material.part]] with elastic constants of its own",
+    );
+    let name = table.maybe("name", |item| item.text());
+    let strains = table.choice_or_first(
+        "strains",
+        "strains",
+        &[("finite", Strains::Finite), ("small", Strains::Small)],
+    );
+    let density = density(&table);
+    let extent = horizon(&table, body.frame.spacing);
+    let volume_correction = volume_correction(&table);
+    let surface_correction = solid_surface(&table);
+    let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));
+    let given = match &influence {
+        Some(StateInfluence::Function(function)) => Some(Influence {
+            function: function.clone(),
+            ..Influence::default()
+        }),
+        _ => None,
+    };
+    let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
+    let rules = SolidRules::read(&table, body.state, fracture_calibration(&table, body));
+    let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
+    let no_fail = no_fail(&table, sets);
+    let damage = damage(&table);
+    let form = form(&table);
+    let parts = part::parts(table.tables("part"), &PartRules::StateBased(&rules), sets);
+    let interface = interface(&table, name.as_ref(), parts.as_deref(), true);
+    table.finish();
+    let solid = LinearSolid {
+        density: density?,
+        elastic: elastic?,
+        horizon: horizon?,
+        influence: influence?,
+        volume_correction: volume_correction?,
+        failure: failure?,
+    };
+    Some(Material {
+        name: name?,
+        no_fail: no_fail?,
+        parts: parts?,
+        interface: interface?,
+        surface_correction: surface_correction?,
+        damage: damage?,
+        form: form?,
+        ..Material::from(StateBased {
+            solid,
+            strains: strains?,
+        })
+    })
+}
+
+/// The correction of surfaces that a state-based material can have.
+fn solid_surface(table: &Table<'_>) -> Option<SurfaceCorrection> {
+    if let Some(item) = table.optional("surface_correction")
+        && item.is_keyword("volume")
+    {
+        item.out_of_range(
+            "\"none\" or \"energy\": the weighted volume of a state-based material accounts for missing bonds already, and the volume method would make bodies 6 to 15 % too stiff",
+        );
+        return None;
+    }
+    table.choice_or_first(
+        "surface_correction",
+        "surface correction",
+        &[
+            ("none", SurfaceCorrection::None),
+            ("energy", SurfaceCorrection::Energy),
+        ],
+    )
+}

@@ -1,0 +1,160 @@
+//! Materials as plain data.
+
+use pericles::family::VolumeCorrection;
+use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection};
+use pericles::operator::DamageMeasure;
+use pericles_dispersion::tuning::TunedTable;
+use pericles_waves::ForceForm;
+use serde::{Deserialize, Serialize};
+
+use crate::part::{MaterialInterface, Part};
+use crate::state_based::StateBased;
+
+/// The material with what goes with it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// A name for people.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Law, constants, horizon and breaking.
+    pub model: MaterialModel,
+    /// How the coefficients of the influence function were found, if it is tuned against dispersion.
+    #[serde(default, with = "crate::form")]
+    pub tuned: Option<TunedTable>,
+    /// Sets whose bonds never break.
+    #[serde(default)]
+    pub no_fail: Vec<String>,
+    /// Parts that are stiffer or softer, later ones before earlier ones.
+    #[serde(default, rename = "inclusion")]
+    pub inclusions: Vec<Inclusion>,
+    /// Other materials, later ones before earlier ones.
+    #[serde(default, rename = "part")]
+    pub parts: Vec<Part>,
+    /// Bonds between materials.
+    #[serde(default)]
+    pub interface: MaterialInterface,
+    /// What is done about the bonds that points near surfaces lack.
+    #[serde(default, with = "crate::form")]
+    pub surface_correction: SurfaceCorrection,
+    /// How damage is measured, if it is given.
+    #[serde(default, with = "crate::form")]
+    pub damage: Option<DamageMeasure>,
+    /// How bonds are kept: a matter of speed only.
+    #[serde(default, with = "crate::form")]
+    pub form: ForceForm,
+}
+
+/// The model of a material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MaterialModel {
+    /// A pair force for each bond: Poisson's ratio is fixed.
+    Bonds(#[serde(with = "crate::form")] BondMaterial),
+    /// Forces that depend on all bonds of both ends: any Poisson's ratio.
+    StateBased(StateBased),
+}
+
+impl From<BondMaterial> for Material {
+    /// One material for the whole body, whose bonds are kept as is fastest.
+    fn from(bonds: BondMaterial) -> Self {
+        Self::from(MaterialModel::Bonds(bonds))
+    }
+}
+
+impl From<StateBased> for Material {
+    /// One material for the whole body.
+    fn from(solid: StateBased) -> Self {
+        Self::from(MaterialModel::StateBased(solid))
+    }
+}
+
+impl From<MaterialModel> for Material {
+    fn from(model: MaterialModel) -> Self {
+        Self {
+            name: None,
+            model,
+            tuned: None,
+            no_fail: Vec::new(),
+            inclusions: Vec::new(),
+            parts: Vec::new(),
+            interface: MaterialInterface::default(),
+            surface_correction: SurfaceCorrection::default(),
+            damage: None,
+            form: ForceForm::default(),
+        }
+    }
+}
+
+impl Material {
+    /// The bond-based material, if it is one.
+    pub fn bonds(&self) -> Option<&BondMaterial> {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => Some(bonds),
+            MaterialModel::StateBased(_) => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn bonds_mut(&mut self) -> Option<&mut BondMaterial> {
+        match &mut self.model {
+            MaterialModel::Bonds(bonds) => Some(bonds),
+            MaterialModel::StateBased(_) => None,
+        }
+    }
+
+    /// The state-based material, if it is one.
+    pub fn state_based(&self) -> Option<&StateBased> {
+        match &self.model {
+            MaterialModel::Bonds(_) => None,
+            MaterialModel::StateBased(solid) => Some(solid),
+        }
+    }
+
+    /// Mass density ρ, kg/m³.
+    pub fn density(&self) -> f64 {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => bonds.density,
+            MaterialModel::StateBased(state) => state.solid.density,
+        }
+    }
+
+    /// Horizon δ, m.
+    pub fn horizon(&self) -> f64 {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => bonds.horizon,
+            MaterialModel::StateBased(state) => state.solid.horizon,
+        }
+    }
+
+    /// Partial volumes at the horizon.
+    pub fn volume_correction(&self) -> VolumeCorrection {
+        match &self.model {
+            MaterialModel::Bonds(bonds) => bonds.volume_correction,
+            MaterialModel::StateBased(state) => state.solid.volume_correction,
+        }
+    }
+
+    /// The word of `material.model`, whatever the treatment of a law.
+    pub fn model_name(&self) -> &'static str {
+        let MaterialModel::Bonds(bonds) = &self.model else {
+            return "state-based";
+        };
+        match bonds.law {
+            PairLaw::BondStretch => "bond-stretch",
+            PairLaw::Linear => "linear",
+            PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
+            PairLaw::Literal57 | PairLaw::Treated(CubicLaw::Literal57, _) => "literal57",
+        }
+    }
+}
+
+/// A part of other stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Inclusion {
+    /// The set.
+    pub set: String,
+    /// Stiffness over the material's; a bond has the mean of its ends.
+    pub stiffness: f64,
+}
