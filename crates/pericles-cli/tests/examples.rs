@@ -205,7 +205,8 @@ fn a_ring_of_listed_points_breathes() {
 
 #[test]
 fn a_state_based_plate_contracts_by_its_poissons_ratio() {
-    let (_place, out) = check("state-based", "plate-with-hole");
+    let place = tempfile::tempdir().unwrap();
+    let out = run(place.path(), "state-based/plate-with-hole.toml", &[]);
     let last = |column: &str| {
         let probes = table(&out, "probes.csv");
         *probes.column(column).unwrap().last().unwrap()
@@ -222,7 +223,8 @@ fn a_state_based_plate_contracts_by_its_poissons_ratio() {
 
 #[test]
 fn a_state_based_plate_tears_with_an_exact_energy_balance() {
-    let (_place, out) = check("state-based", "notched-plate");
+    let place = tempfile::tempdir().unwrap();
+    let out = run(place.path(), "state-based/notched-plate.toml", &[]);
     let report = report(&out);
     let audit = |key: &str| report["audit"][key].as_f64().unwrap();
     assert!(audit("balance_over_dissipated").abs() < 1e-9);

@@ -110,7 +110,7 @@ impl SolidRules {
         let [young, bulk, shear] = ["youngs_modulus", "bulk_modulus", "shear_modulus"].map(modulus);
         table.forbid(
             "modulus",
-            "a state-based material has the stiffness of its elastic constants: the dilatation is exact on every lattice, and influence = { function = \"isotropic\" } makes shear exact too",
+            "a state-based material has the stiffness of its elastic constants: its bulk stiffness is exact on every lattice, and influence = { function = \"isotropic\" } makes shear exact too",
         );
         let poisson_ratio = if self.state == Some(StressState::Uniaxial) {
             table.forbid(

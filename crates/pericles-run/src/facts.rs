@@ -248,7 +248,7 @@ impl Facts {
             crack_planes: constants.map(plane_facts).unwrap_or_default(),
             stiffness_error: constants.map(|constants| match constants {
                 MaterialConstants::Bonds(constants) => constants.stiffness_error,
-                // The dilatation is exact on any points.
+                // The bulk stiffness is exact on any points.
                 MaterialConstants::StateBased(_) => 0.0,
             }),
             diagonal_shear_error: shear.map(|shear| shear.diagonals - 1.0),
