@@ -1,7 +1,7 @@
 //! The forms in which forces are computed, and what they do not represent.
 
+use pericles::Result;
 use pericles::operator::{BondForm, Feature, Features, Limit};
-use pericles::{PericlesError, Result};
 
 /// How the internal forces of a body are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -141,15 +141,9 @@ impl ForceForm {
     /// Refuses a body with features that the form does not represent.
     ///
     /// # Errors
-    /// [`PericlesError::FormNotUsable`], with the reason.
+    /// [`FormNotUsable`](pericles::PericlesError::FormNotUsable), with the reason.
     pub fn check(self, features: Features) -> Result<()> {
-        match self.refusal(features) {
-            None => Ok(()),
-            Some(reason) => Err(PericlesError::FormNotUsable {
-                form: self.name(),
-                reason,
-            }),
-        }
+        Limit::check(self.limits(), self.name(), features)
     }
 }
 

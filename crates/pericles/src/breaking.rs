@@ -6,6 +6,7 @@
 //! angular momentum are kept. All bonds of a step are settled at once from the same velocities, so that the result does not depend on their order, and the energy that
 //! this takes in fact is booked, so that the balance of energy closes to rounding.
 
+use crate::domain::Field;
 use crate::operator::CoarseBreak;
 use crate::system::System;
 
@@ -112,15 +113,8 @@ impl System {
     /// The impulse on every unknown, N s.
     fn impulses(&self, breaks: &[CoarseBreak], v: &[f64], ends: &Ends) -> Vec<f64> {
         let (n, dimension) = (self.points(), self.dimension());
-        let m = self.domain().ghost_points();
-        let velocity = |c: usize, point: usize| match point.checked_sub(n) {
-            None => v[c * n + point],
-            Some(ghost) => ends.velocity[c * m + ghost],
-        };
-        let free = |c: usize, point: usize| match point.checked_sub(n) {
-            None => ends.free[c * n + point],
-            Some(ghost) => ends.free_ghosts[c * m + ghost],
-        };
+        let velocity = Field::new(v, &ends.velocity);
+        let free = Field::new(&ends.free, &ends.free_ghosts);
         let mut impulse = vec![0.0; v.len()];
         for bond in breaks {
             let [i, j] = bond.points.map(|point| point as usize);
@@ -131,8 +125,9 @@ impl System {
             let (mut rate, mut compliance) = (0.0, 0.0);
             for c in 0..dimension {
                 let e = bond.along[c] / length;
-                rate += e * (velocity(c, j) - velocity(c, i));
-                compliance += e * e * (free(c, j) / ends.mass[j] + free(c, i) / ends.mass[i]);
+                let of = |field: Field<'_>, point| field.entry(dimension, c, point);
+                rate += e * (of(velocity, j) - of(velocity, i));
+                compliance += e * e * (of(free, j) / ends.mass[j] + of(free, i) / ends.mass[i]);
             }
             let push = separating_impulse(rate, compliance, bond.missing);
             for c in 0..dimension {

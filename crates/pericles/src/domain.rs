@@ -66,9 +66,9 @@ pub struct Peer {
 /// What a point tells another one across the border between two processes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Letter {
-    /// The own point that writes; on arrival the ghost that it is, counted from 0.
+    /// The point that writes; ghosts are counted behind own points.
     pub from: usize,
-    /// The ghost that it writes to, counted from 0; on arrival the own point.
+    /// The point that it writes to, likewise.
     pub to: usize,
     /// What it says.
     pub numbers: [f64; Letter::NUMBERS],
@@ -125,8 +125,16 @@ impl<'a> Field<'a> {
     }
 
     /// Component c of D at a point; ghosts are counted behind own points.
+    #[inline(always)]
     pub fn at<const D: usize>(&self, c: usize, point: usize) -> f64 {
-        let (n, m) = (self.owned.len() / D, self.ghosts.len() / D);
+        self.entry(D, c, point)
+    }
+
+    /// The same of a number of components that is known when the program runs.
+    #[inline(always)]
+    pub fn entry(&self, components: usize, c: usize, point: usize) -> f64 {
+        let n = self.owned.len() / components;
+        let m = self.ghosts.len() / components;
         match point.checked_sub(n) {
             None => self.owned[c * n + point],
             Some(ghost) => self.ghosts[c * m + ghost],
@@ -187,40 +195,59 @@ impl Domain {
         Cow::Owned([owned, &self.ghosts(owned)].concat())
     }
 
-    /// Delivers letters to the owners of ghosts: each says what own point `from` tells the ghost `to`, counted from 0, and comes in at its owner from the ghost that `from` is there. Every process must ask at the same time.
+    /// One mark a point, with those of ghosts behind them. Every process must ask at the same time.
+    pub fn marks_with_ghosts<'a>(&self, owned: &'a [bool]) -> Cow<'a, [bool]> {
+        if self.peers.is_empty() {
+            return Cow::Borrowed(owned);
+        }
+        let numbers: Vec<f64> = owned
+            .iter()
+            .map(|&mark| f64::from(u8::from(mark)))
+            .collect();
+        let marks = self.with_ghosts(&numbers);
+        Cow::Owned(marks.iter().map(|&mark| mark != 0.0).collect())
+    }
+
+    /// The letters that own points get: those of `letters`, which own points write, and those that come from other processes. Every process must ask at the same time.
     ///
     /// # Panics
-    /// If `from` is no ghost of the owner of `to`.
-    pub fn deliver(&self, letters: &[Letter]) -> Vec<Letter> {
+    /// If a point that writes to a ghost is no ghost of its owner.
+    pub fn deliver(&self, letters: Vec<Letter>) -> Vec<Letter> {
         const LENGTH: usize = 2 + Letter::NUMBERS;
-        if self.peers.is_empty() {
-            return Vec::new();
-        }
-        let message = |peer: &Peer| -> Vec<f64> {
-            let own = letters.iter().filter(|one| peer.received.contains(&one.to));
-            own.flat_map(|one| {
-                let from = peer.sent.iter().position(|&k| k as usize == one.from);
-                let from = from.expect("a bond is known to the owners of both of its ends");
-                let place = [one.to - peer.received.start, from].map(|k| k as f64);
-                place.into_iter().chain(one.numbers)
-            })
-            .collect()
-        };
-        let ranks: Vec<usize> = self.peers.iter().map(|peer| peer.rank).collect();
-        let sent: Vec<Vec<f64>> = self.peers.iter().map(message).collect();
-        let mut received = vec![Vec::new(); self.peers.len()];
-        self.comm.exchange(&ranks, &sent, &mut received);
-        let arrived = |(peer, numbers): (&Peer, &Vec<f64>)| -> Vec<Letter> {
-            let letter = |one: &[f64]| Letter {
-                from: peer.received.start + one[1] as usize,
+        let own = |one: &Letter| one.to < self.owned;
+        let (mut arrived, away): (Vec<Letter>, Vec<Letter>) = letters.into_iter().partition(own);
+        let received = self.exchange(|peer| {
+            let first = self.owned + peer.received.start;
+            let theirs = first..first + peer.received.len();
+            let to_them = away.iter().filter(|one| theirs.contains(&one.to));
+            to_them
+                .flat_map(|one| {
+                    let from = peer.sent.iter().position(|&k| k as usize == one.from);
+                    let from = from.expect("a bond is known to the owners of both of its ends");
+                    let place = [one.to - first, from].map(|k| k as f64);
+                    place.into_iter().chain(one.numbers)
+                })
+                .collect()
+        });
+        for (peer, numbers) in self.peers.iter().zip(&received) {
+            arrived.extend(numbers.chunks_exact(LENGTH).map(|one| Letter {
+                from: self.owned + peer.received.start + one[1] as usize,
                 to: peer.sent[one[0] as usize] as usize,
                 numbers: std::array::from_fn(|k| one[2 + k]),
-            };
-            numbers.chunks_exact(LENGTH).map(letter).collect()
-        };
-        (self.peers.iter().zip(&received))
-            .flat_map(arrived)
-            .collect()
+            }));
+        }
+        arrived
+    }
+
+    /// Sends each peer a message and returns those that the peers send.
+    fn exchange(&self, message: impl Fn(&Peer) -> Vec<f64>) -> Vec<Vec<f64>> {
+        let mut received = vec![Vec::new(); self.peers.len()];
+        if !self.peers.is_empty() {
+            let ranks: Vec<usize> = self.peers.iter().map(|peer| peer.rank).collect();
+            let sent: Vec<Vec<f64>> = self.peers.iter().map(message).collect();
+            self.comm.exchange(&ranks, &sent, &mut received);
+        }
+        received
     }
 
     /// Whether a condition holds on all processes.
@@ -249,18 +276,14 @@ impl Domain {
             return Vec::new();
         }
         let components = owned.len() / self.owned.max(1);
-        let ranks: Vec<usize> = self.peers.iter().map(|peer| peer.rank).collect();
-        let message = |peer: &Peer| -> Vec<f64> {
+        let received = self.exchange(|peer| {
             let of = |c: usize| {
                 peer.sent
                     .iter()
                     .map(move |&i| owned[c * self.owned + i as usize])
             };
             (0..components).flat_map(of).collect()
-        };
-        let sent: Vec<Vec<f64>> = self.peers.iter().map(message).collect();
-        let mut received = vec![Vec::new(); self.peers.len()];
-        self.comm.exchange(&ranks, &sent, &mut received);
+        });
         let mut ghosts = vec![0.0; components * self.ghosts];
         for (peer, values) in self.peers.iter().zip(&received) {
             for (c, values) in values.chunks(peer.received.len().max(1)).enumerate() {

@@ -1,5 +1,7 @@
 //! The end of a step: all that forces, boundaries and accounts ask of a scheme.
 
+use crate::domain::{Domain, Field};
+
 /// The state at the end of an accepted step, and how the body got there.
 ///
 /// A scheme hands it to [`System::end_step`](crate::System::end_step). Forces decide breaking by it, boundaries with a memory go on by it, and the work of loads and supports is booked by it; none of them
@@ -92,21 +94,25 @@ impl<'a> StepEnd<'a> {
         }
     }
 
-    /// The mean velocities of all own points, where breaking asks for them: on paths that forces at both ends of the step push the body along.
-    pub fn mean_velocities(&self) -> Option<&'a [f64]> {
+    /// The mean velocities over the step, where breaking asks for them: on paths that forces at both ends of the step push the body along. `ghosts` are those of [`StepEnd::ghost_velocities`].
+    pub fn velocities(&self, ghosts: &'a [f64]) -> Option<Field<'a>> {
         match self.path {
-            Path::MeanVelocity(mean) => Some(mean),
+            Path::MeanVelocity(mean) => Some(Field::new(mean, ghosts)),
             _ => None,
         }
     }
 
-    /// The mean velocity of own point j less that of i over the step, m/s; zero where breaking does not ask for it.
-    pub fn relative_velocity<const D: usize>(&self, [i, j]: [usize; 2]) -> [f64; D] {
-        let n = self.u.len() / D;
-        match self.mean_velocities() {
-            Some(mean) => std::array::from_fn(|c| mean[c * n + j] - mean[c * n + i]),
-            None => [0.0; D],
+    /// The mean velocities of ghosts over the step, m/s; none where breaking does not ask for them. Every process must ask at the same time.
+    pub fn ghost_velocities(&self, domain: &Domain) -> Vec<f64> {
+        match self.path {
+            Path::MeanVelocity(mean) => domain.ghosts(mean),
+            _ => Vec::new(),
         }
+    }
+
+    /// The mean velocity of own point j less that of i over the step, m/s; zero where breaking does not ask for it.
+    pub fn relative_velocity<const D: usize>(&self, ends: [usize; 2]) -> [f64; D] {
+        relative_velocity(self.velocities(&[]), ends)
     }
 
     /// The energy that a bond dissipates which is found over-stretched at the end of the step and exerts no force from then on, J.
@@ -159,4 +165,12 @@ impl<'a> StepEnd<'a> {
             Path::SubStep => (0.0, 0.0),
         }
     }
+}
+
+/// The velocity of end j of a bond less that of end i, m/s; zero where velocities are not asked for.
+pub(crate) fn relative_velocity<const D: usize>(
+    velocities: Option<Field<'_>>,
+    ends: [usize; 2],
+) -> [f64; D] {
+    velocities.map_or([0.0; D], |field| field.difference(ends))
 }

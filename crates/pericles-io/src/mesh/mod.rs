@@ -24,7 +24,7 @@ pub use pericles_mesh::{FieldColumn, FieldData, Place};
 use std::path::Path;
 
 use pericles_manifold::surface::{Surface, SurfaceError};
-use pericles_mesh::{Format, RawMesh};
+use pericles_mesh::{Format, Include, RawMesh};
 
 use crate::whole::read_whole;
 use error::fault_of;
@@ -60,16 +60,13 @@ pub const MESH_ENDINGS: [&str; 13] = Format::ENDINGS;
 /// A file that cannot be read or needs more than `memory` bytes, an unknown ending, content that is not what the format says, with its place.
 pub fn read_mesh(path: impl AsRef<Path>, memory: u64) -> Result<RawMesh, MeshError> {
     let path = path.as_ref();
-    let format =
-        Format::of(path).ok_or_else(|| MeshError::UnknownMeshFormat { path: path.into() })?;
+    let format = mesh_format_of(path)?;
     let content = read_whole(path, EXPANSION, memory)?;
     let include = |name: &str| {
         let included = path.with_file_name(name);
         read_whole(&included, EXPANSION, memory).map_err(|error| error.to_string())
     };
-    format
-        .parse(&content, memory, &include)
-        .map_err(|fault| fault_of(fault, path, memory))
+    mesh(format, path, &content, memory, &include)
 }
 
 /// The mesh in the content of a file; its name tells the format, and is what messages call it. No other files are read.
@@ -82,12 +79,25 @@ pub fn parse_mesh(
     memory: u64,
 ) -> Result<RawMesh, MeshError> {
     let name = name.as_ref();
-    let format =
-        Format::of(name).ok_or_else(|| MeshError::UnknownMeshFormat { path: name.into() })?;
     let alone = |included: &str| Err(format!("{included} is included, which is not read here"));
+    mesh(mesh_format_of(name)?, name, content, memory, &alone)
+}
+
+/// The format of a file of a mesh.
+fn mesh_format_of(path: &Path) -> Result<Format, MeshError> {
+    Format::of(path).ok_or_else(|| MeshError::UnknownMeshFormat { path: path.into() })
+}
+
+fn mesh(
+    format: Format,
+    path: &Path,
+    content: &[u8],
+    memory: u64,
+    include: &Include<'_>,
+) -> Result<RawMesh, MeshError> {
     format
-        .parse(content, memory, &alone)
-        .map_err(|fault| fault_of(fault, name, memory))
+        .parse(content, memory, include)
+        .map_err(|fault| fault_of(fault, path, memory))
 }
 
 /// The surface in the content of a file; its name tells the format, and is what messages call it.

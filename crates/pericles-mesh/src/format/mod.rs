@@ -30,7 +30,7 @@ use std::path::Path;
 use crate::fault::Fault;
 use crate::raw::RawMesh;
 
-/// Reads a file that a mesh includes, by the name that stands in the file; the reason why it cannot be read.
+/// Reads an included file by the name given in the mesh file, and returns its content or the reason why it cannot be read.
 pub type Include<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// A format of meshes or surfaces.

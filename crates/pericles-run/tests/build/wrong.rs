@@ -8,7 +8,6 @@ use super::decks::{SURFACE, WAVE, Wrong, explained, wrong};
 #[rustfmt::skip]
 const WRONG_WAVES: &[Wrong] = &[
     wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" does not fit this body", "body.periodic = true"]),
-    wrong("bonds = \"spectral\"", "bonds = \"list\"", (14, 9), "\"list\"", &["the reach of bonds over the shortest side of the periodic body", "reach any distance"]),
     wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["belongs to model = \"linear\""]),
     wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["bonds that break couple all plane waves"]),
     wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` has no place in [body]", "with two ends"]),
@@ -23,7 +22,6 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nfunctions = \"fast\"", (26, 13), "\"fast\"", &["did you mean `fastest`?"]),
     wrong("dt = 0.5\nscheme = \"trigonometric\"", "dt = 1.5\nscheme = \"velocity-verlet\"", (24, 6), "1.5", &["the time step 1.5e0 s is unstable", "allow_unstable"]),
     wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (14, 9), "\"convolution\"", &["pre-cracks cut single bonds"]),
-    wrong("bonds = \"spectral\"\n", "[[material.inclusion]]\nset = \"all\"\nstiffness = 2\n", (12, 11), "\"infinite\"", &["the reach of bonds over the shortest side of the periodic body"]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trapezoidal\"\nlinear_solver = \"lu\"", (26, 17), "\"lu\"", &["unknown linear solver `lu`", "\"direct\"", "\"conjugate-gradients\""]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nlinear_solver = \"direct\"", (26, 1), "linear_solver", &["belongs to scheme = \"implicit-midpoint\""]),
     wrong("model = \"linear\"", "model = \"linear\"\ntreatment = \"taylor-2\"", (10, 1), "treatment", &["belongs to model = \"green-strain\""]),

@@ -94,6 +94,8 @@ impl Load {
         let loaded = self.points.len();
         match &self.density {
             LoadDensity::Uniform(_) => Ok(()),
+            // All three axes, also of a body in fewer dimensions.
+            LoadDensity::PerPoint(densities) if densities.len() == 3 * loaded => Ok(()),
             LoadDensity::PerPoint(densities) => check_length(
                 "the amplitudes of a load",
                 densities.len(),

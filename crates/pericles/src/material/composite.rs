@@ -51,23 +51,7 @@ impl PairClasses {
         rule: InterfaceRule,
     ) -> Result<Self> {
         let count = constants.len();
-        if count > 256 {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of materials",
-                value: count as f64,
-                allowed: "at most 256",
-            });
-        }
-        if let Some(&number) = of_point
-            .iter()
-            .find(|&&number| usize::from(number) >= count)
-        {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of a point's material",
-                value: f64::from(number),
-                allowed: "numbers of the materials given, from 0",
-            });
-        }
+        check_materials(&of_point, count)?;
         let table = |entry: &dyn Fn(&BondConstants, &BondConstants) -> f64| {
             let pairs = constants
                 .iter()
@@ -103,9 +87,8 @@ impl PairClasses {
 
     /// The same by the sites that bonds lead to.
     pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
-        let numbers: Vec<f64> = self.of_point.iter().map(|&k| f64::from(k)).collect();
         Self {
-            of_point: sites.spread(&numbers).iter().map(|&k| k as u8).collect(),
+            of_point: sites.spread_numbers(&self.of_point),
             ..self.clone()
         }
     }
@@ -164,6 +147,28 @@ impl PairClasses {
     #[inline(always)]
     pub(crate) fn class(&self, i: usize, j: usize) -> usize {
         usize::from(self.of_point[i]) * self.count + usize::from(self.of_point[j])
+    }
+}
+
+/// Refuses more than 256 materials, and points of a material that is not one of so many.
+pub(super) fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
+    if count > 256 {
+        return Err(PericlesError::OutOfRange {
+            quantity: "the number of materials",
+            value: count as f64,
+            allowed: "at most 256",
+        });
+    }
+    let unknown = of_point
+        .iter()
+        .find(|&&number| usize::from(number) >= count);
+    match unknown {
+        Some(&number) => Err(PericlesError::OutOfRange {
+            quantity: "the number of a point's material",
+            value: f64::from(number),
+            allowed: "numbers of the materials given, from 0",
+        }),
+        None => Ok(()),
     }
 }
 

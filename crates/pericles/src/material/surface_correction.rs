@@ -123,6 +123,19 @@ impl Directions {
     }
 }
 
+/// The principal axes of a second moment; those of the coordinates where they are principal.
+pub(super) fn axes_of(moment: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    /// Rounding of the sums, far below what bends an axis.
+    const NOTHING: f64 = 1e-9;
+    let trace = moment[0][0] + moment[1][1] + moment[2][2];
+    let across = [moment[0][1], moment[1][2], moment[0][2]];
+    let bent = across.iter().any(|x| x.abs() > NOTHING * trace);
+    match bent && trace > 0.0 && trace.is_finite() {
+        true => principal_axes(moment),
+        false => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    }
+}
+
 /// The tensors of all sites of a bond list.
 pub(super) fn tensors_of_sites(bonds: &BondList, points: &[Directions]) -> Vec<Tensor> {
     let own: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
@@ -218,8 +231,6 @@ impl Body<'_> {
 
     /// The principal axes of a family; those of the coordinates where they are principal.
     fn principal_axes(&self, i: usize) -> [[f64; 3]; 3] {
-        /// Rounding of the sums, far below what bends an axis.
-        const NOTHING: f64 = 1e-9;
         let (bonds, here) = (self.bonds, self.bonds.site(i));
         let mut moment = [[0.0; 3]; 3];
         for (_, b) in bonds.family(i) {
@@ -232,14 +243,7 @@ impl Body<'_> {
                 }
             }
         }
-        let trace = moment[0][0] + moment[1][1] + moment[2][2];
-        let across = [moment[0][1], moment[1][2], moment[0][2]];
-        let bent = across.iter().any(|x| x.abs() > NOTHING * trace);
-        if bent && trace > 0.0 && trace.is_finite() {
-            principal_axes(moment)
-        } else {
-            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-        }
+        axes_of(moment)
     }
 
     /// Takes factors under which the energies of corrected bonds are nearer those of the interior.

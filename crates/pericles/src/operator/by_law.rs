@@ -12,11 +12,13 @@ pub trait ByLaw: Sized {
     /// What is made.
     type Output;
 
-    /// Makes it for a law that every form of bonds computes.
+    /// Makes it for a law that every form of bonds computes; a list, if the maker makes nothing else.
     ///
     /// # Errors
     /// Those of the maker.
-    fn any_form<L: FastLaw, const D: usize>(self) -> Result<Self::Output>;
+    fn any_form<L: FastLaw, const D: usize>(self) -> Result<Self::Output> {
+        self.listed::<L, D>()
+    }
 
     /// Makes it for a law that only lists compute. The grid's loops are not compiled for these laws.
     ///

@@ -140,10 +140,6 @@ struct Listed<'a>(&'a CompositeBody<'a>);
 impl ByLaw for Listed<'_> {
     type Output = AssembledBonds;
 
-    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        self.0.list::<L, D>()
-    }
-
     fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
         self.0.list::<L, D>()
     }

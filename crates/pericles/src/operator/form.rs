@@ -1,7 +1,7 @@
 //! The forms in which bonds are kept, and what they do not represent.
 
 use super::limits::{Feature, Features, Limit};
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 
 /// How bonds are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,14 +57,8 @@ impl BondForm {
     /// Refuses a body with features that the form does not represent.
     ///
     /// # Errors
-    /// [`PericlesError::FormNotUsable`], with the reason.
+    /// [`FormNotUsable`](crate::PericlesError::FormNotUsable), with the reason.
     pub fn check(self, features: Features) -> Result<()> {
-        match Limit::refusal(self.limits(), features) {
-            None => Ok(()),
-            Some(reason) => Err(PericlesError::FormNotUsable {
-                form: self.name(),
-                reason,
-            }),
-        }
+        Limit::check(self.limits(), self.name(), features)
     }
 }

@@ -239,7 +239,7 @@ impl GradedBody<'_> {
         &self,
         laws: &Laws,
         bonds: &BondList,
-        (class, end): (&[u8], &(dyn Fn(&BondList, usize, usize) -> f64 + Sync)),
+        (class, end): (&[u8], &OfBond<'_>),
     ) -> Vec<([u8; 2], f64)> {
         let (cloud, classes) = (self.cloud, &laws.classes);
         // Σ of c α κ |ξ| V V over the bonds between two classes, by the law of the first.
@@ -274,6 +274,9 @@ impl GradedBody<'_> {
     }
 }
 
+/// A number of the bond between two sites.
+type OfBond<'a> = dyn Fn(&BondList, usize, usize) -> f64 + Sync + 'a;
+
 /// The pairs of so many numbers, each once.
 fn pairs(count: u8) -> impl Iterator<Item = [u8; 2]> {
     (0..count).flat_map(move |a| (a..count).map(move |b| [a, b]))
@@ -284,10 +287,6 @@ struct Listed<'a>(&'a GradedBody<'a>);
 
 impl ByLaw for Listed<'_> {
     type Output = AssembledBonds;
-
-    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        self.0.list::<L, D>()
-    }
 
     fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
         self.0.list::<L, D>()

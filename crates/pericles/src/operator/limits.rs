@@ -1,5 +1,6 @@
 //! Features of bodies that not every form of forces represents: one list of limits for each form, from which refusals and the table of the book are made.
 
+use crate::error::{PericlesError, Result};
 use crate::material::PairLaw;
 use crate::space::PointCloud;
 
@@ -175,5 +176,16 @@ impl Limit {
     pub fn refusal(limits: &[Self], features: Features) -> Option<&'static str> {
         let exceeded = limits.iter().find(|limit| features.has(limit.feature));
         exceeded.map(|limit| limit.reason)
+    }
+
+    /// Refuses a body with features that a form with these limits does not represent.
+    ///
+    /// # Errors
+    /// [`PericlesError::FormNotUsable`], with the name of the form and the reason.
+    pub fn check(limits: &[Self], form: &'static str, features: Features) -> Result<()> {
+        match Self::refusal(limits, features) {
+            None => Ok(()),
+            Some(reason) => Err(PericlesError::FormNotUsable { form, reason }),
+        }
     }
 }

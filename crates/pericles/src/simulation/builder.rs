@@ -155,7 +155,7 @@ impl SimulationBuilder {
         self
     }
 
-    /// The time step as a part of the largest stable one; 0.95 if nothing is said.
+    /// The time step as a fraction of the largest stable step; the default is 0.95.
     pub fn safety(mut self, part: f64) -> Self {
         self.step = Step::Safety(part);
         self

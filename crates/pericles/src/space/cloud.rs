@@ -1,5 +1,6 @@
 //! The points of a body.
 
+use super::set::check_resolution;
 use super::{Point, Region};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
@@ -475,36 +476,5 @@ impl PointCloud {
             }
         }
         best.0
-    }
-}
-
-/// Refuses positions whose rounding is not small beside the spacing: points would coincide or be as far apart as rounding says.
-fn check_resolution(positions: &[f64], spacing: f64) -> Result<()> {
-    /// As exact as a side must be a whole number of cells.
-    const SHARE: f64 = 1e-6;
-    let farthest = positions.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let resolution = f64::EPSILON * farthest;
-    if resolution <= SHARE * spacing {
-        return Ok(());
-    }
-    Err(PericlesError::Unresolved {
-        farthest,
-        resolution,
-        spacing,
-        allowed: SHARE * spacing / f64::EPSILON,
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn coordinates_must_resolve_the_spacing() {
-        let pair = |x: f64| PointCloud::new(1, vec![x, x + 1.0], vec![1.0; 2], 1.0);
-        assert!(pair(1e9).is_ok());
-        let message = pair(-1e12).unwrap_err().to_string();
-        assert!(message.contains("1.00 Tm from the origin"), "{message}");
-        assert!(message.contains("4.50 Gm"), "{message}");
     }
 }

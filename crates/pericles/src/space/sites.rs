@@ -182,11 +182,17 @@ impl Sites {
 
     /// A mark for each site, from one for each own point.
     pub fn spread_marks<'a>(&self, of_points: &'a [bool]) -> Cow<'a, [bool]> {
-        if self.are_points() {
+        let Some(map) = &self.map else {
             return Cow::Borrowed(of_points);
-        }
-        let numbers: Vec<f64> = of_points.iter().map(|&m| f64::from(u8::from(m))).collect();
-        Cow::Owned(self.spread(&numbers).iter().map(|&x| x != 0.0).collect())
+        };
+        let marks = self.domain().marks_with_ghosts(of_points);
+        Cow::Owned(map.point.iter().map(|&k| marks[k as usize]).collect())
+    }
+
+    /// A small number for each site, from one for each own point; none from none.
+    pub fn spread_numbers(&self, of_points: &[u8]) -> Vec<u8> {
+        let numbers: Vec<f64> = of_points.iter().map(|&k| f64::from(k)).collect();
+        self.spread(&numbers).iter().map(|&k| k as u8).collect()
     }
 
     fn domain(&self) -> &Domain {

@@ -40,7 +40,7 @@ impl Groups {
         self.read_blocks(numbers, counts, false)
     }
 
-    /// Reads `$PartitionedEntities`, which have a parent and partitions besides.
+    /// Reads `$PartitionedEntities`: entities with the dimension and tag of a parent entity and a list of partitions in addition.
     pub(super) fn read_partitioned(&mut self, numbers: &mut Numbers<'_>) -> Result<(), Fault> {
         numbers.length("partitions")?;
         for _ in 0..numbers.length("ghost entities")? {

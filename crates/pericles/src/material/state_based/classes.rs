@@ -3,6 +3,7 @@
 use super::failure::BondLimits;
 use super::linear_solid::LinearSolidConstants;
 use crate::error::{PericlesError, Result};
+use crate::material::composite::check_materials;
 use crate::space::Sites;
 
 /// The material of every point, and what bonds between each pair of materials can bear.
@@ -34,24 +35,7 @@ impl SolidClasses {
     /// # Errors
     /// More than 256 materials, a number without a material, materials of different horizons or influence functions.
     pub fn new(of_point: Vec<u8>, materials: &[LinearSolidConstants]) -> Result<Self> {
-        let count = materials.len();
-        if count > 256 {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of materials",
-                value: count as f64,
-                allowed: "at most 256",
-            });
-        }
-        if let Some(&number) = of_point
-            .iter()
-            .find(|&&number| usize::from(number) >= count)
-        {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of a point's material",
-                value: f64::from(number),
-                allowed: "numbers of the materials given, from 0",
-            });
-        }
+        check_materials(&of_point, materials.len())?;
         let same = |pair: &[LinearSolidConstants]| {
             pair[0].horizon == pair[1].horizon && pair[0].influence == pair[1].influence
         };
@@ -87,9 +71,8 @@ impl SolidClasses {
 
     /// The same by the sites that bonds lead to.
     pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
-        let numbers: Vec<f64> = self.of_point.iter().map(|&k| f64::from(k)).collect();
         Self {
-            of_point: sites.spread(&numbers).iter().map(|&k| k as u8).collect(),
+            of_point: sites.spread_numbers(&self.of_point),
             ..self.clone()
         }
     }

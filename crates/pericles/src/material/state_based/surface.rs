@@ -5,10 +5,9 @@ use crate::family::BondList;
 use crate::kernel::Influence;
 use crate::material::lattice::{Cells, for_each_offset};
 use crate::material::surface_correction::{
-    Directions, SurfaceFactors, ellipsoid, tensors_of_sites,
+    Directions, SurfaceFactors, axes_of, ellipsoid, tensors_of_sites,
 };
 use crate::parallel::for_each_point;
-use crate::solve::principal_axes;
 use crate::space::PointCloud;
 
 /// What is kept the same near surfaces as inside a body of state-based material.
@@ -143,8 +142,6 @@ impl Body<'_> {
 
     /// The principal axes of a family; those of the coordinates where they are principal.
     fn axes(&self, i: usize) -> [[f64; 3]; 3] {
-        /// Rounding of the sums, far below what bends an axis.
-        const NOTHING: f64 = 1e-9;
         let mut moment = [[0.0; 3]; 3];
         let here = self.bonds.site(i);
         for (_, b) in self.bonds.family(i) {
@@ -156,13 +153,7 @@ impl Body<'_> {
                 }
             }
         }
-        let trace = moment[0][0] + moment[1][1] + moment[2][2];
-        let across = [moment[0][1], moment[1][2], moment[0][2]];
-        let bent = across.iter().any(|x| x.abs() > NOTHING * trace);
-        match bent && trace > 0.0 && trace.is_finite() {
-            true => principal_axes(moment),
-            false => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        }
+        axes_of(moment)
     }
 
     /// Takes factors under which the energies of corrected bonds are nearer those of the interior.

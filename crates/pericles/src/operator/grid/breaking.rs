@@ -9,7 +9,7 @@ use crate::lanes::LANES;
 use crate::lanes::Lanes;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::fast_law::FastLaw;
-use crate::step_end::{BreakingBond, StepEnd};
+use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 
 /// Breaking as the loops see it.
 pub(super) struct GridBreaking<'a> {
@@ -107,10 +107,7 @@ fn book<L: FastLaw, N: GridNumber, const D: usize>(
         let ends = [here, there].map(|place| (rule.point_at)(place - grid.margin));
         let bond = BreakingBond {
             ends,
-            velocity: match rule.velocity {
-                Some(field) => field.difference::<D>(ends),
-                None => [0.0; D],
-            },
+            velocity: relative_velocity(rule.velocity, ends),
             force: L::force(xi, eta),
             energy: L::energy(xi, eta),
             critical: Some(L::energy(

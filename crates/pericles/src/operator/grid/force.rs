@@ -253,8 +253,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         let mut blocks = std::mem::take(&mut self.blocks);
         let set = self.instruction_set;
         let domain = self.cloud.domain();
-        let (ghosts, velocity) = (domain.ghosts(step.u), step.mean_velocities());
-        let moved = velocity.map(|owned| domain.ghosts(owned));
+        let (ghosts, moved) = (domain.ghosts(step.u), step.ghost_velocities(domain));
         let rule = GridBreaking {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
@@ -262,8 +261,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             breakable: &|chunk: &Chunk, offset: usize| self.breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),
             step,
-            velocity: (velocity.zip(moved.as_deref()))
-                .map(|(owned, ghosts)| Field::new(owned, ghosts)),
+            velocity: step.velocities(&moved),
             note_events: !whole,
         };
         let u = Field::new(step.u, &ghosts);
@@ -343,35 +341,23 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
 
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
     fn tell_the_other_ends(&mut self) {
-        let (n, m) = (self.cloud.len(), self.stencil.len());
-        let (mut here, mut away) = (Vec::new(), Vec::new());
+        let m = self.stencil.len();
+        let mut letters = Vec::new();
         for block in &mut self.blocks {
             for event in block.tally.events.drain(..) {
                 let (group, lane) = (event.entry / LANES, event.entry % LANES);
                 let (chunk, offset) = (group / m, group % m);
                 let place = self.layout.chunks()[chunk].place as usize * LANES + lane;
                 let there = place.wrapping_add_signed(self.stencil.offsets()[offset].shift);
-                let letter = Letter {
+                let back = self.stencil.opposite(offset) as f64;
+                letters.push(Letter {
                     from: self.layout.point_at(place),
                     to: self.layout.point_at(there),
-                    numbers: [
-                        event.dissipated,
-                        self.stencil.opposite(offset) as f64,
-                        0.0,
-                        0.0,
-                    ],
-                };
-                match letter.to.checked_sub(n) {
-                    None => here.push(letter),
-                    Some(ghost) => away.push(Letter {
-                        to: ghost,
-                        ..letter
-                    }),
-                }
+                    numbers: [event.dissipated, back, 0.0, 0.0],
+                });
             }
         }
-        here.extend(self.cloud.domain().deliver(&away));
-        for letter in here {
+        for letter in self.cloud.domain().deliver(letters) {
             let [dissipated, offset, ..] = letter.numbers;
             let (chunk, lane) = self.layout.chunk_at(self.layout.place_of(letter.to));
             let block = self.layout.block_of(chunk);
@@ -441,10 +427,10 @@ fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Optio
     if domain.all(no_fail.is_empty()) {
         return None;
     }
-    let mut held = vec![0.0; cloud.len()];
+    let mut held = vec![false; cloud.len()];
     for &i in no_fail {
-        held[i as usize] = 1.0;
+        held[i as usize] = true;
     }
-    let held = domain.with_ghosts(&held);
-    Some(layout.marked(|point| held[point] != 0.0))
+    let held = domain.marks_with_ghosts(&held);
+    Some(layout.marked(|point| held[point]))
 }

@@ -326,22 +326,11 @@ impl GridLayout {
 
     /// The values of all sites of one component of a vector on points, in the order of their nodes.
     pub fn of_sites<'a>(&self, field: Field<'a>, c: usize, components: usize) -> Cow<'a, [f64]> {
-        let (n, m) = (
-            field.owned.len() / components,
-            field.ghosts.len() / components,
-        );
-        let owned = &field.owned[c * n..(c + 1) * n];
+        let n = field.owned.len() / components;
         let Some(seen) = &self.seen else {
-            return Cow::Borrowed(owned);
+            return Cow::Borrowed(&field.owned[c * n..(c + 1) * n]);
         };
-        let ghosts = &field.ghosts[c * m..(c + 1) * m];
-        let value = |&point: &u32| {
-            let point = point as usize;
-            owned
-                .get(point)
-                .copied()
-                .unwrap_or_else(|| ghosts[point - n])
-        };
+        let value = |&point: &u32| field.entry(components, c, point as usize);
         Cow::Owned(
             seen.point
                 .par_iter()

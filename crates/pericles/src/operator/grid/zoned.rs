@@ -10,9 +10,8 @@ use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {
-        let numbers: Vec<f64> = marks.iter().map(|&m| f64::from(u8::from(m))).collect();
-        let marks = self.cloud.domain().with_ghosts(&numbers);
-        Partners(self.layout.marked(|point| marks[point] != 0.0))
+        let marks = self.cloud.domain().marks_with_ghosts(marks);
+        Partners(self.layout.marked(|point| marks[point]))
     }
 
     /// The bonds of a block's wanted chunks that are left and lead to partners; none of the other chunks'.

@@ -6,7 +6,7 @@ use crate::lanes::LANES;
 use crate::material::{PairClasses, PairForce};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
-use crate::step_end::{BreakingBond, StepEnd};
+use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 
 /// Breaking as the loops see it.
 pub(super) struct BreakRule<'a> {
@@ -94,10 +94,7 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
                 let ends = [i, list.sites().point(j)];
                 let bond = BreakingBond {
                     ends,
-                    velocity: match rule.velocity {
-                        Some(field) => field.difference::<D>(ends),
-                        None => [0.0; D],
-                    },
+                    velocity: relative_velocity(rule.velocity, ends),
                     force: L::force(xi, eta),
                     energy: L::energy(xi, eta),
                     critical: Some(L::energy(xi, xi.map(|component| stretch * component))),

@@ -264,8 +264,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let mut blocks = std::mem::take(&mut self.blocks);
         let partners = partners.map(|marks| self.bonds.sites().spread_marks(marks));
         let bonds = self.view().leading_to(partners.as_deref());
-        let velocity = step.mean_velocities();
-        let ghosts = velocity.map(|owned| self.cloud.domain().ghosts(owned));
+        let moved = step.ghost_velocities(self.cloud.domain());
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
@@ -273,8 +272,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             breakable: self.breakable.as_deref(),
             volumes: self.cloud.volumes(),
             step,
-            velocity: (velocity.zip(ghosts.as_deref()))
-                .map(|(owned, ghosts)| Field::new(owned, ghosts)),
+            velocity: step.velocities(&moved),
             note_events: !whole,
         };
         self.with_packed(step.u, on, |u| {

@@ -4,33 +4,23 @@ use crate::domain::Letter;
 use crate::family::BondList;
 use crate::operator::damage::BlockDamage;
 
-/// Takes the events of blocks and finds the other end of each bond: its point, the entry that leads back, and the energy booked at the first end, J. Ends that other processes own are told them.
+/// Takes the bonds that blocks have noted as broken, and returns for the other end of each its point, the entry that leads back, and the energy that the first end has booked, J. Bonds whose other end belongs to another
+/// process are reported to that process, and returned there.
 pub fn other_ends(bonds: &BondList, blocks: &mut [BlockDamage]) -> Vec<(usize, usize, f64)> {
     let sites = bonds.sites();
-    let (n, domain) = (sites.cloud().len(), sites.cloud().domain());
-    let (mut here, mut away) = (Vec::new(), Vec::new());
+    let mut letters = Vec::new();
     for block in blocks {
         for event in block.tally.events.drain(..) {
             let site = bonds.neighbour(event.entry);
             let [x, y, z] = sites.shift(site).map(|periods| -f64::from(periods));
-            let letter = Letter {
+            letters.push(Letter {
                 from: event.point as usize,
                 to: sites.point(site),
                 numbers: [event.dissipated, x, y, z],
-            };
-            match letter.to.checked_sub(n) {
-                None => here.push(letter),
-                Some(ghost) => away.push(Letter {
-                    to: ghost,
-                    ..letter
-                }),
-            }
+            });
         }
     }
-    here.extend(domain.deliver(&away).into_iter().map(|letter| Letter {
-        from: n + letter.from,
-        ..letter
-    }));
+    let letters = sites.cloud().domain().deliver(letters);
     let found = |letter: &Letter| {
         let [dissipated, x, y, z] = letter.numbers;
         let leads_back = |&(_, site): &(usize, usize)| {
@@ -39,5 +29,5 @@ pub fn other_ends(bonds: &BondList, blocks: &mut [BlockDamage]) -> Vec<(usize, u
         let (back, _) = bonds.family(letter.to).find(leads_back)?;
         Some((letter.to, back, dissipated))
     };
-    here.iter().filter_map(found).collect()
+    letters.iter().filter_map(found).collect()
 }

@@ -239,8 +239,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let n = self.cloud.len();
         let mut blocks = std::mem::take(&mut self.blocks);
         let bonds = self.view();
-        let ghosts = self.ghost_velocities(step);
-        let rule = self.rule(step, with_ghosts(step, &ghosts), on);
+        let moved = step.ghost_velocities(self.cloud.domain());
+        let rule = self.rule(step, step.velocities(&moved), on);
         let u = self.packed(u);
         for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
             let len = n.min(first + BLOCK) - first;
@@ -282,8 +282,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let ghosts = self.cloud.domain().ghosts(dilatations);
         // These rows hold the dilatations from before: those of points that lose bonds change.
         let u = self.packed_with(u, Field::new(dilatations, &ghosts));
-        let moved = self.ghost_velocities(step);
-        let rule = self.rule(step, with_ghosts(step, &moved), on);
+        let moved = step.ghost_velocities(self.cloud.domain());
+        let rule = self.rule(step, step.velocities(&moved), on);
         let worked = Worked {
             bonds: self.view(),
             influence,
@@ -311,12 +311,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         drop(u);
         self.blocks = blocks;
         self.work = work;
-    }
-
-    /// The mean velocities of ghosts over a step, m/s; none where breaking does not ask for them.
-    fn ghost_velocities(&self, step: &StepEnd<'_>) -> Vec<f64> {
-        let velocities = step.mean_velocities();
-        velocities.map_or_else(Vec::new, |own| self.cloud.domain().ghosts(own))
     }
 
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
@@ -369,11 +363,6 @@ impl States {
                 .collect(),
         }
     }
-}
-
-fn with_ghosts<'a>(step: &StepEnd<'a>, ghosts: &'a [f64]) -> Option<Field<'a>> {
-    let velocities = step.mean_velocities();
-    velocities.map(|own| Field::new(own, ghosts))
 }
 
 /// The blocks with the part of what is kept of bonds that belongs to each.
