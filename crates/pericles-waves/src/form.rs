@@ -25,11 +25,6 @@ pub enum ForceForm {
 pub(crate) const LINEAR_ONLY: &str =
     "plane waves are independent for the linear law only; use model = \"linear\"";
 
-const INCLUSIONS: Limit = Limit::new(
-    Feature::Inclusions,
-    "parts of other stiffness are no convolution; use \"list\", or leave the inclusions out",
-);
-
 const PRE_CRACKS: Limit = Limit::new(
     Feature::PreCracks,
     "pre-cracks cut single bonds, which it cannot; use \"list\" or \"grid\"",
@@ -48,7 +43,7 @@ const OF_CONVOLUTION: &[Limit] = &[
     Limit::listed_law(Feature::GreenStrainBar),
     Limit::listed_law(Feature::GreenStrain),
     Limit::listed_law(Feature::OtherCubic),
-    INCLUSIONS,
+    Limit::INCLUSIONS,
     PRE_CRACKS,
     Limit::new(
         Feature::BondStretch,
@@ -75,7 +70,7 @@ const OF_SPECTRAL: &[Limit] = &[
     Limit::SURFACE_CORRECTION,
     Limit::listed_law(Feature::GreenStrain),
     Limit::listed_law(Feature::OtherCubic),
-    INCLUSIONS,
+    Limit::INCLUSIONS,
     PRE_CRACKS,
     Limit::new(
         Feature::FreeFaces,

@@ -93,6 +93,14 @@ impl PairClasses {
         }
     }
 
+    /// The same for other places, with the number of the material of each.
+    pub(crate) fn at(&self, of_place: Vec<u8>) -> Self {
+        Self {
+            of_point: of_place,
+            ..self.clone()
+        }
+    }
+
     /// The number of each point's material.
     pub fn of_point(&self) -> &[u8] {
         &self.of_point

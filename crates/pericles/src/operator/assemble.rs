@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::by_law::{ByLaw, by_law};
 use super::limits::{Feature, Features, Limit};
 use super::{BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force, GridForce};
 use crate::error::Result;
@@ -72,47 +71,8 @@ impl BondBody<'_> {
             .with(Feature::Inclusions, !self.stiffness.is_empty())
     }
 
-    /// The faster of grid and list.
-    pub fn fastest_form(&self) -> BondForm {
-        match self.cloud.lattice() {
-            Some(lattice) if Limit::refusal(BondForm::Grid.limits(), self.features()).is_none() => {
-                let [x, y, z] = lattice.shape;
-                let places = x.next_multiple_of(LANES) * y * z;
-                if places <= SPARSE * self.cloud.len().max(LANES) {
-                    BondForm::Grid
-                } else {
-                    BondForm::List
-                }
-            }
-            _ => BondForm::List,
-        }
-    }
-
-    /// The operator.
-    ///
-    /// # Errors
-    /// A form that does not represent the body ([`BondForm::check`]), a law that is not defined in this dimension, a horizon that reaches no neighbour, an unusable crack.
-    pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
-        by_law(
-            self.material.law,
-            self.cloud.dimension(),
-            OfBody(self, form),
-        )
-    }
-
-    /// The operator for a pair law that every form of bonds computes.
-    pub(super) fn operator_of<L: FastLaw, const D: usize>(
-        &self,
-        form: BondForm,
-    ) -> Result<AssembledBonds> {
-        OfBody(self, form).any_form::<L, D>()
-    }
-
-    /// The grid operator, of the material itself everywhere.
-    ///
-    /// # Errors
-    /// See [`GridForce::new`].
-    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+    /// The grid operator of the material itself everywhere.
+    pub(super) fn grid_of_material<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
         GridForce::new(
             self.cloud.clone(),
             self.material,
@@ -123,7 +83,7 @@ impl BondBody<'_> {
         )
     }
 
-    fn check_stiffness(&self) -> Result<()> {
+    pub(super) fn check_stiffness(&self) -> Result<()> {
         match self.stiffness {
             [] => Ok(()),
             given => check_length(
@@ -177,41 +137,18 @@ impl BondBody<'_> {
     }
 }
 
-/// Makes the operator of a body in a form.
-struct OfBody<'a>(&'a BondBody<'a>, BondForm);
-
-impl ByLaw for OfBody<'_> {
-    type Output = AssembledBonds;
-
-    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        let Self(body, form) = self;
-        let form = match form {
-            BondForm::Fastest => body.fastest_form(),
-            chosen => chosen,
-        };
-        if form == BondForm::List {
-            return Self(body, form).listed::<L, D>();
+/// The faster of grid and list for a body with these features.
+pub(super) fn fastest_form(cloud: &PointCloud, features: Features) -> BondForm {
+    match cloud.lattice() {
+        Some(lattice) if Limit::refusal(BondForm::Grid.limits(), features).is_none() => {
+            let [x, y, z] = lattice.shape;
+            let places = x.next_multiple_of(LANES) * y * z;
+            if places <= SPARSE * cloud.len().max(LANES) {
+                BondForm::Grid
+            } else {
+                BondForm::List
+            }
         }
-        form.check(body.features())?;
-        let mut grid = body.grid::<L, D>()?;
-        if form == BondForm::FloatGrid {
-            grid = grid.in_floats();
-        }
-        Ok(AssembledBonds {
-            cuts: grid.cuts().to_vec(),
-            operator: Box::new(grid),
-            form,
-        })
-    }
-
-    fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        let Self(body, form) = self;
-        form.check(body.features())?;
-        let (list, cuts) = body.list::<L, D>()?;
-        Ok(AssembledBonds {
-            operator: Box::new(list),
-            cuts,
-            form: BondForm::List,
-        })
+        _ => BondForm::List,
     }
 }

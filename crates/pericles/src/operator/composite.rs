@@ -1,15 +1,16 @@
 //! Bodies whose bonds depend on their two ends: several materials, corrected surfaces.
 
+use super::assemble::fastest_form;
 use super::by_law::{ByLaw, by_law};
 use super::limits::{Feature, Features};
-use super::{AssembledBonds, BondBody, BondForce, BondForm, Breaking};
+use super::{AssembledBonds, BondBody, BondForce, BondForm, Breaking, GridForce};
 use crate::error::Result;
 use crate::family::BondList;
-use crate::material::{PairClasses, SurfaceCorrection};
+use crate::material::{BondConstants, PairClasses, SurfaceCorrection, SurfaceFactors};
 use crate::operator::fast_law::FastLaw;
-use crate::space::check_length;
+use crate::space::{Sites, check_length};
 
-/// A body of several materials, or with corrected surfaces; always kept as a list.
+/// A body of several materials, with inclusions or corrected surfaces.
 ///
 /// The force of a bond is c_ab · g · ½(k_i + k_j) · α κ V_j s n with the constant c_ab of the materials of its ends ([`PairClasses`]), the factor g of
 /// [`SurfaceCorrection`] and the relative stiffness k of [`BondBody::stiffness`]. Law, horizon, influence function and partial volumes are those of the body's
@@ -43,11 +44,7 @@ impl CompositeBody<'_> {
 
     /// The faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {
-        if self.is_plain() {
-            self.body.fastest_form()
-        } else {
-            BondForm::List
-        }
+        fastest_form(self.body.cloud, self.features())
     }
 
     /// What the body has that not every form represents.
@@ -69,47 +66,89 @@ impl CompositeBody<'_> {
     /// # Errors
     /// Those of [`BondBody::operator`].
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
-        if self.is_plain() {
-            return self.body.operator(form);
-        }
-        form.check(self.features())?;
         let dimension = self.body.cloud.dimension();
-        by_law(self.body.material.law, dimension, Listed(self))
+        by_law(self.body.material.law, dimension, OfBody(self, form))
     }
 
-    pub(super) fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
+    /// The operator for a pair law that every form of bonds computes.
+    pub(super) fn operator_of<L: FastLaw, const D: usize>(
+        &self,
+        form: BondForm,
+    ) -> Result<AssembledBonds> {
+        OfBody(self, form).any_form::<L, D>()
+    }
+
+    /// The stiffness of bonds by their sites. `bonds` are the families without bonds that pre-cracks cut; only the correction of surfaces needs them.
+    fn of_ends(&self, sites: &Sites, bonds: Option<&BondList>) -> EndStiffness<'_> {
+        EndStiffness {
+            constants: self.body.constants,
+            inclusions: sites.spread(self.body.stiffness).into_owned(),
+            factors: bonds.map_or(SurfaceFactors::None, |bonds| {
+                self.correction.factors(bonds, self.body.material)
+            }),
+            classes: self.classes.map(|classes| classes.on_sites(sites)),
+        }
+    }
+
+    fn check(&self) -> Result<()> {
+        let points = self.body.cloud.len();
+        if let Some(classes) = self.classes {
+            let given = classes.of_point().len();
+            check_length("the materials of the points", given, points)?;
+        }
+        self.body.check_stiffness()
+    }
+
+    /// The grid operator.
+    ///
+    /// # Errors
+    /// See [`GridForce::new`].
+    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+        self.check()?;
+        let grid = self.body.grid_of_material::<L, D>()?;
+        if self.is_plain() && self.body.stiffness.is_empty() {
+            return Ok(grid);
+        }
+        let families = match self.correction {
+            SurfaceCorrection::None => None,
+            _ => Some(self.body.families()?.0),
+        };
+        let of_ends = self.of_ends(grid.sites(), families.as_ref());
+        let spacing = self.body.cloud.spacing();
+        let micromodulus = self.body.constants.micromodulus;
+        let grid = grid.with_factors(&|a, b, cell| {
+            let xi = cell.map(|steps| f64::from(steps) * spacing);
+            of_ends.factor(a, b, xi) * (of_ends.micromodulus(a, b) / micromodulus)
+        });
+        Ok(match self.classes {
+            Some(classes) => grid.with_critical_stretches(classes),
+            None => grid,
+        })
+    }
+
+    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
+        self.check()?;
+        if self.is_plain() {
+            let (list, cuts) = self.body.list::<L, D>()?;
+            return Ok(AssembledBonds {
+                operator: Box::new(list),
+                cuts,
+                form: BondForm::List,
+            });
+        }
         let BondBody {
             cloud,
             material,
             constants,
-            stiffness,
             ..
         } = self.body;
-        if let Some(classes) = self.classes {
-            check_length(
-                "the materials of the points",
-                classes.of_point().len(),
-                cloud.len(),
-            )?;
-        }
         let (bonds, cuts) = self.body.families()?;
-        let sites = bonds.shared_sites();
-        let factors = self.correction.factors(&bonds, material);
-        let stiffness = sites.spread(stiffness);
-        let inclusion = |a: usize, b: usize| match &stiffness[..] {
-            [] => 1.0,
-            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
-        };
-        let classes = self.classes.map(|classes| classes.on_sites(&sites));
+        let of_ends = self.of_ends(bonds.sites(), Some(&bonds));
         let stiffness_of_pair = |bonds: &BondList, a: usize, b: usize| {
             let xi = bonds.vector(a, b);
             let alpha = material.influence.alpha_of(xi, material.horizon);
-            let micromodulus = match &classes {
-                Some(classes) => classes.micromodulus(a, b),
-                None => constants.micromodulus,
-            };
-            let relative = inclusion(a, b) * factors.of_bond(a, b, xi);
-            relative * micromodulus * alpha * bonds.volume_factor(a, b)
+            let micromodulus = of_ends.factor(a, b, xi) * of_ends.micromodulus(a, b);
+            micromodulus * alpha * bonds.volume_factor(a, b)
         };
         let breaking = Breaking {
             critical_stretch: constants.critical_stretch,
@@ -134,13 +173,86 @@ impl CompositeBody<'_> {
     }
 }
 
-/// Makes the list of a body whose bonds depend on their ends.
-struct Listed<'a>(&'a CompositeBody<'a>);
+/// What the stiffness of a body's bonds depends on at their ends.
+struct EndStiffness<'a> {
+    constants: &'a BondConstants,
+    inclusions: Vec<f64>,
+    factors: SurfaceFactors,
+    classes: Option<PairClasses>,
+}
 
-impl ByLaw for Listed<'_> {
+impl EndStiffness<'_> {
+    /// The constant c of a bond between two sites.
+    fn micromodulus(&self, a: usize, b: usize) -> f64 {
+        match &self.classes {
+            Some(classes) => classes.micromodulus(a, b),
+            None => self.constants.micromodulus,
+        }
+    }
+
+    /// What multiplies it, for a bond with the vector ξ, m; the same from both ends.
+    fn factor(&self, a: usize, b: usize, xi: [f64; 3]) -> f64 {
+        let inclusion = match &self.inclusions[..] {
+            [] => 1.0,
+            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
+        };
+        inclusion * self.factors.of_bond(a, b, xi)
+    }
+}
+
+impl BondBody<'_> {
+    /// The faster of grid and list.
+    pub fn fastest_form(&self) -> BondForm {
+        fastest_form(self.cloud, self.features())
+    }
+
+    /// The operator.
+    ///
+    /// # Errors
+    /// A form that does not represent the body ([`BondForm::check`]), a law that is not defined in this dimension, a horizon that reaches no neighbour, an unusable crack.
+    pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
+        CompositeBody::from(self.clone()).operator(form)
+    }
+
+    /// The grid operator.
+    ///
+    /// # Errors
+    /// See [`GridForce::new`].
+    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+        CompositeBody::from(self.clone()).grid()
+    }
+}
+
+/// Makes the operator of a body in a form.
+struct OfBody<'a>(&'a CompositeBody<'a>, BondForm);
+
+impl ByLaw for OfBody<'_> {
     type Output = AssembledBonds;
 
+    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+        let Self(body, form) = self;
+        let form = match form {
+            BondForm::Fastest => body.fastest_form(),
+            chosen => chosen,
+        };
+        if form == BondForm::List {
+            return Self(body, form).listed::<L, D>();
+        }
+        form.check(body.features())?;
+        let mut grid = body.grid::<L, D>()?;
+        if form == BondForm::FloatGrid {
+            grid = grid.in_floats();
+        }
+        Ok(AssembledBonds {
+            cuts: grid.cuts().to_vec(),
+            operator: Box::new(grid),
+            form,
+        })
+    }
+
     fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        self.0.list::<L, D>()
+        let Self(body, form) = self;
+        form.check(body.features())?;
+        body.list::<L, D>()
     }
 }

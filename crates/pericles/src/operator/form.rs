@@ -22,15 +22,9 @@ const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 const OF_GRID: &[Limit] = &[
     Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
-    Limit::SEVERAL_MATERIALS,
-    Limit::SURFACE_CORRECTION,
     Limit::listed_law(Feature::GreenStrainBar),
     Limit::listed_law(Feature::GreenStrain),
     Limit::listed_law(Feature::OtherCubic),
-    Limit::new(
-        Feature::Inclusions,
-        "parts of other stiffness cannot be kept as one stencil; \"list\" or \"fastest\" can",
-    ),
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
 ];

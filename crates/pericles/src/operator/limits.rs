@@ -137,16 +137,18 @@ pub struct Limit {
     pub reason: &'static str,
 }
 
-const LISTED_PAIRS: &str =
-    "several materials and surface corrections are kept as a list: \"list\" or \"fastest\"";
+const OF_ENDS: &str = "bonds whose stiffness depends on their ends are no convolution; use \"list\", \"grid\" or \"fastest\"";
 
 /// Limits of several forms.
 impl Limit {
-    /// Of forms whose bonds all have one constant.
-    pub const SEVERAL_MATERIALS: Self = Self::new(Feature::SeveralMaterials, LISTED_PAIRS);
+    /// Of convolutions.
+    pub const SEVERAL_MATERIALS: Self = Self::new(Feature::SeveralMaterials, OF_ENDS);
 
-    /// Of forms whose bonds all have one constant.
-    pub const SURFACE_CORRECTION: Self = Self::new(Feature::SurfaceCorrection, LISTED_PAIRS);
+    /// Of convolutions.
+    pub const INCLUSIONS: Self = Self::new(Feature::Inclusions, OF_ENDS);
+
+    /// Of convolutions.
+    pub const SURFACE_CORRECTION: Self = Self::new(Feature::SurfaceCorrection, OF_ENDS);
 
     /// Of forms that compute pair forces only.
     pub const STATE_BASED: Self = Self::new(

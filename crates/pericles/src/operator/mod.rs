@@ -32,6 +32,7 @@ pub mod records;
 pub mod rows;
 mod springs;
 mod state_based;
+mod thresholds;
 mod two_pass;
 mod view;
 mod zoned;

@@ -49,22 +49,14 @@ impl CompositeBody<'_> {
     /// Those of [`CompositeBody::operator`].
     pub fn operator_of_law<L: PairForce>(&self, form: BondForm) -> Result<AssembledBonds> {
         match self.body.cloud.dimension() {
-            1 => self.of_law::<PlainLaw<L>, 1>(form),
-            2 => self.of_law::<PlainLaw<L>, 2>(form),
-            3 => self.of_law::<PlainLaw<L>, 3>(form),
+            1 => self.operator_of::<PlainLaw<L>, 1>(form),
+            2 => self.operator_of::<PlainLaw<L>, 2>(form),
+            3 => self.operator_of::<PlainLaw<L>, 3>(form),
             dimension => Err(PericlesError::WrongDimension {
                 what: "a bond-based material",
                 needed: "1, 2 or 3",
                 dimension,
             }),
         }
-    }
-
-    fn of_law<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
-        if self.is_plain() {
-            return self.body.operator_of::<L, D>(form);
-        }
-        form.check(self.features())?;
-        self.list::<L, D>()
     }
 }

@@ -141,7 +141,7 @@ fn grid<L: FastLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
 }
 
 /// Two materials, an inclusion and corrected surfaces.
-fn composite(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let glass = glass(PairLaw::BondStretch);
     let constants = glass.constants(cloud, STATE).unwrap();
     let softer = BondMaterial {
@@ -172,7 +172,7 @@ fn composite(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
         correction: SurfaceCorrection::Energy,
         ..CompositeBody::from(body)
     };
-    body.operator(BondForm::List).unwrap().operator
+    body.operator(form).unwrap().operator
 }
 
 /// Two state-based materials with corrected surfaces.
@@ -266,14 +266,19 @@ const VERLET: MakeScheme = |_| Box::new(VelocityVerlet);
 
 #[test]
 fn a_divided_body_of_bonds_moves_by_the_same_bits() {
-    let forces: [(&str, Make); 6] = [
+    let forces: [(&str, Make); 7] = [
         ("list", |cloud| {
             list::<BondStretch>(PairLaw::BondStretch, cloud)
         }),
         ("list, Green strain", |cloud| {
             list::<GreenBond>(PairLaw::GreenStrain, cloud)
         }),
-        ("list of several materials", composite),
+        ("list of several materials", |cloud| {
+            composite(cloud, BondForm::List)
+        }),
+        ("stencil of several materials", |cloud| {
+            composite(cloud, BondForm::Grid)
+        }),
         ("state-based list", solid),
         ("stencil", |cloud| {
             grid::<BondStretch>(PairLaw::BondStretch, cloud)

@@ -7,6 +7,7 @@ mod common;
 mod divided;
 mod divided_bonds;
 mod dynamics;
+mod ends;
 mod fragments;
 mod grid;
 mod guard;

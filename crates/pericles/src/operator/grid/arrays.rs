@@ -1,13 +1,17 @@
 //! Arrays of a lattice body as the loops see them.
 
+use super::factors::Factors;
 use super::layout::Chunk;
 use super::numbers::{ChunkLanes, GridNumber};
 use super::stencil::Offset;
-use crate::lanes::{LANES, vector};
+use crate::lanes::LANES;
+use crate::operator::fast_law::FixedBond;
 
 /// Read-only arrays as the loops see them.
 pub(super) struct Grid<'a, N, const D: usize> {
     pub offsets: &'a [Offset<N, D>],
+    /// The stiffness of bonds over the offsets', where it depends on their ends.
+    pub factors: Option<&'a Factors<N>>,
     /// Displacement (or another vector) in padded rows.
     pub u: [&'a [N]; D],
     /// Unused places before the first row.
@@ -29,6 +33,47 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
             self.place(&chunks[0]),
             self.place(&chunks[chunks.len() - 1]),
         )
+    }
+
+    /// Where the factors of chunks taken together begin; none if all their bonds have the offsets' stiffness.
+    #[inline(always)]
+    pub(super) fn factors_of<T: ChunkLanes<Number = N>>(
+        &self,
+        first_chunk: usize,
+        count: usize,
+    ) -> Option<T::Places> {
+        match self.factors {
+            None => None,
+            Some(factors) => match factors.places(first_chunk, count) {
+                None => None,
+                Some([first, last]) => Some(T::places(first, last)),
+            },
+        }
+    }
+
+    /// The bonds of an offset, with the factors that begin there.
+    #[inline(always)]
+    pub(super) fn bonds<T: ChunkLanes<Number = N>>(
+        &self,
+        offset: usize,
+        factors: Option<T::Places>,
+    ) -> FixedBond<T, D> {
+        let mut bonds = self.offsets[offset].lanes::<T>();
+        if let (Some(all), Some(places)) = (self.factors, factors) {
+            let factor = T::at(all.values(), places, (offset * LANES) as isize);
+            bonds.stiffness = bonds.stiffness * factor;
+            bonds.factor = bonds.factor * factor;
+        }
+        bonds
+    }
+
+    /// The stiffness of a chunk's bond of one offset, N/m³.
+    pub(super) fn stiffness(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
+        let stiffness: f64 = self.offsets[offset].stiffness.into();
+        match self.factors {
+            None => stiffness,
+            Some(factors) => stiffness * factors.of_bond(chunk, offset, lane),
+        }
     }
 
     #[inline(always)]
@@ -54,10 +99,4 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         }
         eta
     }
-}
-
-/// ξ of an offset in all lanes.
-#[inline(always)]
-pub(super) fn xi<T: ChunkLanes, const D: usize>(offset: &Offset<T::Number, D>) -> [T; D] {
-    vector(|c| T::broadcast(offset.xi[c]))
 }

@@ -3,7 +3,7 @@
 use super::arrays::Grid;
 use super::layout::Chunk;
 use super::numbers::GridNumber;
-use super::stencil::Offset;
+use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::lanes::Lanes;
@@ -15,8 +15,10 @@ use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 pub(super) struct GridBreaking<'a> {
     /// Bonds with measure > threshold |ξ|² are over-stretched.
     pub threshold: f64,
-    /// The critical stretch.
+    /// The critical stretch, where all bonds have the same.
     pub critical_stretch: f64,
+    /// Thresholds that depend on the ends of a bond, in place of the one, which is then the smallest of them.
+    pub pairs: Option<&'a PlaceThresholds>,
     /// Volume of a point, m³.
     pub volume: f64,
     /// Which bonds of a chunk and offset may break.
@@ -29,6 +31,17 @@ pub(super) struct GridBreaking<'a> {
     pub velocity: Option<Field<'a>>,
     /// Note what breaks, so that the other end can be told.
     pub note_events: bool,
+}
+
+impl GridBreaking<'_> {
+    /// The smallest threshold of the bonds of so many chunks from `first` on.
+    #[inline(always)]
+    pub(super) fn smallest_threshold(&self, first: usize, count: usize) -> f64 {
+        match self.pairs {
+            None => self.threshold,
+            Some(pairs) => pairs.smallest(first, count),
+        }
+    }
 }
 
 /// A chunk whose bonds are looked at one by one.
@@ -59,6 +72,7 @@ pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
         here[c] = N::load::<T>(grid.u[c], place);
     }
     let threshold = T::splat(rule.threshold);
+    let first = place - grid.margin;
     let mut any = false;
     for k in 0..grid.offsets.len() {
         let offset = &grid.offsets[k];
@@ -72,14 +86,17 @@ pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
             xi[c] = T::splat(offset.xi[c].into());
             eta[c] = N::load::<T>(grid.u[c], there) - here[c];
         }
+        let threshold = match rule.pairs {
+            None => threshold,
+            Some(pairs) => T::load(&pairs.of_lanes(first, offset.shift), 0),
+        };
         let (measure, square) = L::stretch_measure(xi, eta);
         let mut over = measure.greater(threshold * square) & candidates;
         if over != 0 {
             over &= (rule.breakable)(bonds.chunk, k);
             bonds.intact[k] &= !over;
             any |= over != 0;
-            let entry = (bonds.entry + k) * LANES;
-            book::<L, N, D>(grid, rule, bonds.chunk, offset, over, entry, tally);
+            book::<L, N, D>(grid, rule, &bonds, k, over, tally);
         }
     }
     any
@@ -91,29 +108,32 @@ pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
 fn book<L: FastLaw, N: GridNumber, const D: usize>(
     grid: &Grid<'_, N, D>,
     rule: &GridBreaking<'_>,
-    chunk: &Chunk,
-    offset: &Offset<N, D>,
+    bonds: &ChunkBonds<'_>,
+    number: usize,
     over: u8,
-    entry: usize,
     tally: &mut Tally,
 ) {
+    let (chunk, offset) = (bonds.chunk, &grid.offsets[number]);
+    let entry = (bonds.entry + number) * LANES;
     let xi = offset.xi.map(|component| component.into() * grid.unit);
     for k in (0..LANES).filter(|k| over >> k & 1 == 1) {
         let here = grid.place(chunk) + k;
         let there = here.wrapping_add_signed(offset.shift);
         let difference = |field: &[N]| -> f64 { field[there].into() - field[here].into() };
         let eta: [f64; D] = std::array::from_fn(|c| difference(grid.u[c]) * grid.unit);
-        let stiffness: f64 = offset.stiffness.into();
-        let ends = [here, there].map(|place| (rule.point_at)(place - grid.margin));
+        let stiffness = grid.stiffness(bonds.entry / grid.offsets.len(), number, k);
+        let places = [here, there].map(|place| place - grid.margin);
+        let ends = places.map(rule.point_at);
+        let stretch = match rule.pairs {
+            None => rule.critical_stretch,
+            Some(pairs) => pairs.critical_stretch(places),
+        };
         let bond = BreakingBond {
             ends,
             velocity: relative_velocity(rule.velocity, ends),
             force: L::force(xi, eta),
             energy: L::energy(xi, eta),
-            critical: Some(L::energy(
-                xi,
-                xi.map(|component| rule.critical_stretch * component),
-            )),
+            critical: Some(L::energy(xi, xi.map(|component| stretch * component))),
             weight: rule.volume * stiffness,
         };
         let dissipated = tally.book(rule.step, &bond);

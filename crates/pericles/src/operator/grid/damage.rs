@@ -36,7 +36,7 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
         out.fill(0.0);
         for (sums, all) in [(&mut whole[..], true), (&mut *out, false)] {
             self.for_each_block(sums, |first, number, intact, sums| {
-                self.for_each_counted(number, intact, |point, offset, intact| {
+                self.for_each_counted(number, intact, |(_, point), offset, intact| {
                     if intact || all {
                         let weight = if self.damage.count {
                             1.0
@@ -86,6 +86,15 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
         let threshold = L::threshold(fraction * self.critical_stretch);
         let mut found = vec![0.0; self.points()];
         let breakable = |chunk: &Chunk, offset: usize| self.breakable(chunk, offset);
+        let part = |place: usize, shift: isize| match &self.pairs {
+            None => [threshold; LANES],
+            Some(pairs) => pairs.of_part::<L>(fraction, place, shift),
+        };
+        let endangered = Endangered {
+            threshold,
+            of_lanes: &part,
+            breakable: &breakable,
+        };
         self.sweep::<f64, 1>(
             &self.doubles,
             u,
@@ -95,8 +104,7 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
                 endangered_chunks::<L, D>(
                     self.instruction_set,
                     grid,
-                    threshold,
-                    &breakable,
+                    &endangered,
                     block,
                     intact,
                     out,
@@ -109,19 +117,29 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     }
 }
 
+/// Which bonds are near their critical stretch.
+struct Endangered<'a> {
+    /// The smallest threshold of all bonds.
+    threshold: f64,
+    /// Those of eight bonds from a place on, by the shift to their other ends.
+    of_lanes: &'a (dyn Fn(usize, isize) -> [f64; LANES] + Sync),
+    /// Which bonds of a chunk and offset may break.
+    breakable: &'a (dyn Fn(&Chunk, usize) -> u8 + Sync),
+}
+
 #[inline(always)]
 fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, f64, D>,
-    threshold: f64,
-    breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
+    rule: &Endangered<'_>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
     out: &mut [&mut [f64]; 1],
 ) {
     let m = grid.offsets.len();
-    let threshold = T::splat(threshold);
-    // Asked for few bonds only: behind a pointer, so that no part of it is compiled into the vector loop.
-    let breakable = std::hint::black_box(breakable);
+    let threshold = T::splat(rule.threshold);
+    // Asked for few bonds only: behind pointers, so that no part of it is compiled into the vector loop.
+    let breakable = std::hint::black_box(rule.breakable);
+    let of_lanes = std::hint::black_box(rule.of_lanes);
     for (number, chunk) in block.chunks.iter().enumerate() {
         let place = grid.place(chunk);
         let here = grid.here::<T>(place);
@@ -130,9 +148,11 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
-            let over = L::strain(&offset.lanes::<T>(), eta).greater(threshold) & mask;
+            let strain = L::strain(&offset.lanes::<T>(), eta);
+            let over = strain.greater(threshold) & mask;
             if over & !endangered != 0 {
-                endangered |= over & breakable(chunk, k);
+                let own = T::load(&of_lanes(place - grid.margin, offset.shift), 0);
+                endangered |= over & strain.greater(own) & breakable(chunk, k);
             }
         }
         if endangered != 0 {
@@ -149,8 +169,7 @@ for_each_instruction_set! {
     /// Adds one to the points with a bond that may break and is strained beyond the threshold.
     fn endangered_chunks [L: FastLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
-        threshold: f64,
-        breakable: &(dyn Fn(&Chunk, usize) -> u8 + Sync),
+        rule: &Endangered<'_>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
         out: &mut [&mut [f64]; 1],

@@ -6,17 +6,19 @@ use super::arrays::Grid;
 use super::block::ChunkBlock;
 use super::breaking::GridBreaking;
 use super::build::{cut, geometric_blocks, precut_bonds};
+use super::factors::{Factors, OfBond};
 use super::kernels::{accept_chunks, accept_chunks_in_floats};
 use super::layout::{Chunk, GridLayout, Partners};
 use super::numbers::GridNumber;
 use super::padded::Padded;
 use super::stencil::{BondRule, Stencil};
+use super::thresholds::PlaceThresholds;
 use super::working::Working;
 use crate::domain::{Field, Letter};
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, Cut, EndRule};
 use crate::lanes::LANES;
-use crate::material::{BondConstants, BondMaterial};
+use crate::material::{BondConstants, BondMaterial, PairClasses};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{BondForm, DamageMeasure, Feature, Features, Force, InstructionSet, On};
@@ -70,6 +72,8 @@ use crate::step_end::StepEnd;
 /// ```
 pub struct GridForce<L: FastLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
+    /// What bonds lead to.
+    pub(super) sites: Sites,
     pub(super) layout: GridLayout,
     pub(super) stencil: Stencil<D>,
     /// Bonds left: one byte per chunk and offset, offsets fastest.
@@ -81,6 +85,8 @@ pub struct GridForce<L: FastLaw, const D: usize> {
     pub(super) precut: Vec<(u64, u8)>,
     pub(super) directed_bonds: u64,
     pub(super) critical_stretch: f64,
+    /// Critical stretches by the materials of a bond's ends, in place of the one, which is then the smallest.
+    pub(super) pairs: Option<PlaceThresholds>,
     pub(super) damage: DamageMeasure,
     pub(super) doubles: Working<f64, D>,
     /// Forces and breaking are computed in floats, everything else in doubles.
@@ -159,12 +165,14 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             floats: None,
             direction: Mutex::new(None),
             cloud,
+            sites,
             layout,
             stencil,
             blocks,
             cuts,
             precut,
             critical_stretch: constants.critical_stretch,
+            pairs: None,
             damage,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
@@ -188,7 +196,54 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             self.stencil.farthest_shift(),
             self.stencil.radius(),
         ));
+        self.round_factors();
         self
+    }
+
+    /// The same with a stiffness of bonds that depends on their ends: the material's times a factor given for the sites of both ends, the first one an own point's, and the
+    /// neighbour's lattice coordinates less the point's. It must be the same from both ends.
+    pub(in crate::operator) fn with_factors(mut self, of: &OfBond<'_>) -> Self {
+        let (sites, layout) = (&self.sites, &self.layout);
+        let factors = Factors::new(sites, layout, &self.stencil, &self.blocks, of);
+        self.doubles = self.doubles.with_factors(Some(factors));
+        self.round_factors();
+        self
+    }
+
+    fn round_factors(&mut self) {
+        let factors = self.doubles.factors().map(Factors::in_floats);
+        self.floats = self
+            .floats
+            .take()
+            .map(|floats| floats.with_factors(factors));
+    }
+
+    /// The same with critical stretches that depend on the materials of a bond's ends.
+    pub(in crate::operator) fn with_critical_stretches(mut self, classes: &PairClasses) -> Self {
+        self.critical_stretch = classes.smallest_critical_stretch();
+        self.pairs = (!classes.has_one_critical_stretch()).then(|| {
+            let on_sites = classes.on_sites(&self.sites);
+            PlaceThresholds::new::<L, D>(&on_sites, &self.layout, &self.stencil)
+        });
+        self
+    }
+
+    /// The stiffness of a chunk's bond of one offset, N/m³.
+    pub(super) fn stiffness_of(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
+        let factors = self.doubles.factors();
+        let factor = factors.map_or(1.0, |factors| factors.of_bond(chunk, offset, lane));
+        self.stencil.offsets()[offset].stiffness * factor
+    }
+
+    /// The stiffness of an offset's stiffest bond, N/m³.
+    pub(super) fn largest_stiffness(&self, offset: usize) -> f64 {
+        let largest = (self.doubles.factors()).map_or(1.0, |factors| factors.largest(offset));
+        self.stencil.offsets()[offset].stiffness * largest
+    }
+
+    /// What bonds lead to.
+    pub fn sites(&self) -> &Sites {
+        &self.sites
     }
 
     /// What each pre-crack removed.
@@ -257,6 +312,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         let rule = GridBreaking {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
+            pairs: self.pairs.as_ref(),
             volume: self.cloud.volumes()[0],
             breakable: &|chunk: &Chunk, offset: usize| self.breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),
@@ -391,12 +447,12 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         Ok(())
     }
 
-    /// Calls `visit(point, offset, intact)` for all bonds of a chunk's geometric families that damage counts, point by point.
+    /// Calls `visit((lane, point), offset, intact)` for all bonds of a chunk's geometric families that damage counts, point by point.
     pub(super) fn for_each_counted(
         &self,
         number: usize,
         intact: &[u8],
-        mut visit: impl FnMut(usize, usize, bool),
+        mut visit: impl FnMut((usize, usize), usize, bool),
     ) {
         let m = self.stencil.len();
         let chunk = &self.layout.chunks()[number];
@@ -414,7 +470,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             }
             for (lane, point) in chunk.points() {
                 if family >> lane & 1 == 1 {
-                    visit(point, offset, intact[offset] >> lane & 1 == 1);
+                    visit((lane, point), offset, intact[offset] >> lane & 1 == 1);
                 }
             }
         }

@@ -4,7 +4,7 @@
 //! and offset says which of the eight bonds are there; it stands for holes, boundaries, pre-cracks and damage alike. Bonds that are not there
 //! are computed from whatever lies at their place and masked out.
 
-use super::arrays::{Grid, xi};
+use super::arrays::Grid;
 use super::block::{ChunkBlock, scatter};
 use super::breaking::{ChunkBonds, GridBreaking, break_chunk};
 use super::layout::Chunk;
@@ -24,6 +24,7 @@ struct Fast<T, const D: usize> {
 fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     places: T::Places,
+    factors: Option<T::Places>,
     intact: &[u8],
 ) -> Fast<T, D> {
     let here = grid.here::<T>(places);
@@ -41,7 +42,7 @@ fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
             continue;
         }
         let eta = grid.eta(places, offset.shift, &here);
-        let bond = offset.lanes::<T>();
+        let bond = grid.bonds::<T>(k, factors);
         let t = L::strain(&bond, eta).masked(mask);
         fast.largest = t.max(fast.largest);
         fast.smallest = t.min(fast.smallest);
@@ -55,6 +56,7 @@ fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
 fn exact_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     places: T::Places,
+    factors: Option<T::Places>,
     intact: &[u8],
 ) -> [T; D] {
     let here = grid.here::<T>(places);
@@ -63,9 +65,10 @@ fn exact_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     for k in 0..grid.offsets.len() {
         let (offset, mask) = (&grid.offsets[k], T::present(bonds, k));
         let eta = grid.eta(places, offset.shift, &here);
-        let force = L::force(xi::<T, D>(offset), eta);
+        let bond = grid.bonds::<T>(k, factors);
+        let force = L::force(bond.xi, eta);
         for c in 0..D {
-            sum[c] = sum[c] + (T::broadcast(offset.stiffness) * force[c]).masked(mask);
+            sum[c] = sum[c] + (bond.stiffness * force[c]).masked(mask);
         }
     }
     sum
@@ -77,6 +80,7 @@ fn exact_force<T: ChunkLanes, L: FastLaw, const D: usize>(
 fn chunk_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     places: T::Places,
+    factors: Option<T::Places>,
     intact: &[u8],
     fast: Fast<T, D>,
 ) -> [T; D] {
@@ -85,7 +89,7 @@ fn chunk_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     if T::none(beyond) {
         return fast.sum;
     }
-    let exact = exact_force::<T, L, D>(grid, places, intact);
+    let exact = exact_force::<T, L, D>(grid, places, factors, intact);
     let mut sum = fast.sum;
     for c in 0..D {
         // One of the two is zero in every lane.
@@ -140,8 +144,9 @@ fn force_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
         let chunks = &block.chunks[first..first + count];
         let intact = &intact[first * m..(first + count) * m];
         let places = grid.places::<T>(chunks);
-        let fast = fast_force::<T, L, D>(grid, places, intact);
-        let sum = chunk_force::<T, L, D>(grid, places, intact, fast);
+        let factors = grid.factors_of::<T>(block.first_chunk + first, count);
+        let fast = fast_force::<T, L, D>(grid, places, factors, intact);
+        let sum = chunk_force::<T, L, D>(grid, places, factors, intact, fast);
         add_to_points(sum, chunks, lanes, block.first_point, out);
     }
 }
@@ -159,7 +164,6 @@ fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
     tally: &mut Tally,
 ) {
     let m = grid.offsets.len();
-    let watch = T::splat(rule.threshold * WATCH - T::STRAIN_ERROR);
     for first in (0..block.chunks.len()).step_by(T::CHUNKS) {
         let count = T::CHUNKS.min(block.chunks.len() - first);
         let (lanes, any) = wanted::<T>(block, first, count);
@@ -169,7 +173,10 @@ fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
         let chunks = &block.chunks[first..first + count];
         let intact = &mut intact[first * m..(first + count) * m];
         let places = grid.places::<T>(chunks);
-        let mut fast = fast_force::<T, L, D>(grid, places, intact);
+        let factors = grid.factors_of::<T>(block.first_chunk + first, count);
+        let mut fast = fast_force::<T, L, D>(grid, places, factors, intact);
+        let threshold = rule.smallest_threshold(block.first_chunk + first, count);
+        let watch = T::splat(threshold * WATCH - T::STRAIN_ERROR);
         let strained = fast.largest.greater(watch);
         if !T::none(strained) {
             let mut broken = false;
@@ -185,10 +192,10 @@ fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
                 }
             }
             if broken {
-                fast = fast_force::<T, L, D>(grid, places, intact);
+                fast = fast_force::<T, L, D>(grid, places, factors, intact);
             }
         }
-        let sum = chunk_force::<T, L, D>(grid, places, intact, fast);
+        let sum = chunk_force::<T, L, D>(grid, places, factors, intact, fast);
         add_to_points(sum, chunks, lanes, block.first_point, out);
     }
 }
@@ -204,13 +211,15 @@ fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
     for (k, chunk) in block.chunks.iter().enumerate() {
         let place = grid.place(chunk);
         let here = grid.here::<T>(place);
+        let factors = grid.factors_of::<T>(block.first_chunk + k, 1);
         let mut sum = T::splat(0.0);
         let intact = &intact[k * m..(k + 1) * m];
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
-            let energy = L::energy(xi::<T, D>(offset), eta);
-            sum = sum + (T::splat(0.5 * offset.stiffness) * energy).masked(mask);
+            let bond = grid.bonds::<T>(k, factors);
+            let energy = L::energy(bond.xi, eta);
+            sum = sum + (T::splat(0.5) * bond.stiffness * energy).masked(mask);
         }
         scatter(
             sum.to_array(),
@@ -235,13 +244,14 @@ fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
         let place = grid.place(chunk);
         let here = grid.here::<T>(place);
         let direction_here = direction.here::<T>(place);
+        let factors = grid.factors_of::<T>(block.first_chunk + k, 1);
         let mut sum = [T::splat(0.0); D];
         let intact = &intact[k * m..(k + 1) * m];
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
             let eta = grid.eta(place, offset.shift, &here);
             let d = direction.eta(place, offset.shift, &direction_here);
-            let force = L::tangent_force(&offset.lanes::<T>(), eta, d);
+            let force = L::tangent_force(&grid.bonds::<T>(k, factors), eta, d);
             for c in 0..D {
                 sum[c] = sum[c] + force[c].masked(mask);
             }

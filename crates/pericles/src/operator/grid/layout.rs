@@ -292,6 +292,22 @@ impl GridLayout {
         bytes
     }
 
+    /// A number for each place: that of its site, or zero where there is none.
+    pub fn at_places(&self, of_site: impl Fn(usize) -> u8) -> Vec<u8> {
+        let mut numbers = vec![0; self.places()];
+        let nodes = self.nodes();
+        for row in 0..nodes.rows() {
+            for node in nodes.row(row) {
+                let site = self
+                    .seen
+                    .as_ref()
+                    .map_or(node, |seen| seen.site[node] as usize);
+                numbers[row * self.stride + nodes.column(row, node)] = of_site(site);
+            }
+        }
+        numbers
+    }
+
     /// The site at a place that has one.
     pub fn site_at(&self, place: usize) -> usize {
         match &self.seen {

@@ -5,6 +5,7 @@ use std::sync::PoisonError;
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
 use super::padded::Frame;
+use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{
@@ -56,12 +57,13 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
 
     /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ|, by Gershgorin's discs of D×D blocks.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
-        let (offsets, lengths) = (self.stencil.offsets(), self.stencil.lengths());
+        let lengths = self.stencil.lengths();
         let mut rows = vec![0.0; self.points()];
         self.for_each_block(&mut rows, |first, number, intact, rows| {
-            self.for_each_counted(number, intact, |point, offset, intact| {
+            self.for_each_counted(number, intact, |(lane, point), offset, intact| {
                 if intact {
-                    rows[point - first] += offsets[offset].stiffness.abs() / lengths[offset];
+                    let stiffness = self.stiffness_of(number, offset, lane).abs();
+                    rows[point - first] += stiffness / lengths[offset];
                 }
             });
         });
@@ -117,6 +119,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
             + working
             + self.layout.bytes()
             + self.held.as_ref().map_or(0, Vec::len)
+            + self.pairs.as_ref().map_or(0, PlaceThresholds::bytes)
             + size_of_val(&self.precut[..])
     }
 
@@ -134,7 +137,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         let (cells, lengths) = (self.stencil.cells(), self.stencil.lengths());
         let spring = |k: usize| LatticeSpring {
             offset: cells[k],
-            stiffness: self.stencil.offsets()[k].stiffness / lengths[k],
+            stiffness: self.largest_stiffness(k) / lengths[k],
         };
         LatticeSprings::new(D, (0..self.stencil.len()).map(spring))
     }
@@ -225,7 +228,7 @@ impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
 crate::saved! {
     impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
         blocks: under("operator/grid"),
-        cloud, layout, stencil, held, cuts, precut, directed_bonds, critical_stretch, damage: fixed,
+        cloud, sites, layout, stencil, held, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
         instruction_set, law: fixed,
         doubles, floats, direction: scratch,
     } then |force| force.check_bonds()

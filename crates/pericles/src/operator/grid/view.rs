@@ -15,13 +15,14 @@ impl<L: FastLaw, const D: usize> BondView for GridForce<L, D> {
         let intact = &self.blocks[block].intact[first..first + offsets.len()];
         let spatial =
             |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
-        let left = offsets.iter().zip(intact);
-        for (offset, _) in left.filter(|(_, bits)| **bits >> lane & 1 == 1) {
+        let left = offsets.iter().zip(intact).enumerate();
+        for (k, (offset, _)) in left.filter(|(_, (_, bits))| **bits >> lane & 1 == 1) {
+            let stiffness = self.stiffness_of(chunk, k, lane);
             let j = self
                 .layout
                 .point_at(place.wrapping_add_signed(offset.shift));
             let eta = u.difference::<D>([i, j]);
-            let force = L::force(offset.xi, eta).map(|force| offset.stiffness * force);
+            let force = L::force(offset.xi, eta).map(|force| stiffness * force);
             visit(BondAt {
                 neighbour: j,
                 xi: spatial(offset.xi),

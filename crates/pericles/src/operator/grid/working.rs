@@ -3,6 +3,7 @@
 use std::sync::{Mutex, PoisonError, TryLockError};
 
 use super::arrays::Grid;
+use super::factors::Factors;
 use super::layout::GridLayout;
 use super::numbers::GridNumber;
 use super::padded::{Frame, Padded};
@@ -14,6 +15,8 @@ use crate::operator::On;
 /// The stencil and the work arrays in doubles or in floats.
 pub(super) struct Working<N, const D: usize> {
     offsets: Vec<Offset<N, D>>,
+    /// The stiffness of bonds over the stencil's, where it depends on their ends.
+    factors: Option<Factors<N>>,
     /// The length that is one in these numbers, m.
     unit: f64,
     /// The farthest a neighbour's place is from a node's.
@@ -35,11 +38,22 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
     pub fn new(offsets: Vec<Offset<N, D>>, unit: f64, farthest: usize, radius: [usize; 3]) -> Self {
         Self {
             offsets,
+            factors: None,
             unit,
             farthest,
             radius,
             scratch: Mutex::new(None),
         }
+    }
+
+    /// The same for bonds whose stiffness depends on their ends.
+    pub fn with_factors(self, factors: Option<Factors<N>>) -> Self {
+        Self { factors, ..self }
+    }
+
+    /// The stiffness of bonds over the stencil's, where it depends on their ends.
+    pub fn factors(&self) -> Option<&Factors<N>> {
+        self.factors.as_ref()
     }
 
     /// Copies to padded rows what the wanted points need of u and hands it on, with the wanted lanes of each chunk or none if all points are wanted.
@@ -91,6 +105,7 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
     pub fn grid<'a>(&'a self, padded: &'a Padded<N, D>) -> Grid<'a, N, D> {
         Grid {
             offsets: &self.offsets,
+            factors: self.factors.as_ref(),
             u: padded.components(),
             margin: padded.margin(),
             unit: self.unit,
@@ -104,6 +119,8 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
 
     /// Memory of the work arrays, bytes.
     pub fn bytes(&self, layout: &GridLayout) -> usize {
-        Padded::<N, D>::bytes_for(layout, self.farthest) + WantedPoints::bytes_for(layout)
+        Padded::<N, D>::bytes_for(layout, self.farthest)
+            + WantedPoints::bytes_for(layout)
+            + self.factors.as_ref().map_or(0, Factors::bytes)
     }
 }

@@ -3,9 +3,10 @@
 use super::arrays::Bonds;
 use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::material::{PairClasses, PairForce};
+use crate::material::PairForce;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
+use crate::operator::thresholds::PairThresholds;
 use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 
 /// Breaking as the loops see it.
@@ -27,34 +28,18 @@ pub(super) struct BreakRule<'a> {
     pub note_events: bool,
 }
 
-/// Thresholds by the materials of a bond's ends.
-pub(super) struct PairThresholds {
-    /// By site.
-    pub classes: PairClasses,
-    /// By class of pairs.
-    table: Vec<f64>,
-}
-
-impl PairThresholds {
-    pub(super) fn of<L: PairForce>(classes: PairClasses) -> Self {
-        let stretches = classes.critical_stretches().iter();
-        let table = stretches.map(|&stretch| L::threshold(stretch)).collect();
-        Self { classes, table }
-    }
-}
-
 impl BreakRule<'_> {
     fn threshold_of(&self, i: usize, j: usize) -> f64 {
         match self.pairs {
             None => self.threshold,
-            Some(pairs) => pairs.table[pairs.classes.class(i, j)],
+            Some(pairs) => pairs.threshold(i, j),
         }
     }
 
     fn critical_stretch_of(&self, i: usize, j: usize) -> f64 {
         match self.pairs {
             None => self.critical_stretch,
-            Some(pairs) => pairs.classes.critical_stretches()[pairs.classes.class(i, j)],
+            Some(pairs) => pairs.critical_stretch(i, j),
         }
     }
 }

@@ -70,7 +70,7 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
         }
         let threshold = |a: usize, b: usize| {
             let stretch = match &self.pairs {
-                Some(pairs) => pairs.classes.critical_stretch(a, b),
+                Some(pairs) => pairs.critical_stretch(a, b),
                 None => self.critical_stretch,
             };
             L::threshold(fraction * stretch)

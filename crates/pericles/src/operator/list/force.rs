@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::arrays::Bonds;
-use super::breaking::{BreakRule, PairThresholds};
+use super::breaking::BreakRule;
 use super::kernels::accept_rows;
 use super::other_ends::other_ends;
 use super::packed::{Packed, Reach};
@@ -19,6 +19,7 @@ use crate::operator::fast_law::FastLaw;
 use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
+use crate::operator::thresholds::PairThresholds;
 use crate::operator::{Force, InstructionSet, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block};
 use crate::space::{PointCloud, check_length, check_points};

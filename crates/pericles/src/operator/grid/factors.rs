@@ -1,0 +1,186 @@
+//! Bonds whose stiffness depends on their two ends: several materials, inclusions, corrected surfaces.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use super::layout::GridLayout;
+use super::numbers::GridNumber;
+use super::stencil::Stencil;
+use crate::lanes::LANES;
+use crate::operator::damage::BlockDamage;
+use crate::space::Sites;
+
+/// The stiffness of bonds over that of the stencil, chunk by chunk.
+///
+/// A row holds one factor for each offset and lane, offsets slowest. Row 0 is one everywhere, and equal rows are kept once: inside of each material all chunks share a row, and so
+/// do chunks that lie alike along a straight interface or surface.
+#[derive(Debug, Clone)]
+pub(super) struct Factors<N> {
+    /// The row of each chunk.
+    rows: Vec<u32>,
+    /// All rows.
+    values: Vec<N>,
+    /// The largest factor of each offset's bonds in the whole body.
+    largest: Vec<f64>,
+}
+
+/// The factor of the bond from an own point's site to another site, which is `cell` (in spacings) away.
+pub(super) type OfBond<'a> = dyn Fn(usize, usize, [i32; 3]) -> f64 + Sync + 'a;
+
+/// Rows of a block: each once, and the number of each chunk's.
+struct BlockRows {
+    rows: Vec<Vec<f64>>,
+    of_chunk: Vec<usize>,
+    /// The largest factor of each offset.
+    largest: Vec<f64>,
+}
+
+impl Factors<f64> {
+    /// The factors of the bonds left in each block.
+    pub fn new<const D: usize>(
+        sites: &Sites,
+        layout: &GridLayout,
+        stencil: &Stencil<D>,
+        blocks: &[BlockDamage],
+        of: &OfBond<'_>,
+    ) -> Self {
+        let length = stencil.len() * LANES;
+        let blocks: Vec<BlockRows> = blocks
+            .par_iter()
+            .enumerate()
+            .map(|(block, state)| block_rows(sites, layout, stencil, block, &state.intact, of))
+            .collect();
+        let ones = vec![1.0; length];
+        let mut known = HashMap::from([(bits(&ones), 0)]);
+        let mut values = ones;
+        let mut rows = Vec::with_capacity(layout.chunks().len());
+        let mut largest = vec![0.0; stencil.len()];
+        for block in blocks {
+            for (largest, of_block) in largest.iter_mut().zip(&block.largest) {
+                *largest = of_block.max(*largest);
+            }
+            let mut number = Vec::with_capacity(block.rows.len());
+            for row in &block.rows {
+                let next = known.len() as u32;
+                let found = *known.entry(bits(row)).or_insert(next);
+                if found == next {
+                    values.extend_from_slice(row);
+                }
+                number.push(found);
+            }
+            rows.extend(block.of_chunk.iter().map(|&row| number[row]));
+        }
+        sites.cloud().domain().max_each(&mut largest);
+        Self {
+            rows,
+            values,
+            largest,
+        }
+    }
+
+    /// The same rounded to floats.
+    pub fn in_floats(&self) -> Factors<f32> {
+        Factors {
+            rows: self.rows.clone(),
+            values: self
+                .values
+                .iter()
+                .map(|&value| f32::rounded(value))
+                .collect(),
+            largest: self.largest.clone(),
+        }
+    }
+
+    /// The largest factor of an offset.
+    pub fn largest(&self, offset: usize) -> f64 {
+        self.largest[offset]
+    }
+}
+
+impl<N: GridNumber> Factors<N> {
+    /// Where the factors of so many chunks from `first` on begin, the first one's and the last one's; none if all their bonds have the stencil's stiffness.
+    #[inline(always)]
+    pub fn places(&self, first: usize, count: usize) -> Option<[usize; 2]> {
+        let length = self.largest.len() * LANES;
+        let rows = [self.rows[first], self.rows[first + count - 1]];
+        (rows != [0; 2]).then(|| rows.map(|row| row as usize * length))
+    }
+
+    /// Factors, eight for each offset of a row.
+    #[inline(always)]
+    pub fn values(&self) -> &[N] {
+        &self.values
+    }
+
+    /// The factor of a chunk's bond of one offset.
+    pub fn of_bond(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
+        let length = self.largest.len() * LANES;
+        self.values[self.rows[chunk] as usize * length + offset * LANES + lane].into()
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.rows[..]) + size_of_val(&self.values[..])
+    }
+}
+
+fn block_rows<const D: usize>(
+    sites: &Sites,
+    layout: &GridLayout,
+    stencil: &Stencil<D>,
+    block: usize,
+    intact: &[u8],
+    of: &OfBond<'_>,
+) -> BlockRows {
+    let m = stencil.len();
+    let mut known = HashMap::new();
+    let mut block_rows = BlockRows {
+        rows: Vec::new(),
+        of_chunk: Vec::new(),
+        largest: vec![0.0; m],
+    };
+    let chunks = &layout.chunks()[layout.chunks_of(block)];
+    for (chunk, intact) in chunks.iter().zip(intact.chunks(m)) {
+        let mut row = vec![1.0; m * LANES];
+        for (lane, i) in chunk.points() {
+            let here = sites.of_point(i);
+            let place = chunk.place as usize * LANES + lane;
+            for (k, offset) in stencil.offsets().iter().enumerate() {
+                if intact[k] >> lane & 1 == 1 {
+                    let there = layout.site_at(place.wrapping_add_signed(offset.shift));
+                    let factor = of(here, there, stencil.cells()[k]);
+                    row[k * LANES + lane] = factor;
+                    block_rows.largest[k] = factor.max(block_rows.largest[k]);
+                }
+            }
+        }
+        // Where all bonds have one factor, the row does not depend on which bonds there are.
+        if let Some(factor) = common(&row, intact) {
+            row.fill(factor);
+        }
+        let next = block_rows.rows.len();
+        let number = *known.entry(bits(&row)).or_insert(next);
+        if number == next {
+            block_rows.rows.push(row);
+        }
+        block_rows.of_chunk.push(number);
+    }
+    block_rows
+}
+
+/// The factor that all bonds of a row have; none if they differ.
+fn common(row: &[f64], intact: &[u8]) -> Option<f64> {
+    let mut bonds = row.chunks(LANES).zip(intact).flat_map(|(lanes, &bits)| {
+        (0..LANES)
+            .filter(move |k| bits >> k & 1 == 1)
+            .map(|k| lanes[k])
+    });
+    let first = bonds.next()?;
+    bonds.all(|factor| factor == first).then_some(first)
+}
+
+/// Numbers as a key.
+fn bits(row: &[f64]) -> Vec<u64> {
+    row.iter().map(|factor| factor.to_bits()).collect()
+}

@@ -1,0 +1,87 @@
+//! Critical stretches of a lattice body's bonds by the materials of their ends.
+
+use super::layout::GridLayout;
+use super::stencil::Stencil;
+use crate::lanes::LANES;
+use crate::material::{PairClasses, PairForce};
+use crate::operator::thresholds::PairThresholds;
+
+/// Thresholds by the materials at the places of the padded rows.
+pub(super) struct PlaceThresholds {
+    pairs: PairThresholds,
+    places: usize,
+    /// The smallest threshold of each chunk's bonds.
+    smallest: Vec<f64>,
+}
+
+impl PlaceThresholds {
+    /// From the materials of the sites.
+    pub fn new<L: PairForce, const D: usize>(
+        classes: &PairClasses,
+        layout: &GridLayout,
+        stencil: &Stencil<D>,
+    ) -> Self {
+        let of_site = classes.of_point();
+        let of_place = layout.at_places(|site| of_site[site]);
+        let pairs = PairThresholds::of::<L>(classes.at(of_place));
+        let smallest = layout.chunks().iter().map(|chunk| {
+            let mut smallest = f64::INFINITY;
+            for (offset, &cell) in stencil.offsets().iter().zip(stencil.cells()) {
+                let there = layout.neighbours(chunk, cell);
+                for lane in (0..LANES).filter(|lane| there >> lane & 1 == 1) {
+                    let here = chunk.place as usize * LANES + lane;
+                    let threshold = pairs.threshold(here, here.wrapping_add_signed(offset.shift));
+                    smallest = smallest.min(threshold);
+                }
+            }
+            smallest
+        });
+        Self {
+            smallest: smallest.collect(),
+            places: layout.places(),
+            pairs,
+        }
+    }
+
+    /// The smallest threshold of the bonds of so many chunks.
+    #[inline(always)]
+    pub fn smallest(&self, first: usize, count: usize) -> f64 {
+        self.smallest[first].min(self.smallest[first + count - 1])
+    }
+
+    /// Thresholds of eight bonds from a place on, by the shift to their other ends; where there is no site, that of another bond.
+    #[inline(never)]
+    pub fn of_lanes(&self, place: usize, shift: isize) -> [f64; LANES] {
+        self.ends(place, shift)
+            .map(|[a, b]| self.pairs.threshold(a, b))
+    }
+
+    /// The same of a part of the critical stretches.
+    #[inline(never)]
+    pub fn of_part<L: PairForce>(&self, part: f64, place: usize, shift: isize) -> [f64; LANES] {
+        self.ends(place, shift)
+            .map(|[a, b]| L::threshold(part * self.pairs.critical_stretch(a, b)))
+    }
+
+    /// The critical stretch of a bond between two places.
+    pub fn critical_stretch(&self, [a, b]: [usize; 2]) -> f64 {
+        self.pairs.critical_stretch(a, b)
+    }
+
+    /// The places of both ends of eight bonds; beyond the rows, where no bond leads, the place itself.
+    fn ends(&self, place: usize, shift: isize) -> [[usize; 2]; LANES] {
+        std::array::from_fn(|lane| {
+            let here = place + lane;
+            let there = here.checked_add_signed(shift);
+            [
+                here,
+                there.filter(|&there| there < self.places).unwrap_or(here),
+            ]
+        })
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.places + size_of_val(&self.smallest[..])
+    }
+}
