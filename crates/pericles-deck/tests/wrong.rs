@@ -161,7 +161,6 @@ const WRONG: &[Wrong] = &[
     // Spacings by axis.
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", 0]", (6, 23), "0", &["a positive number"]),
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\"]", (6, 11), "[\"0.25", &["has 1 entry", "a length, or one for each axis"]),
-    wrong("spacing = \"0.25 mm\"\nplane", "periodic = true\nspacing = [\"0.25 mm\", \"0.2 mm\"]\nplane", (6, 1), "periodic", &["no place", "of equal cells"]),
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["only cells of one size"]),
     wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no cells of one size"]),
     // Sizes and spacings.

@@ -75,7 +75,7 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     if !plain && !finer.is_empty() {
         table.forbid("refine", "only cells of one size can be divided");
     }
-    let rules = rules(&table, kind, plain && holes.is_empty() && finer.is_empty());
+    let rules = rules(&table, kind, holes.is_empty() && finer.is_empty());
     table.finish();
     let lattice = assemble(&read, outline, section, holes, finer, rules);
     read.shape = lattice.map(|lattice| {
@@ -168,7 +168,7 @@ fn assemble(
 
 /// Periodicity and the place of points in their cells.
 fn rules(table: &Table<'_>, kind: Kind, whole: bool) -> Option<(bool, Quadrature)> {
-    const BOX: &str = "only a bar, plate or block of equal cells without holes has opposite faces that can be one";
+    const BOX: &str = "only a bar, plate or block of cells of one size without holes has opposite faces that can be one";
     const BAR: &str = "only the cells of a bar without holes, and with two ends, have Gauss nodes";
     let periodic = if matches!(kind, Kind::Bar | Kind::Plate | Kind::Block) && whole {
         table.or("periodic", false, |item| item.boolean())

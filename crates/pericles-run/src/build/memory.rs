@@ -197,9 +197,11 @@ impl Assembler<'_> {
             ForceForm::List => listed * neighbours,
             _ if solid.material.state_based().is_some() => listed * neighbours,
             ForceForm::Convolution | ForceForm::Spectral => transform,
-            ForceForm::Grid | ForceForm::FloatGrid => neighbours / 8.0,
+            ForceForm::Grid | ForceForm::FloatGrid if has_one_stiffness(solid) => neighbours / 8.0,
+            // A factor a bond, at most.
+            ForceForm::Grid | ForceForm::FloatGrid => neighbours * (0.125 + 8.0),
             _ if solid.shape.is_periodic() => transform,
-            _ if self.is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
+            _ if is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
             _ => listed * neighbours,
         };
         let own = match solid.material.state_based() {
@@ -231,9 +233,10 @@ impl Assembler<'_> {
     /// Bytes of a bond of a list while families are found.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
         let Some(state_based) = solid.material.state_based() else {
-            return match self.keeps_every_bond(solid) {
-                true => LISTED + KEPT,
-                false => LISTED,
+            return match is_on_one_grid(solid) {
+                true => LISTED,
+                // Bonds of a list differ one by one.
+                false => LISTED + KEPT,
             };
         };
         let corrected = solid.material.surface_correction != Default::default();
@@ -246,25 +249,17 @@ impl Assembler<'_> {
             });
         LISTED + if corrected { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
     }
+}
 
-    /// Whether a stencil can serve all points.
-    fn is_on_one_grid(&self, solid: &Solid) -> bool {
-        let (shape, material) = (&solid.shape, &solid.material);
-        !shape.is_listed()
-            && !shape.is_refined()
-            && shape.rectangular().is_none()
-            && material.inclusions.is_empty()
-            && material.parts.is_empty()
-            && material.surface_correction == Default::default()
-            && !self.model.output.wants_tensors()
-    }
+/// Whether all bonds of the same vector have one stiffness.
+fn has_one_stiffness(solid: &Solid) -> bool {
+    let material = &solid.material;
+    material.inclusions.is_empty()
+        && material.parts.is_empty()
+        && material.surface_correction == Default::default()
+}
 
-    /// Whether bonds of a list differ one by one.
-    fn keeps_every_bond(&self, solid: &Solid) -> bool {
-        !solid.material.inclusions.is_empty()
-            || !solid.material.parts.is_empty()
-            || solid.material.surface_correction != Default::default()
-            || solid.shape.is_refined()
-            || solid.shape.is_listed()
-    }
+/// Whether one stencil or transform can serve all points.
+fn is_on_one_grid(solid: &Solid) -> bool {
+    has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
 }

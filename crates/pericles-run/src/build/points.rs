@@ -139,8 +139,12 @@ impl Assembler<'_> {
         let points = match (&grid.shape, lattice.quadrature) {
             (Shape::Box { origin, size }, _) if lattice.rectangular.is_some() => {
                 let spacing = lattice.rectangular.as_deref().unwrap_or_default();
-                rectangular_cells(*origin, size, spacing, grid.section, &grid.holes)
-                    .map(GradedCloud::of_one_grid)
+                let cells = rectangular_cells(*origin, size, spacing, grid.section, &grid.holes);
+                match lattice.periodic {
+                    true => cells.and_then(PointCloud::with_periodic_faces),
+                    false => cells,
+                }
+                .map(GradedCloud::of_one_grid)
             }
             (Shape::Box { origin, size }, Quadrature::Gauss) => {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)

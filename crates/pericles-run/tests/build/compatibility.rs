@@ -63,14 +63,18 @@ fn deck_with(feature: Feature, form: &Form) -> String {
     };
     let bar = matches!(feature, GreenStrainBar | OtherCubic | GaussNodes);
     let periodic = match feature {
-        FreeFaces => false,
+        FreeFaces | NoLattice => false,
         PeriodicFaces => true,
         _ => form.name == "spectral",
     };
     let shape = match (bar, feature) {
         (true, _) => "shape = \"bar\", length = 20, spacing = 1",
         (_, NoLattice) => {
-            "shape = \"plate\", size = [12, 8], plane = \"stress\", spacing = [1, 0.8]"
+            concat!(
+                "shape = \"points\", file = \"",
+                env!("CARGO_MANIFEST_DIR"),
+                "/tests/build/scattered.txt\", dimension = 2, plane = \"stress\", spacing = 1"
+            )
         }
         _ => "shape = \"plate\", size = [12, 8], plane = \"stress\", spacing = 1",
     };

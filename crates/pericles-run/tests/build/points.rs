@@ -199,7 +199,6 @@ horizon_ratio = 3
 end = "1 us"
 "#;
     let model = build(text);
-    assert_eq!(model.form.name(), "list");
     assert_eq!(model.cloud.len(), 144);
     let (n, x, y) = (144, model.cloud.axis(0), model.cloud.axis(1));
     let strain = [1e-3, -2e-3, 5e-4];

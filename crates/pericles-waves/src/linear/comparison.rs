@@ -40,20 +40,23 @@ impl CostComparison {
             return refuse("it needs points on a regular grid; use the bond list for this body");
         };
         let horizon = positive("the horizon", horizon)?;
-        let dx = lattice.spacing;
-        let reach = correction.reach(horizon, dx) / dx;
-        let raw = reach.floor() as i64;
+        // Lengths in spacings along x.
+        let dx = lattice.spacing[0];
+        let sides = lattice.spacing.map(|side| side / dx);
+        let reach = correction.reach(horizon, cloud.spacing()) / dx;
+        let raw = sides.map(|side| (reach / side).floor() as usize);
         let points = cloud.len() as f64;
         // Pairs of nodes of the bounding box at each offset, thinned by the part of it that is filled.
         let range = |axis: usize| {
-            let most = raw.min(lattice.shape[axis] as i64 - 1);
+            let most = (raw[axis] as i64).min(lattice.shape[axis] as i64 - 1);
             -most..=most
         };
         let left = |axis: usize, offset: i64| (lattice.shape[axis] as i64 - offset.abs()) as f64;
         let mut pairs = 0.0;
         for z in range(2) {
             for y in range(1) {
-                let rest = reach * reach - (y * y + z * z) as f64;
+                let [y_side, z_side] = [y as f64 * sides[1], z as f64 * sides[2]];
+                let rest = reach * reach - (y_side * y_side + z_side * z_side);
                 if rest < 0.0 {
                     continue;
                 }
@@ -67,7 +70,7 @@ impl CostComparison {
         let directed_bonds = (pairs - nodes) * (points / nodes);
 
         let dimension = cloud.dimension();
-        let axes = axes::<3>(lattice, raw as usize, [false; 3]);
+        let axes = axes::<3>(lattice, raw, [false; 3]);
         let fields = dimension as f64;
         let padded: f64 = axes.iter().map(|axis| axis.padded as f64).product();
         let numbers = fields * padded;

@@ -20,6 +20,8 @@ pub(super) struct LatticeBonds<S: Fn([f64; 3]) -> f64> {
     horizon: f64,
     reach: f64,
     spacing: f64,
+    /// The spacing along each axis, m.
+    sides: [f64; 3],
     volume: f64,
 }
 
@@ -41,9 +43,11 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
         if cloud.volumes().iter().any(|&v| v != volume) {
             return refuse("it needs points of equal volume; use the bond list for this body");
         }
-        let spacing = lattice.spacing;
+        let spacing = cloud.spacing();
         let reach = correction.reach(horizon, spacing);
-        if reach.is_nan() || reach < spacing {
+        let sides = &lattice.spacing[..cloud.dimension()];
+        let shortest = sides.iter().copied().fold(f64::INFINITY, f64::min);
+        if reach.is_nan() || reach < shortest {
             return Err(PericlesError::HorizonTooSmall { horizon, spacing });
         }
         let bonds = Self {
@@ -52,19 +56,20 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
             horizon,
             reach,
             spacing,
+            sides: lattice.spacing,
             volume,
         };
         Ok((bonds, lattice))
     }
 
-    /// The largest offset along an axis.
-    pub fn largest_offset(&self) -> usize {
-        (self.reach / self.spacing).floor() as usize
+    /// The largest offset along each axis.
+    pub fn largest_offset(&self) -> [usize; 3] {
+        self.sides.map(|dx| (self.reach / dx).floor() as usize)
     }
 
     /// The bond of an offset; none beyond the horizon.
     pub fn at(&self, offset: [i64; 3]) -> Option<OffsetBond> {
-        let xi = offset.map(|o| o as f64 * self.spacing);
+        let xi: [f64; 3] = std::array::from_fn(|c| offset[c] as f64 * self.sides[c]);
         let length = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
         (length > 0.0 && length <= self.reach).then(|| OffsetBond {
             stiffness: (self.stiffness_of_bond)(xi)
@@ -77,6 +82,13 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
 
     /// The bonds as springs, with offsets up to `most` along each axis.
     pub fn springs(&self, dimension: usize, most: [usize; 3]) -> Option<LatticeSprings> {
+        // Plane waves are taken of cubic lattices only.
+        if self.sides[..dimension]
+            .iter()
+            .any(|dx| *dx != self.sides[0])
+        {
+            return None;
+        }
         let range = |axis: usize| -(most[axis] as i64)..=most[axis] as i64;
         let all = range(2)
             .flat_map(|z| range(1).flat_map(move |y| range(0).map(move |x| [x, y, z])))

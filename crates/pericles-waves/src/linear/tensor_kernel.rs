@@ -49,11 +49,11 @@ impl Axis {
 /// The axes of a lattice with the lengths of their transforms.
 pub(super) fn axes<const D: usize>(
     lattice: &Lattice,
-    raw: usize,
+    raw: [usize; 3],
     periodic: [bool; D],
 ) -> [Axis; 3] {
     std::array::from_fn(|c| {
-        let nodes = lattice.shape[c];
+        let (nodes, raw) = (lattice.shape[c], raw[c]);
         if c < D && periodic[c] {
             Axis {
                 nodes,

@@ -69,7 +69,7 @@ pub(crate) fn bond_vector(cloud: &PointCloud, i: usize, j: usize) -> [f64; 3] {
             lattice.coordinates(lattice.node[i]),
             lattice.coordinates(lattice.node[j]),
         );
-        return std::array::from_fn(|c| f64::from(b[c] - a[c]) * lattice.spacing);
+        return lattice.vector(std::array::from_fn(|c| b[c] - a[c]));
     }
     let (a, b) = (cloud.point(i), cloud.point(j));
     std::array::from_fn(|c| b[c] - a[c])
@@ -89,7 +89,7 @@ struct CellList {
     order: Vec<u32>,
     /// Where they are, in the same order, in units of `unit`: integers on a lattice, see [`bond_vector`].
     places: Vec<[f64; 3]>,
-    unit: f64,
+    unit: [f64; 3],
     /// The place of each point in that order.
     rank: Vec<u32>,
 }
@@ -149,7 +149,7 @@ impl CellList {
             start,
             order,
             places,
-            unit: cloud.lattice().map_or(1.0, |lattice| lattice.spacing),
+            unit: cloud.lattice().map_or([1.0; 3], |lattice| lattice.spacing),
             rank,
         }
     }
@@ -173,7 +173,7 @@ impl CellList {
                     let (from, to) = (self.start[cell] as usize, self.start[cell + 1] as usize);
                     for (there, &j) in self.places[from..to].iter().zip(&self.order[from..to]) {
                         let xi: [f64; 3] =
-                            std::array::from_fn(|c| (there[c] - here[c]) * self.unit);
+                            std::array::from_fn(|c| (there[c] - here[c]) * self.unit[c]);
                         let square = xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2];
                         if square <= far {
                             visit(j as usize, square.sqrt());

@@ -168,8 +168,10 @@ impl BondMaterial {
         };
         let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
         let spacing = cloud.spacing();
-        if cloud.lattice().is_none() {
-            return refuse("a table per class needs points on a regular grid".into());
+        if !(cloud.lattice()).is_some_and(|lattice| lattice.is_cubic(cloud.dimension())) {
+            return refuse(
+                "a table per class needs points on a regular grid of cubic cells".into(),
+            );
         }
         if (table.spacing() / spacing - 1.0).abs() > 1e-9 {
             return refuse(format!(

@@ -114,10 +114,8 @@ impl CompositeBody<'_> {
             _ => Some(self.body.families()?.0),
         };
         let of_ends = self.of_ends(grid.sites(), families.as_ref());
-        let spacing = self.body.cloud.spacing();
         let micromodulus = self.body.constants.micromodulus;
-        let grid = grid.with_factors(&|a, b, cell| {
-            let xi = cell.map(|steps| f64::from(steps) * spacing);
+        let grid = grid.with_factors(&|a, b, xi| {
             of_ends.factor(a, b, xi) * (of_ends.micromodulus(a, b) / micromodulus)
         });
         Ok(match self.classes {

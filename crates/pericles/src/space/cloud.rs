@@ -11,8 +11,8 @@ pub type PointSet = Vec<u32>;
 /// The regular lattice on which the points of a cloud lie.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice {
-    /// Distance between neighbouring nodes, m.
-    pub spacing: f64,
+    /// Distance between neighbouring nodes along each axis, m; any number along missing axes.
+    pub spacing: [f64; 3],
     /// Nodes of the bounding box along each axis; 1 along missing axes.
     pub shape: [usize; 3],
     /// Node of each point: `x + shape[0] * (y + shape[1] * z)`, ascending.
@@ -20,6 +20,24 @@ pub struct Lattice {
 }
 
 impl Lattice {
+    /// Whether the cells are as long along all of the first `dimension` axes.
+    pub fn is_cubic(&self, dimension: usize) -> bool {
+        self.spacing[..dimension]
+            .iter()
+            .all(|dx| *dx == self.spacing[0])
+    }
+
+    /// The vector that leads so many steps along the axes, m.
+    #[inline]
+    pub fn vector(&self, steps: [i32; 3]) -> Point {
+        std::array::from_fn(|c| f64::from(steps[c]) * self.spacing[c])
+    }
+
+    /// The sides of the box of all nodes and their cells, m.
+    pub fn sides(&self) -> Point {
+        std::array::from_fn(|c| self.shape[c] as f64 * self.spacing[c])
+    }
+
     /// The integer coordinates of a node.
     pub fn coordinates(&self, node: u32) -> [i32; 3] {
         let node = node as usize;
@@ -180,24 +198,21 @@ impl PointCloud {
         for (i, &node) in lattice.node.iter().enumerate() {
             let cell = lattice.coordinates(node);
             for c in 0..dimension {
-                positions[c * n + i] = origin[c] + f64::from(cell[c]) * lattice.spacing;
+                positions[c * n + i] = origin[c] + f64::from(cell[c]) * lattice.spacing[c];
             }
         }
-        let volume = section * lattice.spacing.powi(dimension as i32);
-        let spacing = Some(lattice.spacing);
+        let cubic = lattice.is_cubic(dimension);
+        let volume = section
+            * match cubic {
+                true => lattice.spacing[0].powi(dimension as i32),
+                false => lattice.spacing[..dimension].iter().product(),
+            };
+        let spacing = cubic.then_some(lattice.spacing[0]);
         let mut cloud =
             Self::with_spacing(dimension, positions, vec![volume; n], section, spacing)?;
-        cloud.cell_sides = Some([lattice.spacing; 3]);
+        cloud.cell_sides = Some(lattice.spacing);
         cloud.lattice = Some(lattice);
         Ok(cloud)
-    }
-
-    /// The same points as centres of equal boxes with these sides, m.
-    pub(super) fn with_cell_sides(self, sides: Point) -> Self {
-        Self {
-            cell_sides: Some(sides),
-            ..self
-        }
     }
 
     /// A cloud of cells of several sizes; the spacing is that of the largest.
@@ -332,7 +347,7 @@ impl PointCloud {
             }
         });
         let side = |c: usize| match &self.lattice {
-            Some(lattice) => lattice.shape[c] as f64 * lattice.spacing,
+            Some(lattice) => lattice.sides()[c],
             None => 0.0,
         };
         let moved = |c: usize| {

@@ -211,7 +211,7 @@ impl Grid {
         let shape = cells.shape;
         let total = shape.iter().product::<usize>();
         let mut lattice = Lattice {
-            spacing: self.spacing,
+            spacing: [self.spacing; 3],
             shape,
             node: Vec::new(),
         };

@@ -1,12 +1,12 @@
 //! Boxes of cells whose sides differ.
 
 use super::grid::{CELL_LIMIT, whole_cells};
-use super::{Point, PointCloud, Region};
+use super::{Lattice, Point, PointCloud, Region};
 use crate::error::{PericlesError, Result};
 
 /// The centres of equal cells, as long along each axis as `spacing` says (m), that fill a box from its lower corner and lie in no hole; x fastest.
 ///
-/// They are no lattice of cubic cells: their bonds are kept as a list. The cell size that volume corrections use is that of the cube of equal volume.
+/// The cell size that volume corrections use is that of the cube of equal volume.
 ///
 /// # Errors
 /// Sides that are no whole numbers of cells; arrays of different lengths; no cell outside the holes.
@@ -19,17 +19,17 @@ pub fn rectangular_cells(
 ) -> Result<PointCloud> {
     let cells = BoxOfCells::new(origin, size, spacing)?;
     let dimension = size.len();
-    let places: Vec<Point> = cells
-        .centres()
-        .filter(|place| !holes.iter().any(|hole| cells.is_in(hole, *place)))
-        .collect();
-    let positions = (0..dimension)
-        .flat_map(|c| places.iter().map(move |place| place[c]))
-        .collect();
-    let volume = section * spacing.iter().product::<f64>();
-    let cloud = PointCloud::new(dimension, positions, vec![volume; places.len()], section)?;
-    let sides = std::array::from_fn(|c| spacing.get(c).copied().unwrap_or(1.0));
-    Ok(cloud.with_cell_sides(sides))
+    let centre = |k: usize| cells.centre(k);
+    let total = cells.shape.iter().product::<usize>();
+    let node = (0..total)
+        .filter(|&k| !holes.iter().any(|hole| cells.is_in(hole, centre(k))))
+        .map(|k| k as u32);
+    let lattice = Lattice {
+        node: node.collect(),
+        shape: cells.shape,
+        spacing: std::array::from_fn(|c| spacing.get(c).copied().unwrap_or(spacing[0])),
+    };
+    PointCloud::on_lattice(dimension, centre(0), lattice, section)
 }
 
 /// The numbers of the holes without a centre of these cells: they take nothing from the body.
@@ -98,17 +98,19 @@ impl<'a> BoxOfCells<'a> {
 
     /// The centres, x fastest.
     fn centres(&self) -> impl Iterator<Item = Point> + '_ {
-        (0..self.shape.iter().product()).map(|cell: usize| {
-            let row = cell / self.shape[0];
-            let steps = [
-                cell % self.shape[0],
-                row % self.shape[1],
-                row / self.shape[1],
-            ];
-            std::array::from_fn(|c| match self.spacing.get(c) {
-                Some(dx) => self.origin[c] + (steps[c] as f64 + 0.5) * dx,
-                None => 0.0,
-            })
+        (0..self.shape.iter().product()).map(|cell| self.centre(cell))
+    }
+
+    fn centre(&self, cell: usize) -> Point {
+        let row = cell / self.shape[0];
+        let steps = [
+            cell % self.shape[0],
+            row % self.shape[1],
+            row / self.shape[1],
+        ];
+        std::array::from_fn(|c| match self.spacing.get(c) {
+            Some(dx) => self.origin[c] + (steps[c] as f64 + 0.5) * dx,
+            None => 0.0,
         })
     }
 

@@ -47,8 +47,8 @@ impl Sites {
             return Ok(Self::of_points(cloud));
         }
         if let (Some(lattice), true) = (cloud.lattice(), cloud.is_periodic()) {
-            let sides = &lattice.shape[..cloud.dimension()];
-            let shortest = sides.iter().copied().min().unwrap_or(1) as f64 * lattice.spacing;
+            let sides = &lattice.sides()[..cloud.dimension()];
+            let shortest = sides.iter().copied().fold(f64::INFINITY, f64::min);
             if reach / shortest > Self::PERIODS {
                 return Err(PericlesError::OutOfRange {
                     quantity: "the reach of bonds over the shortest side of the periodic body",
@@ -158,7 +158,7 @@ impl Sites {
     /// The periods of the body, m: the sides of its box.
     pub fn periods(&self) -> [f64; 3] {
         match self.cloud.lattice() {
-            Some(lattice) => lattice.shape.map(|nodes| nodes as f64 * lattice.spacing),
+            Some(lattice) => lattice.sides(),
             None => [0.0; 3],
         }
     }
@@ -211,10 +211,10 @@ impl Sites {
 /// The points of a periodic lattice and their images within `reach` of the box, shift by shift: that of no shift first.
 fn images(dimension: usize, lattice: &Lattice, reach: f64) -> Vec<Vec<([i16; 3], u32)>> {
     // Rounding of the quotient must not lose the longest bonds.
-    let cells = (reach / lattice.spacing * (1.0 + 1e-9)).floor() as i32;
+    let cells = (lattice.spacing).map(|dx| (reach / dx * (1.0 + 1e-9)).floor() as i32);
     let sides = lattice.shape.map(|nodes| nodes as i32);
     let most: [i32; 3] = std::array::from_fn(|c| match c < dimension {
-        true => (cells + sides[c] - 1) / sides[c],
+        true => (cells[c] + sides[c] - 1) / sides[c],
         false => 0,
     });
     let mut shifts = vec![[0; 3]];
@@ -231,7 +231,7 @@ fn images(dimension: usize, lattice: &Lattice, reach: f64) -> Vec<Vec<([i16; 3],
         let at = lattice.coordinates(node);
         (0..3).all(|c| {
             let moved = at[c] + shift[c] * sides[c];
-            (-cells..sides[c] + cells).contains(&moved)
+            (-cells[c]..sides[c] + cells[c]).contains(&moved)
         })
     };
     let of_shift = |shift: [i32; 3]| {

@@ -12,7 +12,7 @@ use pericles::material::{
 use pericles::operator::{
     AssembledBonds, BondBody, BondForm, CompositeBody, Force, InstructionSet, On,
 };
-use pericles::space::{Grid, PointCloud, Region, Shape};
+use pericles::space::{Grid, PointCloud, Region, Shape, rectangular_cells};
 use pericles::time::{State, VelocityVerlet, highest_frequency};
 use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};
 
@@ -141,6 +141,11 @@ fn round() -> Arc<PointCloud> {
     Arc::new(grid.points().unwrap())
 }
 
+/// A box of cells that are not cubic.
+fn long_cells(size: &[f64], spacing: &[f64]) -> Arc<PointCloud> {
+    Arc::new(rectangular_cells([0.0; 3], size, spacing, 1.0, &[]).unwrap())
+}
+
 fn bodies() -> Vec<(&'static str, Arc<PointCloud>)> {
     let plate = boxed([0.0; 3], &[21.0, 13.0], 1.0, 1.0);
     let block = boxed([0.0; 3], &[18.0, 7.0, 6.0], 1.0, 1.0);
@@ -153,6 +158,18 @@ fn bodies() -> Vec<(&'static str, Arc<PointCloud>)> {
         ("disc with a hole", round()),
         ("periodic block", periodic(&block)),
         ("block", block),
+        (
+            "plate of long cells",
+            long_cells(&[21.0, 9.0], &[1.0, 0.75]),
+        ),
+        (
+            "periodic plate of long cells",
+            periodic(&long_cells(&[18.0, 9.0], &[0.9, 0.75])),
+        ),
+        (
+            "block of flat cells",
+            long_cells(&[18.0, 5.6, 5.0], &[1.0, 0.8, 1.25]),
+        ),
     ]
 }
 

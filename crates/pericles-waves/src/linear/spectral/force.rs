@@ -85,9 +85,9 @@ impl<const D: usize> SpectralForce<D> {
                 dimension: cloud.dimension(),
             });
         }
-        let shape = match cloud.lattice() {
+        let (shape, sides) = match cloud.lattice() {
             Some(lattice) if lattice.shape.iter().product::<usize>() == cloud.len() => {
-                lattice.shape
+                (lattice.shape, lattice.sides())
             }
             _ => {
                 return refuse(
@@ -96,11 +96,10 @@ impl<const D: usize> SpectralForce<D> {
             }
         };
         let transform = BoxTransform::new(D, shape);
-        let length = |axis: usize| shape[axis] as f64 * cloud.spacing();
         let n = cloud.len();
         let modes = transform.len();
         let mut force = Self {
-            unit: std::array::from_fn(|axis| TAU / length(axis)),
+            unit: std::array::from_fn(|axis| TAU / sides[axis]),
             symbol: Vec::new(),
             largest: 0.0,
             family: n as f64,

@@ -25,8 +25,8 @@ pub(super) struct Factors<N> {
     largest: Vec<f64>,
 }
 
-/// The factor of the bond from an own point's site to another site, which is `cell` (in spacings) away.
-pub(super) type OfBond<'a> = dyn Fn(usize, usize, [i32; 3]) -> f64 + Sync + 'a;
+/// The factor of the bond from an own point's site to another site, with its vector ξ, m.
+pub(in crate::operator) type OfBond<'a> = dyn Fn(usize, usize, [f64; 3]) -> f64 + Sync + 'a;
 
 /// Rows of a block: each once, and the number of each chunk's.
 struct BlockRows {
@@ -149,7 +149,8 @@ fn block_rows<const D: usize>(
             for (k, offset) in stencil.offsets().iter().enumerate() {
                 if intact[k] >> lane & 1 == 1 {
                     let there = layout.site_at(place.wrapping_add_signed(offset.shift));
-                    let factor = of(here, there, stencil.cells()[k]);
+                    let xi = |c: usize| offset.xi.get(c).copied().unwrap_or(0.0);
+                    let factor = of(here, there, std::array::from_fn(xi));
                     row[k * LANES + lane] = factor;
                     block_rows.largest[k] = factor.max(block_rows.largest[k]);
                 }

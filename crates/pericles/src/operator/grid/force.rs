@@ -123,7 +123,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             }
         };
         check_points("the points whose bonds never break", no_fail, cloud.len())?;
-        let spacing = lattice.spacing;
+        let spacing = cloud.spacing();
         let correction = material.volume_correction;
         let volume = cloud.volumes()[0];
         let rule = BondRule {
@@ -190,8 +190,10 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     /// in doubles. Breaking is decided from the rounded displacements, by both ends of a bond alike.
     pub fn in_floats(mut self) -> Self {
         let spacing = self.cloud.spacing();
+        let lattice = self.cloud.lattice();
+        let sides = lattice.map_or([1.0; 3], |lattice| lattice.spacing.map(|dx| dx / spacing));
         self.floats = Some(Working::new(
-            self.stencil.offsets_in_floats(),
+            self.stencil.offsets_in_floats(sides),
             spacing,
             self.stencil.farthest_shift(),
             self.stencil.radius(),
@@ -201,7 +203,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     }
 
     /// The same with a stiffness of bonds that depends on their ends: the material's times a factor given for the sites of both ends, the first one an own point's, and the
-    /// neighbour's lattice coordinates less the point's. It must be the same from both ends.
+    /// vector ξ of the bond, m. It must be the same from both ends.
     pub(in crate::operator) fn with_factors(mut self, of: &OfBond<'_>) -> Self {
         let (sites, layout) = (&self.sites, &self.layout);
         let factors = Factors::new(sites, layout, &self.stencil, &self.blocks, of);

@@ -135,6 +135,10 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
 
     fn lattice_springs(&self) -> Option<LatticeSprings> {
         let (cells, lengths) = (self.stencil.cells(), self.stencil.lengths());
+        let lattice = self.cloud.lattice();
+        if !lattice.is_some_and(|lattice| lattice.is_cubic(D)) {
+            return None;
+        }
         let spring = |k: usize| LatticeSpring {
             offset: cells[k],
             stiffness: self.largest_stiffness(k) / lengths[k],

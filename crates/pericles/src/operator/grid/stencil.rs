@@ -66,8 +66,8 @@ impl<const D: usize> Stencil<D> {
             volumes: Vec::new(),
             offsets: Vec::new(),
         };
-        let most = (rule.reach / lattice.spacing).floor() as i64;
         let range = |c: usize| {
+            let most = (rule.reach / lattice.spacing[c] * (1.0 + 1e-9)).floor() as i64;
             let n = most.min(lattice.shape[c] as i64 - 1) as i32;
             -n..=n
         };
@@ -75,7 +75,7 @@ impl<const D: usize> Stencil<D> {
             for y in range(1) {
                 for x in range(0) {
                     let cell = [x, y, z];
-                    let xi = cell.map(|steps| f64::from(steps) * lattice.spacing);
+                    let xi = lattice.vector(cell);
                     let length = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
                     if cell != [0; 3] && length <= rule.reach {
                         stencil.push(cell, xi, length, strides, rule);
@@ -139,21 +139,20 @@ impl<const D: usize> Stencil<D> {
         &self.offsets
     }
 
-    /// The offsets with lengths in spacings, in which ξ is made of integers, rounded to floats.
-    pub fn offsets_in_floats(&self) -> Vec<Offset<f32, D>> {
-        let spacings = |cell: &[i32; 3]| cell.map(f64::from);
-        let cells = self.cells.iter().map(spacings);
-        let rounded = |(offset, cell): (&Offset<f64, D>, [f64; 3])| {
-            let square = cell.iter().map(|x| x * x).sum::<f64>();
+    /// The offsets rounded to floats, with lengths in units in which cells have these sides. Where they are one, ξ is made of integers, which floats hold exactly.
+    pub fn offsets_in_floats(&self, sides: [f64; 3]) -> Vec<Offset<f32, D>> {
+        let rounded = |(offset, cell): (&Offset<f64, D>, &[i32; 3])| {
+            let xi: [f64; D] = std::array::from_fn(|c| f64::from(cell[c]) * sides[c]);
+            let square = xi.iter().map(|x| x * x).sum::<f64>();
             Offset {
                 shift: offset.shift,
-                xi: std::array::from_fn(|c| f32::rounded(cell[c])),
+                xi: xi.map(f32::rounded),
                 inverse_square: f32::rounded(1.0 / square),
                 stiffness: f32::rounded(offset.stiffness),
                 factor: f32::rounded(offset.stiffness / square.sqrt()),
             }
         };
-        self.offsets.iter().zip(cells).map(rounded).collect()
+        self.offsets.iter().zip(&self.cells).map(rounded).collect()
     }
 
     /// The farthest a neighbour's place is from the node's.
@@ -180,7 +179,7 @@ mod tests {
 
     fn stencil(shape: [usize; 3], reach: f64) -> Stencil<3> {
         let lattice = Lattice {
-            spacing: 1.0,
+            spacing: [1.0; 3],
             shape,
             node: vec![],
         };

@@ -12,8 +12,8 @@ pub(super) struct Bonds<'a> {
     pub(super) list: &'a BondList,
     /// Reference coordinates in units of `unit`; behind them the volume of the point, m³.
     reference: &'a Records,
-    /// Length of one coordinate unit, m.
-    unit: f64,
+    /// Length of one unit along each axis, m.
+    unit: [f64; 3],
     stiffness: &'a Stiffness,
     /// Marks of the sites whose bonds count; all of them if none.
     pub(super) partners: Option<&'a [bool]>,
@@ -32,7 +32,7 @@ impl<'a> Bonds<'a> {
     pub fn new(
         list: &'a BondList,
         reference: &'a Records,
-        unit: f64,
+        unit: [f64; 3],
         stiffness: &'a Stiffness,
     ) -> Self {
         assert_eq!(reference.len(), list.sites().len(), "a row for every site");
@@ -56,7 +56,7 @@ impl<'a> Bonds<'a> {
 
     /// ξ of the bond between two sites, m.
     pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
-        std::array::from_fn(|c| (self.reference[j][c] - self.reference[i][c]) * self.unit)
+        std::array::from_fn(|c| (self.reference[j][c] - self.reference[i][c]) * self.unit[c])
     }
 
     /// What all bonds of point i share.
@@ -89,7 +89,7 @@ impl<'a> Bonds<'a> {
     ) -> (FixedBond<T, D>, [T; D]) {
         let reference = self.there::<T>(group, self.reference);
         let there = self.there::<T>(group, u);
-        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * T::splat(self.unit));
+        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * T::splat(self.unit[c]));
         let eta = vector(|c| there[c] - here.u[c]);
         let mut square = xi[0] * xi[0];
         for c in 1..D {

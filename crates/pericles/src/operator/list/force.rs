@@ -37,7 +37,7 @@ pub struct BondForce<L: FastLaw, const D: usize> {
     pub(super) bonds: BondList,
     /// Coordinates and volumes, see [`Bonds`].
     reference: Vec<Row>,
-    unit: f64,
+    unit: [f64; 3],
     stiffness: Stiffness,
     pub(super) breakable: Option<Vec<u8>>,
     pub(super) critical_stretch: f64,
@@ -326,8 +326,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     }
 }
 
-/// Coordinates with the points' volumes behind them, and the length of one unit. Integer coordinates make bonds of equal offset equal to the last bit.
-fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, f64) {
+/// Coordinates with the points' volumes behind them, and the length of one unit along each axis. Integer coordinates make bonds of equal offset equal to the last bit.
+fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, [f64; 3]) {
     let row = |i: usize| {
         let [x, y, z] = match cloud.lattice() {
             Some(lattice) => lattice.coordinates(lattice.node[i]).map(f64::from),
@@ -335,6 +335,6 @@ fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, f64) {
         };
         Row([x, y, z, cloud.volumes()[i]])
     };
-    let unit = cloud.lattice().map_or(1.0, |lattice| lattice.spacing);
+    let unit = cloud.lattice().map_or([1.0; 3], |lattice| lattice.spacing);
     ((0..cloud.len()).map(row).collect(), unit)
 }

@@ -10,10 +10,11 @@ use crate::operator::{LatticeSpring, LatticeSprings};
 use crate::parallel::BLOCK;
 
 impl<L: FastLaw, const D: usize> BondForce<L, D> {
-    /// The stiffest intact bond of every offset; none of points that are no lattice, or of different volumes or horizons.
+    /// The stiffest intact bond of every offset; none of points that are no lattice of cubic cells, or of different volumes or horizons.
     pub(super) fn springs_of_offsets(&self) -> Option<LatticeSprings> {
         let (sites, domain) = (self.bonds.sites(), self.cloud.domain());
-        let lattice = sites.places().lattice()?;
+        let lattice = sites.places().lattice().filter(|one| one.is_cubic(D))?;
+        let spacing = lattice.spacing[0];
         let largest = self.cloud.volumes().iter().copied().fold(0.0, f64::max);
         let volume = domain.max(largest);
         if !domain.all(self.cloud.volumes().iter().all(|own| *own == volume)) {
@@ -22,8 +23,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let reach = self
             .bonds
             .correction()
-            .reach(self.bonds.uniform_horizon()?, lattice.spacing);
-        let cells = (reach / lattice.spacing).floor();
+            .reach(self.bonds.uniform_horizon()?, spacing);
+        let cells = (reach / spacing).floor();
         // Bonds reach no farther than the body and its images; beyond that size plane waves are dear.
         let most = cells.min(lattice.shape.iter().copied().max()? as f64) as usize;
         let width = 2 * most + 1;

@@ -17,7 +17,7 @@ pub(super) struct Layout {
     reference: Vec<Row>,
     /// s and the size of the cell where volumes or cells differ.
     own: Option<Vec<Row>>,
-    unit: f64,
+    unit: [f64; 3],
     volume: f64,
     cell: f64,
 }
@@ -41,7 +41,7 @@ impl Layout {
         Self {
             reference: (0..cloud.len()).map(row).collect(),
             own: (!alike).then(|| (0..cloud.len()).map(own).collect()),
-            unit: cloud.lattice().map_or(1.0, |lattice| lattice.spacing),
+            unit: cloud.lattice().map_or([1.0; 3], |lattice| lattice.spacing),
             volume: volumes[0],
             cell: first,
         }
@@ -165,10 +165,9 @@ impl<'a> SolidBonds<'a> {
     ) -> Bond<T, D> {
         let reference = self.there::<T>(group, &self.layout.reference);
         let there = self.there::<T>(group, u);
-        let unit = T::splat(self.layout.unit);
         let (mut xi, mut eta) = ([T::splat(0.0); D], [T::splat(0.0); D]);
         for c in 0..D {
-            xi[c] = (reference[c] - here.reference[c]) * unit;
+            xi[c] = (reference[c] - here.reference[c]) * T::splat(self.layout.unit[c]);
             eta[c] = there[c] - here.u[c];
         }
         let mut square = xi[0] * xi[0];
@@ -205,7 +204,7 @@ impl<'a> SolidBonds<'a> {
     /// ξ of the bond between two sites, m.
     pub fn vector<const D: usize>(&self, a: usize, b: usize) -> [f64; D] {
         let (from, to) = (&self.layout.reference[a], &self.layout.reference[b]);
-        std::array::from_fn(|c| (to[c] - from[c]) * self.layout.unit)
+        std::array::from_fn(|c| (to[c] - from[c]) * self.layout.unit[c])
     }
 
     /// ω of one entry that leads from site a to site b along ξ.
