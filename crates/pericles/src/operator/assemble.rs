@@ -43,6 +43,15 @@ pub struct AssembledBonds {
 /// Places of the padded box per point above which the list is better: the box is mostly empty, or very short along x.
 const SPARSE: usize = 8;
 
+/// Whether the points lie on a lattice and fill its box well enough for a stencil.
+pub(super) fn fills_lattice(cloud: &PointCloud) -> bool {
+    cloud.lattice().is_some_and(|lattice| {
+        let [x, y, z] = lattice.shape;
+        let places = x.next_multiple_of(LANES) * y * z;
+        places <= SPARSE * cloud.len().max(LANES)
+    })
+}
+
 impl<'a> BondBody<'a> {
     /// A body without pre-cracks, of one stiffness, all of whose bonds may break, with the default measure of damage.
     pub fn new(
@@ -74,17 +83,10 @@ impl BondBody<'_> {
 
     /// The faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {
-        match self.cloud.lattice() {
-            Some(lattice) if Limit::refusal(BondForm::Grid.limits(), self.features()).is_none() => {
-                let [x, y, z] = lattice.shape;
-                let places = x.next_multiple_of(LANES) * y * z;
-                if places <= SPARSE * self.cloud.len().max(LANES) {
-                    BondForm::Grid
-                } else {
-                    BondForm::List
-                }
-            }
-            _ => BondForm::List,
+        let refused = Limit::refusal(BondForm::Grid.limits(), self.features()).is_some();
+        match !refused && fills_lattice(self.cloud) {
+            true => BondForm::Grid,
+            false => BondForm::List,
         }
     }
 
