@@ -102,7 +102,7 @@ impl ForceForm {
     }
 
     /// The form in which bonds are computed one by one; none for forms that transform.
-    pub(crate) fn of_bonds(self) -> Option<BondForm> {
+    pub fn of_bonds(self) -> Option<BondForm> {
         match self {
             Self::Fastest => Some(BondForm::Fastest),
             Self::Grid => Some(BondForm::Grid),

@@ -65,25 +65,36 @@ fn two_passes_take_about_the_time_of_two_passes() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(|| {
         for set in InstructionSet::available() {
-            let mut best = [f64::INFINITY; 7];
+            let mut times = [const { Vec::new() }; 7];
             for (_, force) in &mut forces {
                 force.use_instruction_set(set);
             }
-            for _ in 0..12 {
-                for ((_, force), best) in forces.iter().zip(&mut best) {
+            // In turn, and medians: other programs slow all of them alike, and a lucky moment is longer than a short evaluation.
+            for round in 0..60 {
+                let first = if round % 8 == 0 { 0 } else { 4 };
+                for ((_, force), times) in forces.iter().zip(&mut times).skip(first) {
                     let start = cpu_seconds();
                     force.add_force(0.0, &u, On::All, &mut out);
                     let ns = 1e9 * (cpu_seconds() - start) / force.directed_bonds() as f64;
-                    *best = best.min(ns);
+                    times.push(ns);
                 }
             }
-            for ((name, force), best) in forces.iter().zip(best) {
+            let median = times.map(|mut times: Vec<f64>| {
+                times.sort_by(f64::total_cmp);
+                times[times.len() / 2]
+            });
+            for ((name, force), median) in forces.iter().zip(median) {
                 let set = force.instruction_set().name();
-                println!("{set}, {name}: {best:.2} ns per directed bond");
+                println!("{set}, {name}: {median:.2} ns per directed bond");
             }
+            println!(
+                "two passes over one: {:.2} (list), {:.2} (stencil)",
+                median[1] / median[0],
+                median[5] / median[4]
+            );
             let vectors = set != InstructionSet::Baseline;
-            assert!(!vectors || best[1] < 2.8 * best[0], "{best:?}");
-            assert!(!vectors || best[5] < 2.4 * best[4], "{best:?}");
+            assert!(!vectors || median[1] < 2.8 * median[0], "{median:?}");
+            assert!(!vectors || median[5] < 2.4 * median[4], "{median:?}");
         }
     });
 }

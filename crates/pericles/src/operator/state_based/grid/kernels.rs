@@ -111,7 +111,7 @@ fn dilatation_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     intact: &[u8],
     out: &mut [&mut [f64]; 1],
 ) {
-    let m = arrays.offsets.len();
+    let (arrays, m) = (&arrays.alike(), arrays.offsets.len());
     for number in 0..block.chunks.len() {
         let lanes = block.wanted(number);
         if lanes == 0 {
@@ -139,7 +139,7 @@ fn accept_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     out: &mut [&mut [f64]; 1],
     tally: &mut Tally,
 ) {
-    let m = arrays.offsets.len();
+    let (arrays, m) = (&arrays.alike(), arrays.offsets.len());
     let watch = T::splat(rule.threshold * WATCH);
     for number in 0..block.chunks.len() {
         let lanes = block.wanted(number);
@@ -202,7 +202,7 @@ fn force_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     intact: &[u8],
     out: &mut [&mut [f64]; D],
 ) {
-    let m = arrays.offsets.len();
+    let (arrays, m) = (&arrays.alike(), arrays.offsets.len());
     for number in 0..block.chunks.len() {
         let lanes = block.wanted(number);
         if lanes == 0 {
@@ -256,7 +256,7 @@ fn square_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     intact: &[u8],
     out: &mut [&mut [f64]; 1],
 ) {
-    let m = arrays.offsets.len();
+    let (arrays, m) = (&arrays.alike(), arrays.offsets.len());
     for number in 0..block.chunks.len() {
         let chunk = &block.chunks[number];
         let intact = &intact[number * m..(number + 1) * m];
