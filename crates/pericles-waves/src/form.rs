@@ -63,6 +63,7 @@ const OF_CONVOLUTION: &[Limit] = &[
         "it needs points on a regular grid; use the bond list for this body",
     ),
     TENSORS,
+    Limit::BOND_ENERGY,
 ];
 
 const FULL_BOX: &str =
@@ -89,6 +90,7 @@ const OF_SPECTRAL: &[Limit] = &[
     Limit::new(Feature::NoLattice, FULL_BOX),
     Limit::new(Feature::GaussNodes, FULL_BOX),
     TENSORS,
+    Limit::BOND_ENERGY,
 ];
 
 impl ForceForm {
