@@ -65,7 +65,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
             let cases = Case::all();
             let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
             let all = format!(
-                "bar-N, plate-N or block-N with N cells an axis, then any of -list, -f32, -scalar, -avx2, -moved: {} …",
+                "bar-N, plate-N or block-N with N cells an axis, then any of -list, -lps, -f32, -scalar, -avx2, -moved: {} …",
                 names.join(", ")
             );
             RunError::unknown("case", name, names, &all)

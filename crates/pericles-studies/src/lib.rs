@@ -23,6 +23,7 @@ mod multi_time_step;
 mod nonlocal_wave;
 mod numerics;
 mod row;
+mod state_based;
 mod study;
 mod table;
 
@@ -33,7 +34,7 @@ pub use study::{Context, Study};
 pub use table::table;
 
 /// All studies, by topic.
-const TOPICS: [&[Study]; 7] = [
+const TOPICS: [&[Study]; 8] = [
     &absorbing_boundaries::STUDIES,
     &dispersion::STUDIES,
     &fracture::STUDIES,
@@ -41,6 +42,7 @@ const TOPICS: [&[Study]; 7] = [
     &multi_time_step::STUDIES,
     &nonlocal_wave::STUDIES,
     &numerics::STUDIES,
+    &state_based::STUDIES,
 ];
 
 /// All studies, by topic.

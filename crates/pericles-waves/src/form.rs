@@ -58,6 +58,7 @@ const OF_CONVOLUTION: &[Limit] = &[
         "it needs points on a regular grid; use the bond list for this body",
     ),
     TENSORS,
+    Limit::BOND_ENERGY,
 ];
 
 const FULL_BOX: &str =
@@ -84,6 +85,7 @@ const OF_SPECTRAL: &[Limit] = &[
     Limit::new(Feature::NoLattice, FULL_BOX),
     Limit::new(Feature::GaussNodes, FULL_BOX),
     TENSORS,
+    Limit::BOND_ENERGY,
 ];
 
 impl ForceForm {
@@ -97,7 +99,7 @@ impl ForceForm {
     }
 
     /// The form in which bonds are computed one by one; none for forms that transform.
-    pub(crate) fn of_bonds(self) -> Option<BondForm> {
+    pub fn of_bonds(self) -> Option<BondForm> {
         match self {
             Self::Fastest => Some(BondForm::Fastest),
             Self::Grid => Some(BondForm::Grid),

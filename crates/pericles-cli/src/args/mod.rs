@@ -116,7 +116,7 @@ horizon; \"lost\" are those that a method places beyond it. Times are on the wal
     /// Time whole steps on fixed bodies and set them against what the machine can do
     #[command(after_help = "\
 Times are medians over rounds, on the wall clock: quote ratios, not seconds, of a machine that others use too.
-The roofline counts 28 operations per eight bonds at the measured rate of multiply-adds, idle lanes included;
+The roofline counts 28 operations per eight bonds and pass at the measured rate of multiply-adds, idle lanes included;
 on processors that add and multiply in separate units the fraction can exceed one.")]
     Bench(BenchArgs),
     /// Run a deck on finer and finer grids, and see a number converge

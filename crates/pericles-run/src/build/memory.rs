@@ -195,7 +195,10 @@ impl Assembler<'_> {
         let listed = self.bytes_of_listed_bond(solid);
         let bonds = match solid.material.form {
             ForceForm::List => listed * neighbours,
-            _ if solid.material.state_based().is_some() => listed * neighbours,
+            _ if solid.material.state_based().is_some() => match self.is_on_solid_stencil(solid) {
+                true => neighbours / 8.0,
+                false => listed * neighbours,
+            },
             ForceForm::Convolution | ForceForm::Spectral => transform,
             ForceForm::Grid | ForceForm::FloatGrid if has_one_stiffness(solid) => neighbours / 8.0,
             // A factor a bond, at most.
@@ -232,22 +235,20 @@ impl Assembler<'_> {
 
     /// Bytes of a bond of a list while families are found.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
-        let Some(state_based) = solid.material.state_based() else {
-            return match is_on_one_grid(solid) {
-                true => LISTED,
-                // Bonds of a list differ one by one.
-                false => LISTED + KEPT,
-            };
+        let worked = breaks_by_energy(solid);
+        let kept = match solid.material.state_based() {
+            Some(_) => solid.material.surface_correction != Default::default(),
+            None => !is_on_one_grid(solid),
         };
-        let corrected = solid.material.surface_correction != Default::default();
-        let parts = solid.material.parts.iter().map(|part| &part.constants);
-        let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
-        let worked = by_energy(&state_based.solid.failure)
-            || parts.into_iter().any(|constants| match constants {
-                PartConstants::StateBased { failure, .. } => by_energy(failure),
-                PartConstants::Bonds { .. } => false,
-            });
-        LISTED + if corrected { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
+        LISTED + if kept { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
+    }
+
+    /// Whether a stencil can serve all points of a state-based body.
+    fn is_on_solid_stencil(&self, solid: &Solid) -> bool {
+        let shape = &solid.shape;
+        !shape.is_listed()
+            && solid.material.surface_correction == Default::default()
+            && !breaks_by_energy(solid)
     }
 }
 
@@ -262,4 +263,17 @@ fn has_one_stiffness(solid: &Solid) -> bool {
 /// Whether one stencil or transform can serve all points.
 fn is_on_one_grid(solid: &Solid) -> bool {
     has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
+}
+
+/// Whether bonds of a state-based body break by their energy.
+fn breaks_by_energy(solid: &Solid) -> bool {
+    let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
+    let part = |constants: &PartConstants| match constants {
+        PartConstants::StateBased { failure, .. } => by_energy(failure),
+        PartConstants::Bonds { .. } => false,
+    };
+    let material = &solid.material;
+    let state_based = material.state_based();
+    state_based.is_some_and(|state_based| by_energy(&state_based.solid.failure))
+        || material.parts.iter().any(|one| part(&one.constants))
 }

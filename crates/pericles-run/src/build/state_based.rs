@@ -8,7 +8,6 @@ use pericles::operator::{Feature, LinearSolidBody};
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, ModelWarning, PartConstants, Remark, Solid, StateBased,
 };
-use pericles_waves::{AssembledForce, ForceForm};
 
 use super::assembler::Assembler;
 use super::body::BodyParts;
@@ -86,8 +85,10 @@ impl Assembler<'_> {
             no_fail: &no_fail,
             damage: material.damage.unwrap_or_default(),
         };
-        let (operator, cuts) = body.operator().map_err(at_material)?;
-        let cracks = self.tracked_cracks(&surfaces, &cuts, cloud, warnings);
+        // Forms that transform are refused above.
+        let form = material.form.of_bonds().unwrap_or_default();
+        let bonds = body.operator(form).map_err(at_material)?;
+        let cracks = self.tracked_cracks(&surfaces, &bonds.cuts, cloud, warnings);
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();
         if let Some(constants) = &constants {
@@ -98,11 +99,7 @@ impl Assembler<'_> {
         Ok(BodyParts {
             constants,
             parts: all.collect(),
-            bonds: AssembledForce {
-                operator,
-                cuts,
-                form: ForceForm::List,
-            },
+            bonds: bonds.into(),
             cracks,
             density,
         })

@@ -143,6 +143,7 @@ time = { end = 10, dt = 0.2 }
 fn a_notched_plate_tears_and_keeps_its_energy_balance() {
     for failure in [
         "critical_stretch = 0.004",
+        "critical_stretch = 0.004, bonds = \"list\"",
         "fracture_energy = 3e-5, stretch_definition = \"bond\"",
         "fracture_energy = 3e-5, failure = \"bond-energy\"",
     ] {
@@ -218,7 +219,7 @@ fn facts_have_the_elastic_constants_and_the_isotropy_of_the_lattice() {
     let facts = Facts::of_deck(&deck, &built.assembly);
     assert!((facts.poisson_ratio.unwrap() - 0.3).abs() < 1e-14);
     assert!((facts.shear_modulus.unwrap() - 10.0 / 2.6).abs() < 1e-12);
-    assert_eq!(facts.operator, "list");
+    assert_eq!(facts.operator, "grid");
     for error in [facts.shear_error, facts.diagonal_shear_error] {
         assert!(error.unwrap().abs() < 1e-13);
     }
@@ -253,10 +254,24 @@ fn what_state_based_bodies_do_not_represent_is_refused_with_its_reason() {
         let error = refusal(text).to_string();
         assert!(error.contains(reason), "{error}");
     };
-    for form in ["grid", "grid-f32", "convolution", "spectral"] {
-        let bonds = format!("{{ function = \"isotropic\" }}, bonds = \"{form}\"");
-        let text = text.replace("{ function = \"isotropic\" }", &bonds);
-        refuse(&text, "on a list of bonds only");
+    let influence = "{ function = \"isotropic\" }";
+    for (form, other, reason) in [
+        ("grid-f32", "", "in double precision, on a stencil"),
+        ("convolution", "", "in double precision, on a stencil"),
+        ("spectral", "", "in double precision, on a stencil"),
+        (
+            "grid",
+            ", surface_correction = \"energy\"",
+            "corrected surfaces of state-based materials are kept as a list",
+        ),
+        (
+            "grid",
+            ", volume_correction = \"none\", failure = \"bond-energy\", fracture_energy = 1e-3",
+            "the work of every bond is kept as a list",
+        ),
+    ] {
+        let bonds = format!("{influence}, bonds = \"{form}\"{other}");
+        refuse(&text.replace(influence, &bonds), reason);
     }
     let refined = text.replace(
         "spacing = 1,",

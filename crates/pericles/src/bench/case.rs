@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::family::VolumeCorrection;
-use crate::kernel::Influence;
+use crate::kernel::{Influence, InfluenceFunction};
 use crate::material::{
-    BondConstants, BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw,
-    StressState,
+    BondConstants, BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture,
+    GivenConstants, LinearSolid, Modulus, PairLaw, StateInfluence, StressState,
 };
-use crate::operator::{BondBody, BondForm, DamageMeasure, InstructionSet};
+use crate::operator::{BondBody, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody};
 use crate::scalar::PointScalar;
 use crate::space::{Grid, PointCloud, Shape};
 use crate::system::System;
@@ -34,10 +34,12 @@ pub struct Case {
     pub moved: bool,
     /// Not an operator of this library but the plain loop that it is set against: see [`StoredList`](super::StoredList).
     pub scalar: bool,
+    /// Bonds of a linear peridynamic solid in place of bond-based ones: two passes.
+    pub state_based: bool,
 }
 
 /// Cases that are timed if none is asked for.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 14] = [
     "block-46",
     "block-46-avx2",
     "block-46-f32",
@@ -45,6 +47,8 @@ const NAMES: [&str; 12] = [
     "block-46-list",
     "block-46-list-avx2",
     "block-46-list-moved",
+    "block-46-lps",
+    "block-46-lps-list",
     "block-100",
     "plate-512",
     "plate-512-list",
@@ -74,11 +78,12 @@ impl Case {
             critical_stretch: 0.015,
             moved: false,
             scalar: false,
+            state_based: false,
         }
     }
 
     /// The case of this name: `bar-N`, `plate-N` or `block-N` with N cells along every axis, by the grid operator; then any of `-list` (by the list operator), `-f32` (by the grid operator in floats), `-scalar` (by
-    /// the plain loop), `-avx2` (without AVX-512) and `-moved` (points off the lattice, hence a list).
+    /// the plain loop), `-lps` (a linear peridynamic solid), `-avx2` (without AVX-512) and `-moved` (points off the lattice, hence a list). None of a name without a case.
     pub fn named(name: &str) -> Option<Self> {
         let mut words = name.split('-');
         let dimension = match words.next()? {
@@ -96,13 +101,15 @@ impl Case {
             match word {
                 "list" => case.form = BondForm::List,
                 "f32" => case.form = BondForm::FloatGrid,
+                "lps" => case.state_based = true,
                 "scalar" => (case.form, case.scalar) = (BondForm::List, true),
                 "avx2" => case.instruction_set = InstructionSet::Avx2,
                 "moved" => (case.form, case.moved) = (BondForm::List, true),
                 _ => return None,
             }
         }
-        Some(case)
+        let pairs_only = case.scalar || case.form == BondForm::FloatGrid;
+        (!(case.state_based && pairs_only)).then_some(case)
     }
 
     /// The points.
@@ -133,6 +140,15 @@ impl Case {
         )?))
     }
 
+    /// The state of stress in the case's dimension.
+    fn stress_state(&self) -> StressState {
+        match self.cells.len() {
+            1 => StressState::Uniaxial,
+            2 => StressState::PlaneStrain,
+            _ => StressState::Spatial,
+        }
+    }
+
     /// Glass with a horizon of 3.015 spacings, linear partial volumes and the case's critical stretch.
     pub fn material(&self) -> BondMaterial {
         BondMaterial {
@@ -154,12 +170,46 @@ impl Case {
     /// # Errors
     /// A horizon of no neighbours.
     pub fn constants(&self, cloud: &PointCloud) -> Result<BondConstants> {
-        let state = match cloud.dimension() {
-            1 => StressState::Uniaxial,
-            2 => StressState::PlaneStrain,
-            _ => StressState::Spatial,
+        self.material().constants(cloud, self.stress_state())
+    }
+
+    /// The same glass as a linear peridynamic solid, with the influence function of LAMMPS (peri/lps), one over the length.
+    pub fn solid(&self) -> LinearSolid {
+        LinearSolid {
+            density: DENSITY,
+            elastic: GivenConstants {
+                young: Some(65e9),
+                poisson_ratio: Some(0.22),
+                ..GivenConstants::default()
+            },
+            horizon: 3.015 * SPACING,
+            influence: StateInfluence::Function(InfluenceFunction::Inverse),
+            volume_correction: VolumeCorrection::Linear,
+            failure: BondFailure::CriticalStretch(self.critical_stretch),
+        }
+    }
+
+    /// The operator on the case's points.
+    fn operator(&self, cloud: &Arc<PointCloud>) -> Result<Box<dyn Force>> {
+        let damage = DamageMeasure {
+            count: true,
+            ..DamageMeasure::default()
         };
-        self.material().constants(cloud, state)
+        if self.state_based {
+            let solid = self.solid();
+            let constants = solid.constants(cloud, self.stress_state())?;
+            let body = LinearSolidBody {
+                damage,
+                ..LinearSolidBody::new(cloud, &constants, solid.volume_correction)
+            };
+            return Ok(body.operator(self.form)?.operator);
+        }
+        let (material, constants) = (self.material(), self.constants(cloud)?);
+        let body = BondBody {
+            damage,
+            ..BondBody::new(cloud, &material, &constants)
+        };
+        Ok(body.operator(self.form)?.operator)
     }
 
     /// The body with its operator, moving smoothly.
@@ -168,16 +218,7 @@ impl Case {
     /// See [`Case::cloud`].
     pub fn system(&self) -> Result<(System, State)> {
         let cloud = self.cloud()?;
-        let material = self.material();
-        let constants = self.constants(&cloud)?;
-        let body = BondBody {
-            damage: DamageMeasure {
-                count: true,
-                ..DamageMeasure::default()
-            },
-            ..BondBody::new(&cloud, &material, &constants)
-        };
-        let mut operator = body.operator(self.form)?.operator;
+        let mut operator = self.operator(&cloud)?;
         operator.use_instruction_set(self.instruction_set);
         let start = moving(&cloud);
         let system = System::new(cloud, operator, PointScalar::Uniform(DENSITY))?;
@@ -224,6 +265,10 @@ mod tests {
         assert_eq!((case.cells, case.form), (vec![30; 2], BondForm::List));
         assert_eq!(case.instruction_set, InstructionSet::Avx2);
         assert_eq!(Case::named("bar-1e6").unwrap().cells, [1_000_000]);
+        let solid = Case::named("block-4-lps-list").unwrap();
+        assert!(solid.state_based && solid.form == BondForm::List);
+        let (system, _) = Case::named("block-4-lps").unwrap().system().unwrap();
+        assert!(system.operator().capabilities().dilatation.is_some());
         for wrong in [
             "",
             "block",
@@ -232,6 +277,8 @@ mod tests {
             "cube-3",
             "block-4-fast",
             "block--1",
+            "block-4-lps-f32",
+            "block-4-scalar-lps",
         ] {
             assert_eq!(Case::named(wrong), None, "{wrong}");
         }

@@ -3,7 +3,7 @@
 //! A case is a small problem with bonds that could break but do not. Its time is the median of several rounds of velocity Verlet, per directed bond
 //! (an entry of a family: each bond counts twice) and thread. It is set against
 //!
-//! * the arithmetic roofline: 28 operations per eight bonds (sixteen in floats) at the measured rate of independent multiply–adds of the vector width, with
+//! * the arithmetic roofline: 28 operations per eight bonds (sixteen in floats) and pass (two for state-based materials) at the measured rate of independent multiply–adds of the vector width, with
 //!   the lanes that row ends and missing bonds leave idle;
 //! * the memory traffic that a step cannot do without, as GB/s.
 //!
@@ -209,7 +209,8 @@ impl<'a> Running<'a> {
         let (points, directed_bonds) = (prepared.points, prepared.directed_bonds);
         let vectors = points * case.cells.len() * size_of::<f64>();
         let ns_per_bond = self.times[self.times.len() / 2];
-        let operations = OPERATIONS * idle_lanes(case, directed_bonds);
+        let passes = if case.state_based { 2.0 } else { 1.0 };
+        let operations = passes * OPERATIONS * idle_lanes(case, directed_bonds);
         let lanes = match case.form {
             BondForm::FloatGrid => 2 * LANES,
             _ => LANES,
@@ -236,7 +237,7 @@ impl<'a> Running<'a> {
     }
 }
 
-/// Operations per eight bonds that count as the work of a step, whatever a kernel really does.
+/// Operations per pass and eight bonds that count as the work of a step, whatever a kernel really does.
 const OPERATIONS: f64 = 28.0;
 
 /// Lanes computed over bonds there are: rows padded to whole chunks, and full families at the boundary.

@@ -139,16 +139,18 @@ impl BondBody<'_> {
 
 /// The faster of grid and list for a body with these features.
 pub(super) fn fastest_form(cloud: &PointCloud, features: Features) -> BondForm {
-    match cloud.lattice() {
-        Some(lattice) if Limit::refusal(BondForm::Grid.limits(), features).is_none() => {
-            let [x, y, z] = lattice.shape;
-            let places = x.next_multiple_of(LANES) * y * z;
-            if places <= SPARSE * cloud.len().max(LANES) {
-                BondForm::Grid
-            } else {
-                BondForm::List
-            }
-        }
-        _ => BondForm::List,
+    let refused = Limit::refusal(BondForm::Grid.limits(), features).is_some();
+    match !refused && fills_lattice(cloud) {
+        true => BondForm::Grid,
+        false => BondForm::List,
     }
+}
+
+/// Whether the points lie on a lattice and fill its box well enough for a stencil.
+pub(super) fn fills_lattice(cloud: &PointCloud) -> bool {
+    cloud.lattice().is_some_and(|lattice| {
+        let [x, y, z] = lattice.shape;
+        let places = x.next_multiple_of(LANES) * y * z;
+        places <= SPARSE * cloud.len().max(LANES)
+    })
 }

@@ -9,25 +9,39 @@ pub enum BondForm {
     /// The grid where the points fill a lattice well enough, else the list.
     #[default]
     Fastest,
-    /// One stencil for all nodes of a lattice ([`GridForce`](super::GridForce)).
+    /// One stencil for all nodes of a lattice ([`GridForce`](super::GridForce), [`LinearSolidGrid`](super::LinearSolidGrid)).
     Grid,
     /// The same with forces and breaking computed in floats ([`GridForce::in_floats`](super::GridForce::in_floats)).
     FloatGrid,
-    /// A list of every point's bonds ([`BondForce`](super::BondForce)).
+    /// A list of every point's bonds ([`BondForce`](super::BondForce), [`LinearSolidForce`](super::LinearSolidForce)).
     List,
 }
 
 const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 
 const OF_GRID: &[Limit] = &[
-    Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
     Limit::listed_law(Feature::GreenStrainBar),
     Limit::listed_law(Feature::GreenStrain),
     Limit::listed_law(Feature::OtherCubic),
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
+    Limit::BOND_ENERGY,
 ];
+
+/// In floats no state-based material is computed either.
+const OF_FLOAT_GRID: &[Limit] = &preceded::<{ OF_GRID.len() + 1 }>(Limit::STATE_BASED, OF_GRID);
+
+/// A limit and others behind it.
+const fn preceded<const N: usize>(first: Limit, others: &[Limit]) -> [Limit; N] {
+    let mut limits = [first; N];
+    let mut k = 0;
+    while k < others.len() {
+        limits[k + 1] = others[k];
+        k += 1;
+    }
+    limits
+}
 
 impl BondForm {
     /// As written in decks.
@@ -44,7 +58,8 @@ impl BondForm {
     pub fn limits(self) -> &'static [Limit] {
         match self {
             Self::Fastest | Self::List => &[],
-            Self::Grid | Self::FloatGrid => OF_GRID,
+            Self::Grid => OF_GRID,
+            Self::FloatGrid => OF_FLOAT_GRID,
         }
     }
 

@@ -19,6 +19,8 @@ pub enum Feature {
     StateBased,
     /// Bonds that break.
     Breaking,
+    /// Bonds that break by their energy, the work of their force states since the start.
+    BondEnergy,
     /// Pre-cracks.
     PreCracks,
     /// Several materials.
@@ -43,13 +45,14 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
         Self::OtherCubic,
         Self::StateBased,
         Self::Breaking,
+        Self::BondEnergy,
         Self::PreCracks,
         Self::SeveralMaterials,
         Self::Inclusions,
@@ -71,6 +74,7 @@ impl Feature {
             Self::OtherCubic => "other cubic laws (bars)",
             Self::StateBased => "state-based materials",
             Self::Breaking => "breaking",
+            Self::BondEnergy => "breaking by bond energy",
             Self::PreCracks => "pre-cracks",
             Self::SeveralMaterials => "several materials",
             Self::Inclusions => "inclusions",
@@ -153,7 +157,13 @@ impl Limit {
     /// Of forms that compute pair forces only.
     pub const STATE_BASED: Self = Self::new(
         Feature::StateBased,
-        "state-based materials are computed on a list of bonds only; leave `bonds` out or give \"list\"",
+        "state-based materials are computed on a list of bonds or, in double precision, on a stencil; leave `bonds` out or give \"list\" or \"grid\"",
+    );
+
+    /// Of forms that store no number per bond.
+    pub const BOND_ENERGY: Self = Self::new(
+        Feature::BondEnergy,
+        "the work of every bond is kept as a list; use \"list\", leave `bonds` out, or break bonds by their stretch",
     );
 
     /// Of forms that need one lattice.

@@ -53,7 +53,9 @@ pub use linearisation::Linearisation;
 pub use list::BondForce;
 pub use own_law::PlainLaw;
 pub use springs::{LatticeSpring, LatticeSprings};
-pub use state_based::{FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, SmallStrain};
+pub use state_based::{
+    FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, LinearSolidGrid, SmallStrain,
+};
 pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
 pub use view::{BondAt, BondView, DilatationView};
 pub use zoned::{LocalForce, SplitForce};

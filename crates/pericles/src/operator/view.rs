@@ -15,6 +15,25 @@ pub struct BondAt {
     pub force: [f64; 3],
 }
 
+impl BondAt {
+    /// A bond of a body with D dimensions.
+    pub fn new<const D: usize>(
+        neighbour: usize,
+        xi: [f64; D],
+        eta: [f64; D],
+        force: [f64; D],
+    ) -> Self {
+        let spatial =
+            |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
+        Self {
+            neighbour,
+            xi: spatial(xi),
+            eta: spatial(eta),
+            force: spatial(force),
+        }
+    }
+}
+
 /// An operator whose bonds can be looked at. Slow beside the operator itself: for output.
 pub trait BondView: Sync {
     /// Calls `visit` for every bond of point i that is left, at displacement u.

@@ -175,8 +175,8 @@ fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     body.operator(form).unwrap().operator
 }
 
-/// Two state-based materials with corrected surfaces.
-fn solid(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+/// Two state-based materials in a form; on a list with corrected surfaces.
+fn solid(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let material = |young: f64, poisson_ratio: f64| LinearSolid {
         density: 1.0,
         elastic: GivenConstants {
@@ -196,12 +196,15 @@ fn solid(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let (held, cracks) = (held(cloud), [(notch(), EndRule::Closed)]);
     let body = LinearSolidBody {
         classes: Some(&classes),
-        surface: SolidSurface::Energy,
+        surface: match form {
+            BondForm::List => SolidSurface::Energy,
+            _ => SolidSurface::None,
+        },
         cracks: &cracks,
         no_fail: &held,
         ..LinearSolidBody::new(cloud, &materials[0], VolumeCorrection::Extended)
     };
-    body.operator().unwrap().0
+    body.operator(form).unwrap().operator
 }
 
 type MakeScheme = fn(&System) -> Box<dyn Integrator>;
@@ -266,7 +269,7 @@ const VERLET: MakeScheme = |_| Box::new(VelocityVerlet);
 
 #[test]
 fn a_divided_body_of_bonds_moves_by_the_same_bits() {
-    let forces: [(&str, Make); 7] = [
+    let forces: [(&str, Make); 8] = [
         ("list", |cloud| {
             list::<BondStretch>(PairLaw::BondStretch, cloud)
         }),
@@ -279,7 +282,8 @@ fn a_divided_body_of_bonds_moves_by_the_same_bits() {
         ("stencil of several materials", |cloud| {
             composite(cloud, BondForm::Grid)
         }),
-        ("state-based list", solid),
+        ("state-based list", |cloud| solid(cloud, BondForm::List)),
+        ("state-based stencil", |cloud| solid(cloud, BondForm::Grid)),
         ("stencil", |cloud| {
             grid::<BondStretch>(PairLaw::BondStretch, cloud)
         }),

@@ -12,7 +12,9 @@ use pericles::material::{
     BondLimits, BondStretch, Calibration, ElasticModulus, Fracture, LinearSolid,
     LinearSolidConstants, Modulus, SolidClasses, StateInfluence, Strains, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, Force, InstructionSet, LinearSolidBody, On};
+use pericles::operator::{
+    AssembledBonds, BondForce, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody, On,
+};
 use pericles::space::PointCloud;
 use pericles::time::frequency_from_below;
 use pericles::{PointScalar, StepEnd, System};
@@ -36,7 +38,7 @@ fn functions() -> Vec<InfluenceFunction> {
 
 fn operator(cloud: &Arc<PointCloud>, constants: &LinearSolidConstants) -> Box<dyn Force> {
     let body = LinearSolidBody::new(cloud, constants, VolumeCorrection::None);
-    body.operator().unwrap().0
+    body.operator(BondForm::Fastest).unwrap().operator
 }
 
 fn force_of(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
@@ -155,7 +157,9 @@ fn forces_are_derivatives_of_the_energy_and_tangents_of_forces_and_symmetric() {
             cracks: &[(crack, EndRule::Closed)],
             ..LinearSolidBody::new(&cloud, &materials[0], VolumeCorrection::None)
         };
-        let (mut operator, cuts) = body.operator().unwrap();
+        let AssembledBonds {
+            mut operator, cuts, ..
+        } = body.operator(BondForm::Fastest).unwrap();
         assert!(cuts[0].bonds > 10);
         let u = wave(&cloud, 0.06);
         let step = StepEnd::sub_step(0.0, 0.0, &u);
@@ -208,7 +212,7 @@ fn small_strains_are_the_linearisation() {
             strains: Strains::Small,
             ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::None)
         };
-        let (linear, _) = body.operator().unwrap();
+        let linear = body.operator(BondForm::Fastest).unwrap().operator;
         assert!(linear.is_linear());
         let u = wave(&cloud, 1.0);
         let rest = vec![0.0; u.len()];
@@ -254,7 +258,7 @@ fn uniform_strains_of_a_lattice_have_the_energy_of_elasticity() {
                 strains: Strains::Small,
                 ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::None)
             };
-            let (linear, _) = body.operator().unwrap();
+            let linear = body.operator(BondForm::Fastest).unwrap().operator;
             let mut density = vec![0.0; n];
             linear.add_energy_density(0.0, &u, &mut density);
             let trace: f64 = (0..dimension).map(|c| strain[c][c]).sum();
@@ -289,7 +293,7 @@ fn solids_without_a_dilatational_part_are_bond_based() {
         .unwrap();
     assert!(constants.dilatational.abs() < 1e-14 * constants.deviatoric);
     let body = LinearSolidBody::new(&cloud, &constants, VolumeCorrection::Extended);
-    let (state_based, _) = body.operator().unwrap();
+    let state_based = body.operator(BondForm::Fastest).unwrap().operator;
     let bonds = BondList::new(&cloud, 2.0, VolumeCorrection::Extended).unwrap();
     let twin = Twin {
         cloud: &cloud,
@@ -429,7 +433,7 @@ fn the_virial_stress_of_a_uniform_strain_is_that_of_elasticity() {
         strains: Strains::Small,
         ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::None)
     };
-    let operator = body.operator().unwrap().0;
+    let operator = body.operator(BondForm::Fastest).unwrap().operator;
     let (n, middle) = (cloud.len(), cloud.nearest([6.5; 3]));
     let strain = [[3e-3, -2e-3], [-2e-3, 5e-3]];
     let mut u = vec![0.0; 2 * n];

@@ -11,5 +11,6 @@ mod identities;
 mod reference;
 mod schemes;
 mod speed;
+mod stencil;
 mod surface;
 mod twin;

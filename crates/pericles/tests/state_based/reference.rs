@@ -24,7 +24,7 @@ fn response<const D: usize>(
     let constants = material.constants(cloud, state).unwrap();
     let body = LinearSolidBody::new(cloud, &constants, material.volume_correction);
     let make = || {
-        let (mut force, _) = body.solid::<FiniteStrain, D>().unwrap();
+        let (mut force, _) = body.list::<FiniteStrain, D>().unwrap();
         force.use_instruction_set(set);
         force
     };

@@ -4,7 +4,7 @@ use crate::bodies::{jittered, solid};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{BondLimits, SolidSurface, Strains, StressState};
-use pericles::operator::LinearSolidBody;
+use pericles::operator::{BondForm, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, ImplicitRule, Integrator, Interpolant,
@@ -24,7 +24,7 @@ fn body(strains: Strains, surface: SolidSurface, limits: BondLimits) -> System {
         surface,
         ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::None)
     };
-    let operator = body.operator().unwrap().0;
+    let operator = body.operator(BondForm::Fastest).unwrap().operator;
     System::new(cloud, operator, PointScalar::Uniform(1.0)).unwrap()
 }
 

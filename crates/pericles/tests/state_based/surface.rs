@@ -5,7 +5,7 @@ use crate::common::boxed;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{LinearSolid, SolidSurface, StateInfluence, Strains, StressState};
-use pericles::operator::{Force, LinearSolidBody, On};
+use pericles::operator::{BondForm, Force, LinearSolidBody, On};
 
 /// Young's modulus over that of its material of a plate under plane stress, twice as long as wide, pulled at its end rows, from the strain of its middle half.
 fn measured(cells: usize, material: &LinearSolid, surface: SolidSurface) -> f64 {
@@ -19,7 +19,7 @@ fn measured(cells: usize, material: &LinearSolid, surface: SolidSurface) -> f64 
         surface,
         ..LinearSolidBody::new(&cloud, &constants, material.volume_correction)
     };
-    let operator = body.operator().unwrap().0;
+    let operator = body.operator(BondForm::Fastest).unwrap().operator;
     let n = cloud.len();
     let along = cloud.axis(0);
     let mut load = vec![0.0; 2 * n];

@@ -1,10 +1,10 @@
 //! Blocks of chunks and those of their points that are wanted.
 
-use super::layout::Chunk;
+use super::layout::{Chunk, GridLayout};
 use crate::lanes::LANES;
 
 /// A block of chunks.
-pub(super) struct ChunkBlock<'a> {
+pub(in crate::operator) struct ChunkBlock<'a> {
     pub chunks: &'a [Chunk],
     /// Number of the first chunk.
     pub first_chunk: usize,
@@ -13,10 +13,25 @@ pub(super) struct ChunkBlock<'a> {
     pub lanes: Option<&'a [u8]>,
 }
 
-impl ChunkBlock<'_> {
+impl<'a> ChunkBlock<'a> {
+    /// A block of a layout; none if none of its points are wanted.
+    pub fn of(layout: &'a GridLayout, lanes: Option<&'a [u8]>, block: usize) -> Option<Self> {
+        let range = layout.chunks_of(block);
+        let lanes = lanes.map(|lanes| &lanes[range.clone()]);
+        if lanes.is_some_and(|lanes| lanes.iter().all(|&lanes| lanes == 0)) {
+            return None;
+        }
+        Some(Self {
+            lanes,
+            first_chunk: range.start,
+            chunks: &layout.chunks()[range],
+            first_point: layout.first_point(block),
+        })
+    }
+
     /// The lanes of the k-th chunk that are wanted.
     #[inline(always)]
-    pub(super) fn wanted(&self, k: usize) -> u8 {
+    pub(in crate::operator) fn wanted(&self, k: usize) -> u8 {
         match self.lanes {
             None => self.chunks[k].lanes,
             Some(lanes) => lanes[k],
@@ -26,7 +41,7 @@ impl ChunkBlock<'_> {
 
 /// Adds the numbers of the wanted lanes to their points.
 #[inline(always)]
-pub(super) fn scatter(
+pub(in crate::operator) fn scatter(
     numbers: [f64; LANES],
     chunk: &Chunk,
     lanes: u8,

@@ -1,20 +1,111 @@
 //! Which bonds of a lattice body exist: geometry, pre-cracks, points that never fail.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::layout::GridLayout;
-use super::stencil::Stencil;
+use super::stencil::{BondRule, Stencil};
 use crate::error::{PericlesError, Result};
-use crate::family::{Crack, Cut, EndRule};
+use crate::family::{Crack, Cut, EndRule, VolumeCorrection};
 use crate::lanes::LANES;
-use crate::operator::damage::BlockDamage;
-use crate::space::Sites;
+use crate::operator::damage::{BlockDamage, bonds_left};
+use crate::operator::{BondForm, Feature, Features};
+use crate::space::{PointCloud, Sites, check_points};
+
+/// The bonds of a lattice body as they are at the start.
+pub(in crate::operator) struct LatticeBonds<const D: usize> {
+    pub sites: Sites,
+    pub layout: GridLayout,
+    pub stencil: Stencil<D>,
+    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    pub blocks: Vec<BlockDamage>,
+    /// Sites whose bonds never break, one byte for each place (in chunks).
+    pub held: Option<Vec<u8>>,
+    /// What each pre-crack removed.
+    pub cuts: Vec<Cut>,
+    /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
+    pub precut: Vec<(u64, u8)>,
+}
+
+impl<const D: usize> LatticeBonds<D> {
+    /// The bonds within a horizon, whose `stiffness` (times κ V of the neighbour) the stencil holds for every vector ξ, without those that cracks cut.
+    ///
+    /// # Errors
+    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
+    pub fn new(
+        cloud: &Arc<PointCloud>,
+        horizon: f64,
+        correction: VolumeCorrection,
+        stiffness: &dyn Fn([f64; 3]) -> f64,
+        cracks: &[(Crack, EndRule)],
+        no_fail: &[u32],
+    ) -> Result<Self> {
+        let no_lattice = cloud.lattice().is_none();
+        BondForm::Grid.check(Features::default().with(Feature::NoLattice, no_lattice))?;
+        let lattice = match cloud.lattice() {
+            Some(lattice) if cloud.dimension() == D => lattice,
+            _ => {
+                return Err(PericlesError::WrongDimension {
+                    what: "the grid operator",
+                    needed: ["1", "2", "3"][D - 1],
+                    dimension: cloud.dimension(),
+                });
+            }
+        };
+        check_points("the points whose bonds never break", no_fail, cloud.len())?;
+        let spacing = cloud.spacing();
+        let volume = cloud.volumes()[0];
+        let rule = BondRule {
+            reach: correction.reach(horizon, spacing),
+            volume: &|r| correction.factor(r, horizon, spacing) * volume,
+            stiffness,
+        };
+        let sites = Sites::new(cloud, rule.reach)?;
+        let lattice = sites.places().lattice().unwrap_or(lattice);
+        let layout = GridLayout::new(&sites, lattice);
+        let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
+        let mut blocks = geometric_blocks(&layout, &stencil);
+        if cloud.domain().all(bonds_left(&blocks) == 0) {
+            return Err(PericlesError::HorizonTooSmall { horizon, spacing });
+        }
+        let cuts = cracks
+            .iter()
+            .map(|crack| cut(&sites, &layout, &stencil, crack, &mut blocks))
+            .collect::<Result<Vec<_>>>()?;
+        let precut = if cuts.iter().any(|cut| !cut.points.is_empty()) {
+            precut_bonds(&layout, &stencil, &blocks)
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            held: held_sites(cloud, &layout, no_fail),
+            sites,
+            layout,
+            stencil,
+            blocks,
+            cuts,
+            precut,
+        })
+    }
+}
+
+/// The sites whose bonds never break, one byte for each place (in chunks); none if there are no such points.
+fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Option<Vec<u8>> {
+    let domain = cloud.domain();
+    if domain.all(no_fail.is_empty()) {
+        return None;
+    }
+    let mut held = vec![false; cloud.len()];
+    for &i in no_fail {
+        held[i as usize] = true;
+    }
+    let held = domain.marks_with_ghosts(&held);
+    Some(layout.marked(|point| held[point]))
+}
 
 /// All bonds of the geometric families.
-pub(super) fn geometric_blocks<const D: usize>(
-    layout: &GridLayout,
-    stencil: &Stencil<D>,
-) -> Vec<BlockDamage> {
+fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -> Vec<BlockDamage> {
     (0..layout.blocks())
         .into_par_iter()
         .map(|block| {
@@ -33,7 +124,7 @@ pub(super) fn geometric_blocks<const D: usize>(
 ///
 /// # Errors
 /// A crack of another dimension than the cloud's, or without extent.
-pub(super) fn cut<const D: usize>(
+fn cut<const D: usize>(
     sites: &Sites,
     layout: &GridLayout,
     stencil: &Stencil<D>,
@@ -95,7 +186,7 @@ pub(super) fn cut<const D: usize>(
 }
 
 /// The groups (chunk · offsets + offset) that lost bonds to cracks, ascending, with the bonds lost.
-pub(super) fn precut_bonds<const D: usize>(
+fn precut_bonds<const D: usize>(
     layout: &GridLayout,
     stencil: &Stencil<D>,
     blocks: &[BlockDamage],

@@ -31,52 +31,11 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     }
 
     fn damage_into(&self, out: &mut [f64]) {
-        let volumes = self.stencil.volumes();
-        let mut whole = vec![0.0; self.points()];
-        out.fill(0.0);
-        for (sums, all) in [(&mut whole[..], true), (&mut *out, false)] {
-            self.for_each_block(sums, |first, number, intact, sums| {
-                self.for_each_counted(number, intact, |(_, point), offset, intact| {
-                    if intact || all {
-                        let weight = if self.damage.count {
-                            1.0
-                        } else {
-                            volumes[offset]
-                        };
-                        sums[point - first] += weight;
-                    }
-                });
-            });
-        }
-        for (damage, whole) in out.iter_mut().zip(whole) {
-            *damage = if whole > 0.0 {
-                1.0 - *damage / whole
-            } else {
-                0.0
-            };
-        }
+        self.families().damage_into(out);
     }
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
-        for (number, block) in self.blocks.iter().enumerate() {
-            let chunks = self.layout.chunks_of(number);
-            for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
-                let chunk = &self.layout.chunks()[chunk];
-                // The other end of a bond tells of it otherwise.
-                let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
-                for (mask, offset) in forward {
-                    for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
-                        let place = chunk.place as usize * LANES + lane;
-                        let there = place.wrapping_add_signed(offset.shift);
-                        let j = self.layout.point_at(there);
-                        if j < n && j != i {
-                            visit(i, j);
-                        }
-                    }
-                }
-            }
-        }
+        self.families().for_each_intact(visit);
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
@@ -85,7 +44,8 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
         }
         let threshold = L::threshold(fraction * self.critical_stretch);
         let mut found = vec![0.0; self.points()];
-        let breakable = |chunk: &Chunk, offset: usize| self.breakable(chunk, offset);
+        let families = self.families();
+        let breakable = |chunk: &Chunk, offset: usize| families.breakable(chunk, offset);
         let part = |place: usize, shift: isize| match &self.pairs {
             None => [threshold; LANES],
             Some(pairs) => pairs.of_part::<L>(fraction, place, shift),

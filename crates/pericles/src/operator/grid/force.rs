@@ -5,25 +5,26 @@ use std::sync::{Arc, Mutex};
 use super::arrays::Grid;
 use super::block::ChunkBlock;
 use super::breaking::GridBreaking;
-use super::build::{cut, geometric_blocks, precut_bonds};
+use super::build::LatticeBonds;
 use super::factors::{Factors, OfBond};
+use super::families::Families;
 use super::kernels::{accept_chunks, accept_chunks_in_floats};
 use super::layout::{Chunk, GridLayout, Partners};
 use super::numbers::GridNumber;
 use super::padded::Padded;
-use super::stencil::{BondRule, Stencil};
+use super::stencil::Stencil;
 use super::thresholds::PlaceThresholds;
 use super::working::Working;
 use crate::domain::{Field, Letter};
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::family::{Crack, Cut, EndRule};
 use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial, PairClasses};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::FastLaw;
-use crate::operator::{BondForm, DamageMeasure, Feature, Features, Force, InstructionSet, On};
+use crate::operator::{DamageMeasure, Force, InstructionSet, On};
 use crate::parallel::{components_mut, for_each_part};
-use crate::space::{PointCloud, Sites, check_points};
+use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
 
 /// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
@@ -110,52 +111,27 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         no_fail: &[u32],
         damage: DamageMeasure,
     ) -> Result<Self> {
-        let no_lattice = cloud.lattice().is_none();
-        BondForm::Grid.check(Features::default().with(Feature::NoLattice, no_lattice))?;
-        let lattice = match cloud.lattice() {
-            Some(lattice) if cloud.dimension() == D => lattice,
-            _ => {
-                return Err(PericlesError::WrongDimension {
-                    what: "the grid operator",
-                    needed: ["1", "2", "3"][D - 1],
-                    dimension: cloud.dimension(),
-                });
-            }
-        };
-        check_points("the points whose bonds never break", no_fail, cloud.len())?;
-        let spacing = cloud.spacing();
-        let correction = material.volume_correction;
-        let volume = cloud.volumes()[0];
-        let rule = BondRule {
-            reach: correction.reach(material.horizon, spacing),
-            volume: &|r| correction.factor(r, material.horizon, spacing) * volume,
-            stiffness: &|xi| {
-                constants.micromodulus * material.influence.alpha_of(xi, material.horizon)
-            },
-        };
-        let sites = Sites::new(&cloud, rule.reach)?;
-        let lattice = sites.places().lattice().unwrap_or(lattice);
-        let layout = GridLayout::new(&sites, lattice);
-        let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
-        let mut blocks = geometric_blocks(&layout, &stencil);
-        if cloud.domain().all(bonds_left(&blocks) == 0) {
-            return Err(PericlesError::HorizonTooSmall {
-                horizon: material.horizon,
-                spacing,
-            });
-        }
-        let cuts = cracks
-            .iter()
-            .map(|crack| cut(&sites, &layout, &stencil, crack, &mut blocks))
-            .collect::<Result<Vec<_>>>()?;
-        let precut = if cuts.iter().any(|cut| !cut.points.is_empty()) {
-            precut_bonds(&layout, &stencil, &blocks)
-        } else {
-            Vec::new()
-        };
+        let stiffness =
+            |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
+        let LatticeBonds {
+            layout,
+            stencil,
+            blocks,
+            held,
+            cuts,
+            precut,
+            sites,
+        } = LatticeBonds::new(
+            &cloud,
+            material.horizon,
+            material.volume_correction,
+            &stiffness,
+            cracks,
+            no_fail,
+        )?;
         Ok(Self {
             directed_bonds: bonds_left(&blocks),
-            held: held_sites(&cloud, &layout, no_fail),
+            held,
             doubles: Working::new(
                 stencil.offsets().to_vec(),
                 1.0,
@@ -259,17 +235,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         lanes: Option<&'a [u8]>,
         block: usize,
     ) -> Option<ChunkBlock<'a>> {
-        let range = self.layout.chunks_of(block);
-        let lanes = lanes.map(|lanes| &lanes[range.clone()]);
-        if lanes.is_some_and(|lanes| lanes.iter().all(|&lanes| lanes == 0)) {
-            return None;
-        }
-        Some(ChunkBlock {
-            lanes,
-            first_chunk: range.start,
-            chunks: &self.layout.chunks()[range],
-            first_point: self.layout.first_point(block),
-        })
+        ChunkBlock::of(&self.layout, lanes, block)
     }
 
     /// Runs a read-only loop over all blocks at displacement u.
@@ -316,7 +282,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             critical_stretch: self.critical_stretch,
             pairs: self.pairs.as_ref(),
             volume: self.cloud.volumes()[0],
-            breakable: &|chunk: &Chunk, offset: usize| self.breakable(chunk, offset),
+            breakable: &|chunk: &Chunk, offset: usize| self.families().breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),
             step,
             velocity: step.velocities(&moved),
@@ -389,12 +355,17 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         );
     }
 
-    /// Which of a chunk's bonds of one offset may break.
-    pub(super) fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
-        let Some(held) = &self.held else { return 0xFF };
-        let cell = self.stencil.cells()[offset];
-        let there = self.layout.neighbour_bits(chunk, cell, |place| held[place]);
-        !(held[chunk.place as usize] | there)
+    /// The families.
+    pub(super) fn families(&self) -> Families<'_, D> {
+        Families {
+            cloud: &self.cloud,
+            layout: &self.layout,
+            stencil: &self.stencil,
+            blocks: &self.blocks,
+            held: self.held.as_deref(),
+            precut: &self.precut,
+            damage: self.damage,
+        }
     }
 
     /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
@@ -424,71 +395,4 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             self.blocks[block].break_other_end(group, lane, dissipated);
         }
     }
-
-    /// Wants every bond that is left to be one that the body has: others would lead beyond its points.
-    pub(super) fn check_bonds(&self) -> Result<()> {
-        let m = self.stencil.len();
-        let mut precut = self.precut.iter().peekable();
-        for (block, state) in self.blocks.iter().enumerate() {
-            let numbers = self.layout.chunks_of(block);
-            for (number, intact) in numbers.zip(state.intact.chunks(m)) {
-                let chunk = &self.layout.chunks()[number];
-                for (offset, &cell) in self.stencil.cells().iter().enumerate() {
-                    let group = (number * m + offset) as u64;
-                    let cut = precut.next_if(|&&(at, _)| at == group);
-                    let family = self.layout.neighbours(chunk, cell) & !cut.map_or(0, |cut| cut.1);
-                    if intact[offset] & !family != 0 {
-                        let point = self.cloud.user_number(chunk.point as usize);
-                        let reason =
-                            format!("it has bonds near point {point} that the body does not have");
-                        return Err(PericlesError::BadArchive { reason });
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Calls `visit((lane, point), offset, intact)` for all bonds of a chunk's geometric families that damage counts, point by point.
-    pub(super) fn for_each_counted(
-        &self,
-        number: usize,
-        intact: &[u8],
-        mut visit: impl FnMut((usize, usize), usize, bool),
-    ) {
-        let m = self.stencil.len();
-        let chunk = &self.layout.chunks()[number];
-        let first = self
-            .precut
-            .partition_point(|&(group, _)| group < (number * m) as u64);
-        let mut precut = self.precut[first..].iter().peekable();
-        for (offset, &cell) in self.stencil.cells().iter().enumerate() {
-            let mut family = self.layout.neighbours(chunk, cell);
-            if let Some((_, cut)) =
-                precut.next_if(|&&(group, _)| group == (number * m + offset) as u64)
-                && !self.damage.count_precut
-            {
-                family &= !cut;
-            }
-            for (lane, point) in chunk.points() {
-                if family >> lane & 1 == 1 {
-                    visit((lane, point), offset, intact[offset] >> lane & 1 == 1);
-                }
-            }
-        }
-    }
-}
-
-/// The sites whose bonds never break, one byte for each place (in chunks); none if there are no such points.
-fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Option<Vec<u8>> {
-    let domain = cloud.domain();
-    if domain.all(no_fail.is_empty()) {
-        return None;
-    }
-    let mut held = vec![false; cloud.len()];
-    for &i in no_fail {
-        held[i as usize] = true;
-    }
-    let held = domain.marks_with_ghosts(&held);
-    Some(layout.marked(|point| held[point]))
 }

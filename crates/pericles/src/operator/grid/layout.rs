@@ -19,7 +19,7 @@ use crate::space::{Lattice, Sites};
 
 /// Eight nodes in a row, at least one of which is an own point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Chunk {
+pub(in crate::operator) struct Chunk {
     /// Place of the first node in the padded rows, in chunks.
     pub place: u32,
     /// The first own point in it.
@@ -47,7 +47,7 @@ pub(super) struct Block {
 
 /// Points and their padded places.
 #[derive(Debug, Clone)]
-pub(super) struct GridLayout {
+pub(in crate::operator) struct GridLayout {
     shape: [usize; 3],
     /// Places of a padded row.
     stride: usize,

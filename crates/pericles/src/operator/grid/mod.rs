@@ -1,22 +1,23 @@
 //! The force of a lattice body by one stencil for all nodes.
 
 mod arrays;
-mod block;
+pub(in crate::operator) mod block;
 mod breaking;
-mod build;
+pub(in crate::operator) mod build;
 mod damage;
 mod factors;
+pub(in crate::operator) mod families;
 mod force;
 mod kernels;
-mod layout;
+pub(in crate::operator) mod layout;
 mod numbers;
 mod operator;
-mod padded;
+pub(in crate::operator) mod padded;
 mod rows;
-mod stencil;
+pub(in crate::operator) mod stencil;
 mod thresholds;
 mod view;
-mod wanted;
+pub(in crate::operator) mod wanted;
 mod working;
 mod zoned;
 

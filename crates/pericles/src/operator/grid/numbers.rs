@@ -10,7 +10,9 @@ use crate::lanes::{F32x16, FloatLanes};
 use crate::lanes::{Lanes, Vector};
 
 /// What memory holds.
-pub(super) trait GridNumber: Copy + Default + Send + Sync + Into<f64> {
+pub(in crate::operator) trait GridNumber:
+    Copy + Default + Send + Sync + Into<f64>
+{
     /// A displacement in m, of which floats keep the difference from `origin`, in units.
     fn of(displacement: f64, origin: f64, per_unit: f64) -> Self;
     /// A number of the stencil.

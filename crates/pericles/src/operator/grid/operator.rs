@@ -12,7 +12,6 @@ use crate::operator::{
     Breakable, Capabilities, Force, InstructionSet, LatticeSpring, LatticeSprings, LinearOperator,
     Linearity, On, SplitForce,
 };
-use crate::parallel::{components_mut, for_each_part};
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
@@ -59,8 +58,9 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let lengths = self.stencil.lengths();
         let mut rows = vec![0.0; self.points()];
-        self.for_each_block(&mut rows, |first, number, intact, rows| {
-            self.for_each_counted(number, intact, |(lane, point), offset, intact| {
+        let families = self.families();
+        families.for_each_block(&mut rows, |first, number, intact, rows| {
+            families.for_each_counted(number, intact, |(lane, point), offset, intact| {
                 if intact {
                     let stiffness = self.stiffness_of(number, offset, lane).abs();
                     rows[point - first] += stiffness / lengths[offset];
@@ -193,28 +193,6 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
         });
     }
-
-    /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
-    pub(super) fn for_each_block(
-        &self,
-        values: &mut [f64],
-        visit: impl Fn(usize, usize, &[u8], &mut [f64]) + Sync,
-    ) {
-        let m = self.stencil.len();
-        let mut nothing = vec![(); self.blocks.len()];
-        for_each_part(
-            components_mut::<1>(values, self.points()),
-            &mut nothing,
-            &|block| self.layout.first_point(block),
-            &|block, [values], ()| {
-                let first = self.layout.first_point(block);
-                let intact = self.blocks[block].intact.chunks(m);
-                for (number, intact) in self.layout.chunks_of(block).zip(intact) {
-                    visit(first, number, intact, values);
-                }
-            },
-        );
-    }
 }
 
 impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
@@ -235,5 +213,5 @@ crate::saved! {
         cloud, sites, layout, stencil, held, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
         instruction_set, law: fixed,
         doubles, floats, direction: scratch,
-    } then |force| force.check_bonds()
+    } then |force| force.families().check_bonds()
 }

@@ -11,7 +11,7 @@ use crate::domain::Field;
 const LINE: usize = 64;
 
 /// What floats keep of a vector: its difference from one point's, in units. Not from that of a point that is wanted, for results do not depend on which are.
-pub(super) struct Frame<const D: usize> {
+pub(in crate::operator) struct Frame<const D: usize> {
     origin: [f64; D],
     per_unit: f64,
 }
@@ -29,7 +29,7 @@ impl<const D: usize> Frame<D> {
 }
 
 /// One vector field in padded rows (see [`GridLayout`]), made once and filled at each evaluation.
-pub(super) struct Padded<N, const D: usize> {
+pub(in crate::operator) struct Padded<N, const D: usize> {
     values: Vec<N>,
     /// First number used, so that rows start on cache lines.
     start: usize,

@@ -11,7 +11,7 @@ const PIECE: usize = 4096;
 
 /// Some nodes of a box in ascending order, x fastest.
 #[derive(Debug, Clone)]
-pub(super) struct NodeRows {
+pub(in crate::operator) struct NodeRows {
     /// Nodes of a row of the box.
     length: usize,
     /// The first node of each row, and the number of nodes at the end.

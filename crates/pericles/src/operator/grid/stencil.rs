@@ -7,7 +7,7 @@ use crate::space::Lattice;
 
 /// One bond of the stencil, with everything the loops need of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Offset<N, const D: usize> {
+pub(in crate::operator) struct Offset<N, const D: usize> {
     /// From a node's place in a padded array to that of its neighbour.
     pub shift: isize,
     /// ξ, in units of length: m, or spacings.
@@ -23,7 +23,7 @@ pub(super) struct Offset<N, const D: usize> {
 impl<N: GridNumber, const D: usize> Offset<N, D> {
     /// The bond in all lanes.
     #[inline(always)]
-    pub fn lanes<T: ChunkLanes<Number = N>>(&self) -> FixedBond<T, D> {
+    pub(super) fn lanes<T: ChunkLanes<Number = N>>(&self) -> FixedBond<T, D> {
         FixedBond {
             xi: vector(|c| T::broadcast(self.xi[c])),
             inverse_square: T::broadcast(self.inverse_square),
@@ -37,7 +37,7 @@ impl<N: GridNumber, const D: usize> Offset<N, D> {
 ///
 /// Offsets that no two nodes of the lattice's box are apart are left out, so that small bodies have small stencils.
 #[derive(Debug, Clone)]
-pub(super) struct Stencil<const D: usize> {
+pub(in crate::operator) struct Stencil<const D: usize> {
     /// Neighbour less node, in spacings.
     cells: Vec<[i32; 3]>,
     /// |ξ|, m.
@@ -48,7 +48,7 @@ pub(super) struct Stencil<const D: usize> {
 }
 
 /// What the stencil's entries are made of.
-pub(super) struct BondRule<'a> {
+pub(in crate::operator) struct BondRule<'a> {
     /// Largest length of a bond, m.
     pub reach: f64,
     /// κ V of a bond of a given length, m³.

@@ -5,7 +5,7 @@ use crate::operator::On;
 use crate::parallel::runs;
 
 /// The wanted points of an evaluation on a part of the body; made once, set at each evaluation.
-pub(super) struct WantedPoints {
+pub(in crate::operator) struct WantedPoints {
     /// The wanted lanes of each chunk.
     lanes: Vec<u8>,
     /// The columns, first and end, of the wanted points of each row.
@@ -18,7 +18,7 @@ pub(super) struct WantedPoints {
 const NONE: [u32; 2] = [u32::MAX, 0];
 
 impl WantedPoints {
-    pub(super) fn new(layout: &GridLayout) -> Self {
+    pub(in crate::operator) fn new(layout: &GridLayout) -> Self {
         Self {
             lanes: vec![0; layout.chunks().len()],
             own: vec![NONE; layout.rows()],
@@ -27,7 +27,12 @@ impl WantedPoints {
     }
 
     /// Takes the points named by `on`; their neighbours are at most `radius` cells away along each axis. Cost: the rows, and the chunks of the points.
-    pub(super) fn set(&mut self, layout: &GridLayout, on: &On<'_>, radius: [usize; 3]) {
+    pub(in crate::operator) fn set(
+        &mut self,
+        layout: &GridLayout,
+        on: &On<'_>,
+        radius: [usize; 3],
+    ) {
         self.lanes.fill(0);
         self.own.fill(NONE);
         let Self { lanes, own, .. } = self;
@@ -63,18 +68,18 @@ impl WantedPoints {
     }
 
     /// The wanted lanes of each chunk.
-    pub(super) fn lanes(&self) -> &[u8] {
+    pub(in crate::operator) fn lanes(&self) -> &[u8] {
         &self.lanes
     }
 
     /// The columns of a row that the wanted points and their neighbours take.
-    pub(super) fn columns(&self, row: usize) -> std::ops::Range<usize> {
+    pub(in crate::operator) fn columns(&self, row: usize) -> std::ops::Range<usize> {
         let [from, to] = self.seen[row];
         from as usize..(to as usize).max(from as usize)
     }
 
     /// Memory for a layout, bytes.
-    pub(super) fn bytes_for(layout: &GridLayout) -> usize {
+    pub(in crate::operator) fn bytes_for(layout: &GridLayout) -> usize {
         layout.chunks().len() + 2 * layout.rows() * size_of::<[u32; 2]>()
     }
 }

@@ -68,31 +68,6 @@ impl<L: FastLaw, const D: usize> SplitForce for GridForce<L, D> {
 
 impl<L: FastLaw, const D: usize> LocalForce for GridForce<L, D> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let place = self.layout.place_of(i);
-        let (number, lane) = self.layout.chunk_at(place);
-        let chunk = &self.layout.chunks()[number];
-        let (n, m) = (self.cloud.len(), self.stencil.len());
-        let mut near = Vec::new();
-        for (k, &cell) in self.stencil.cells().iter().enumerate() {
-            let mut family = self.layout.neighbours(chunk, cell);
-            let group = (number * m + k) as u64;
-            if let Ok(found) = self
-                .precut
-                .binary_search_by_key(&group, |&(group, _)| group)
-            {
-                family &= !self.precut[found].1;
-            }
-            if family >> lane & 1 == 1 {
-                let there = place.wrapping_add_signed(self.stencil.offsets()[k].shift);
-                near.push(self.layout.point_at(there));
-            }
-        }
-        if !self.layout.is_of_points() {
-            // A point may be a neighbour more than once, and its own.
-            near.retain(|&j| j < n && j != i);
-            near.sort_unstable();
-            near.dedup();
-        }
-        near.into_iter().for_each(visit);
+        self.families().for_each_neighbour(i, visit);
     }
 }

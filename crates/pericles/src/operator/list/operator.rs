@@ -135,8 +135,6 @@ impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (bonds, sites) = (self.view(), self.bonds.sites());
         let here = sites.of_point(i);
-        let spatial =
-            |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
         for (entry, b) in self.bonds.family(i) {
             if !self.is_intact(i, entry) {
                 continue;
@@ -144,12 +142,8 @@ impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
             let xi: [f64; D] = bonds.vector(here, b);
             let eta = u.difference::<D>([i, sites.point(b)]);
             let stiffness = self.stiffness_of(entry, i, b);
-            visit(BondAt {
-                neighbour: sites.point(b),
-                xi: spatial(xi),
-                eta: spatial(eta),
-                force: spatial(L::force(xi, eta).map(|force| stiffness * force)),
-            });
+            let force = L::force(xi, eta).map(|force| stiffness * force);
+            visit(BondAt::new(sites.point(b), xi, eta, force));
         }
     }
 }

@@ -16,12 +16,56 @@ use crate::step_end::StepEnd;
 pub(super) struct States {
     /// D/m: the dilatation is this times Σ ω r e.
     pub dilatation: Vec<f64>,
-    /// A/m of each site: p over θ.
+    /// A/m of each site, or of each point and ghost in a body on a stencil: p over θ.
     pub pressure: Vec<f64>,
-    /// s = B/m of each site.
+    /// s = B/m of the same.
     pub stiffness: Vec<f64>,
     /// A/D, Pa: the energy density is this times θ²/2, and s/2 Σ g ω e².
     pub bulk: Vec<f64>,
+}
+
+impl States {
+    /// The factors for these weighted volumes; points without bonds have none. `spread` hands the numbers of own points on to all that bonds lead to.
+    pub fn new<const D: usize>(
+        volumes: &[f64],
+        classes: &SolidClasses,
+        spread: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Self {
+        let over = |value: f64, volume: f64| if volume > 0.0 { value / volume } else { 0.0 };
+        let of = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let volumes = volumes.iter().enumerate();
+            volumes.map(|(i, volume)| over(value(i), *volume)).collect()
+        };
+        Self {
+            dilatation: of(&|_| D as f64),
+            pressure: spread(&of(&|i| classes.constants(i)[0])),
+            stiffness: spread(&of(&|i| classes.constants(i)[1])),
+            bulk: (0..volumes.len())
+                .map(|i| classes.constants(i)[0] / D as f64)
+                .collect(),
+        }
+    }
+
+    /// The energy density of a point at a site with this dilatation and this Σ g ω e², J/m³.
+    pub fn energy_density(&self, [i, site]: [usize; 2], theta: f64, squares: f64) -> f64 {
+        0.5 * (self.bulk[i] * theta * theta + self.stiffness[site] * squares)
+    }
+
+    /// k = (max(A D, 0) + g B)/m of a site: W ≤ ½ Σ k ω e² by Cauchy's inequality θ² ≤ (D²/m) Σ ω e².
+    pub fn spring<const D: usize>(&self, site: usize, factor: f64) -> f64 {
+        (D as f64 * self.pressure[site]).max(0.0) + factor * self.stiffness[site]
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        let arrays = [
+            &self.dilatation,
+            &self.pressure,
+            &self.stiffness,
+            &self.bulk,
+        ];
+        arrays.iter().map(|array| size_of_val(&array[..])).sum()
+    }
 }
 
 /// Breaking as the loops see it.
@@ -119,15 +163,6 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     true
 }
 
-/// Sums over bonds of a point.
-#[derive(Default)]
-struct Sums {
-    /// Σ ω r e and its rate.
-    extension: [f64; 2],
-    /// Σ g ω e² and half its rate.
-    square: [f64; 2],
-}
-
 /// Energy dissipated by a point that loses the bonds `broken` of those that are left at the end of a step, J.
 fn dissipated<L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -139,41 +174,90 @@ fn dissipated<L: Kinematics, const D: usize>(
 ) -> f64 {
     let (first, here) = (bonds.list.start()[i], bonds.list.site(i));
     let sites = bonds.list.sites();
-    let (mut whole, mut lost) = (Sums::default(), Sums::default());
+    let mut loss = Loss::default();
     for (k, intact) in intact.iter().enumerate() {
         let neighbours = bonds.list.group(first + k);
         for lane in (0..LANES).filter(|lane| intact >> lane & 1 == 1) {
             let j = neighbours[lane];
             let entry = (first + k) * LANES + lane;
-            let (xi, eta) = (bonds.vector::<D>(here, j), difference::<D>(u, here, j));
-            let square = dot(xi, xi);
-            let t = strain::<L, D>(xi, eta);
-            let stretch = L::exact_stretch(F64x8([t; LANES])).0[0];
-            // dψ/dt with the mean velocity.
-            let rate = rule.velocity.map_or(0.0, |velocity| {
-                let relative = velocity.difference::<D>([i, sites.point(j)]);
-                let along = dot(direction::<L, D>(xi, eta), relative);
-                along * L::contraction(F64x8([t; LANES])).0[0] / square
-            });
-            let weight = bonds.weight_of(entry, [here, j], xi) * square;
-            let factor = bonds.factor_of(entry);
-            whole.add(weight, factor, stretch, rate);
-            if broken[k] >> lane & 1 == 1 {
-                lost.add(weight, factor, stretch, rate);
-            }
+            let xi = bonds.vector::<D>(here, j);
+            let velocity = rule.velocity.map(|v| v.difference([i, sites.point(j)]));
+            let bond = LosingBond {
+                xi,
+                eta: difference(u, here, j),
+                velocity: velocity.unwrap_or([0.0; D]),
+                weight: bonds.weight_of(entry, [here, j], xi),
+                factor: bonds.factor_of(entry),
+            };
+            loss.add::<L, D>(&bond, broken[k] >> lane & 1 == 1);
         }
     }
-    let states = rule.states;
-    let [theta, theta_rate] = whole.extension.map(|sum| states.dilatation[i] * sum);
-    let [loss, loss_rate] = lost.extension.map(|sum| states.dilatation[i] * sum);
-    // θ² and its rate before less those after.
-    let left = theta - loss;
-    let energy = 0.5 * states.bulk[i] * loss * (theta + left)
-        + 0.5 * states.stiffness[here] * lost.square[0];
-    let power = states.bulk[i] * (loss_rate * left + theta_rate * loss)
-        + states.stiffness[here] * lost.square[1];
-    let volume = rule.volumes[i];
-    rule.step.dissipated_energy(volume * energy, volume * power)
+    loss.dissipated(rule.states, [i, here], rule.volumes[i], rule.step)
+}
+
+/// A bond of a point that loses some of its bonds.
+pub(super) struct LosingBond<const D: usize> {
+    pub xi: [f64; D],
+    pub eta: [f64; D],
+    /// Relative velocity of its ends, zero where breaking does not ask for it.
+    pub velocity: [f64; D],
+    /// ω
+    pub weight: f64,
+    /// The factor of its stiffness.
+    pub factor: f64,
+}
+
+/// What a point loses with some of its bonds: sums over all of its bonds, and over those that it loses.
+#[derive(Default)]
+pub(super) struct Loss {
+    whole: Sums,
+    lost: Sums,
+}
+
+/// Sums over bonds of a point.
+#[derive(Default)]
+struct Sums {
+    /// Σ ω r e and its rate.
+    extension: [f64; 2],
+    /// Σ g ω e² and half its rate.
+    square: [f64; 2],
+}
+
+impl Loss {
+    /// Adds a bond that is left before the loss.
+    pub fn add<L: Kinematics, const D: usize>(&mut self, bond: &LosingBond<D>, broken: bool) {
+        let square = dot(bond.xi, bond.xi);
+        let t = F64x8([strain::<L, D>(bond.xi, bond.eta); LANES]);
+        let stretch = L::exact_stretch(t).0[0];
+        // dψ/dt with the mean velocity.
+        let along = dot(direction::<L, D>(bond.xi, bond.eta), bond.velocity);
+        let rate = along * L::contraction(t).0[0] / square;
+        let weight = bond.weight * square;
+        self.whole.add(weight, bond.factor, stretch, rate);
+        if broken {
+            self.lost.add(weight, bond.factor, stretch, rate);
+        }
+    }
+
+    /// The energy dissipated at the end of a step by a point at a site, J: [`StepEnd::dissipated_energy`] of the energy that it loses.
+    pub fn dissipated(
+        &self,
+        states: &States,
+        [i, site]: [usize; 2],
+        volume: f64,
+        step: &StepEnd<'_>,
+    ) -> f64 {
+        let Self { whole, lost } = self;
+        let [theta, theta_rate] = whole.extension.map(|sum| states.dilatation[i] * sum);
+        let [loss, loss_rate] = lost.extension.map(|sum| states.dilatation[i] * sum);
+        // θ² and its rate before less those after.
+        let left = theta - loss;
+        let energy = 0.5 * states.bulk[i] * loss * (theta + left)
+            + 0.5 * states.stiffness[site] * lost.square[0];
+        let power = states.bulk[i] * (loss_rate * left + theta_rate * loss)
+            + states.stiffness[site] * lost.square[1];
+        step.dissipated_energy(volume * energy, volume * power)
+    }
 }
 
 impl Sums {

@@ -21,7 +21,7 @@ use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::{InstructionSet, On};
 use crate::parallel::{BLOCK, components_mut, for_each_block, for_each_point};
-use crate::space::{PointCloud, Sites};
+use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
 /// The force density of linear peridynamic solids, N/m³, in two passes over a bond list:
@@ -84,7 +84,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let weight = Weight::of_volumes(&cloud, &bonds, influence);
         let volumes = weighted_volumes::<D>(&cloud, &bonds, &weight);
         let sites = bonds.shared_sites();
-        let states = States::new::<D>(&volumes, &classes, &sites);
+        let spread = |of_points: &[f64]| sites.spread(of_points).into_owned();
+        let states = States::new::<D>(&volumes, &classes, &spread);
         let classes = classes.on_sites(&sites);
         let layout = Layout::new(&sites, &states.stiffness);
         let blocks = (0..n.div_ceil(BLOCK))
@@ -338,30 +339,11 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Memory of what the loops read beside the list, bytes.
     pub(super) fn own_bytes(&self) -> usize {
         let rows = size_of::<Row>() * self.cloud.len();
-        let states = 4 * size_of::<f64>() * self.cloud.len();
+        let states = self.states.bytes();
         let influence = self.influence.as_ref().map_or(0, Weight::bytes);
         let factor = self.factor.as_ref().map_or(0, Stiffness::bytes);
         let work = size_of_val(&self.work[..]);
         rows + states + factor + self.layout.bytes() + self.weight.bytes() + influence + work
-    }
-}
-
-impl States {
-    /// The factors for these weighted volumes; points without bonds have none.
-    fn new<const D: usize>(volumes: &[f64], classes: &SolidClasses, sites: &Sites) -> Self {
-        let over = |value: f64, volume: f64| if volume > 0.0 { value / volume } else { 0.0 };
-        let of = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let volumes = volumes.iter().enumerate();
-            volumes.map(|(i, volume)| over(value(i), *volume)).collect()
-        };
-        Self {
-            dilatation: of(&|_| D as f64),
-            pressure: sites.spread(&of(&|i| classes.constants(i)[0])).into_owned(),
-            stiffness: sites.spread(&of(&|i| classes.constants(i)[1])).into_owned(),
-            bulk: (0..volumes.len())
-                .map(|i| classes.constants(i)[0] / D as f64)
-                .collect(),
-        }
     }
 }
 

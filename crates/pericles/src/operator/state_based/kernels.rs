@@ -257,7 +257,7 @@ fn square_rows_body<T: Lanes, L: Kinematics, const D: usize>(
 
 /// The derivative of the stretch ψ in the direction d: (r/|y|) y·d/r².
 #[inline(always)]
-fn stretch_change<T: Lanes, L: Kinematics, const D: usize>(
+pub(super) fn stretch_change<T: Lanes, L: Kinematics, const D: usize>(
     xi: [T; D],
     eta: [T; D],
     d: [T; D],

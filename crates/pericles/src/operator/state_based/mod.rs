@@ -6,13 +6,16 @@
 //! | `bonds`, `weight` | what the loops over lists read |
 //! | `kernels`, `bond_work` | the loops over lists |
 //! | `breaking` | which bonds break, and what that dissipates |
-//! | `force`, `passes`, `view` | the operator |
+//! | `force`, `passes`, `view` | the operator on lists |
+//! | `grid` | the same on a lattice, by one stencil |
+//! | `body` | what the operator is made of, and the choice of its form |
 
 mod body;
 mod bond_work;
 mod bonds;
 mod breaking;
 mod force;
+mod grid;
 mod kernels;
 mod kinematics;
 mod passes;
@@ -21,4 +24,5 @@ mod weight;
 
 pub use body::LinearSolidBody;
 pub use force::LinearSolidForce;
+pub use grid::LinearSolidGrid;
 pub use kinematics::{FiniteStrain, Kinematics, SmallStrain};

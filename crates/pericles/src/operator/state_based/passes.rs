@@ -60,22 +60,16 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         });
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
+                let place = [i, self.bonds.site(i)];
                 let theta = at.values.owned[i];
-                let stiffness = self.states.stiffness[self.bonds.site(i)];
-                let bulk = self.states.bulk[i];
-                *energy += 0.5 * (bulk * theta * theta + stiffness * squares[i]);
+                *energy += self.states.energy_density(place, theta, squares[i]);
             }
         });
     }
 
-    /// W ≤ ½ Σ k ω e² with k = (max(A D, 0) + g B)/m, by Cauchy's inequality θ² ≤ (D²/m) Σ ω e²: the solid is softer than springs of the stiffness ω (k_i + k_j) V_i, to which Gershgorin's discs apply.
+    /// The solid is softer than springs of the stiffness ω (k_i + k_j) V_i with k = (max(A D, 0) + g B)/m, to which Gershgorin's discs apply.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let bonds = self.view();
-        let dimension = D as f64;
-        let stiffness = |site: usize, factor: f64| {
-            let dilatational = (dimension * self.states.pressure[site]).max(0.0);
-            dilatational + factor * self.states.stiffness[site]
-        };
         let mut largest: f64 = 0.0;
         for i in 0..self.cloud.len() {
             let (family, here) = (self.bonds.family(i), self.bonds.site(i));
@@ -84,7 +78,8 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
                 .map(|(entry, b)| {
                     let weight = bonds.weight_of(entry, [here, b], bonds.vector::<D>(here, b));
                     let factor = bonds.factor_of(entry);
-                    weight.abs() * (stiffness(here, factor) + stiffness(b, factor))
+                    let springs = [here, b].map(|site| self.states.spring::<D>(site, factor));
+                    weight.abs() * (springs[0] + springs[1])
                 })
                 .sum();
             largest = largest.max(2.0 * row / density(i));

@@ -22,8 +22,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             .map(|(entry, b)| {
                 let [xi, eta] = self.vectors(u, i, b);
                 let weight = self.view().weight_of(entry, [here, b], xi);
-                let stretch = L::exact_stretch(strain::<L, D>(xi, eta)).0[0];
-                weight * dot(xi, xi) * stretch
+                weighted_extension::<L, D>(weight, xi, eta)
             })
             .sum();
         self.states.pressure[here] * self.states.dilatation[i] * extension
@@ -36,30 +35,44 @@ fn strain<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> F64x8 {
     F64x8([measure / square; LANES])
 }
 
+/// ω r e of a bond with the weight ω.
+pub(super) fn weighted_extension<L: Kinematics, const D: usize>(
+    weight: f64,
+    xi: [f64; D],
+    eta: [f64; D],
+) -> f64 {
+    let stretch = L::exact_stretch(strain::<L, D>(xi, eta)).0[0];
+    weight * dot(xi, xi) * stretch
+}
+
+/// The force density of a bond with the weight ω from p and s, each the sum of both ends.
+pub(super) fn force_of_bond<L: Kinematics, const D: usize>(
+    weight: f64,
+    [p, s]: [f64; 2],
+    xi: [f64; D],
+    eta: [f64; D],
+) -> [f64; D] {
+    let lanes = |x: f64| F64x8([x; LANES]);
+    let pull = L::exact_pull(strain::<L, D>(xi, eta), lanes(p), lanes(s)).0[0];
+    let direction = L::direction(xi.map(lanes), eta.map(lanes));
+    direction.map(|y| weight * pull * y.0[0])
+}
+
 /// The dilatations of a point and its neighbours are computed for each call.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (bonds, here) = (self.view(), self.bonds.site(i));
-        let spatial =
-            |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
-        let lanes = |x: f64| F64x8([x; LANES]);
         let pressure = self.pressure_of(u, i);
         let family = self.bonds.family(i);
         for (entry, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
             let j = self.bonds.sites().point(b);
             let [xi, eta] = self.vectors(u, i, b);
-            let p = lanes(pressure + self.pressure_of(u, j));
+            let p = pressure + self.pressure_of(u, j);
             let stiffness = self.states.stiffness[here] + self.states.stiffness[b];
-            let s = lanes(bonds.factor_of(entry) * stiffness);
-            let pull = L::exact_pull(strain::<L, D>(xi, eta), p, s).0[0];
+            let s = bonds.factor_of(entry) * stiffness;
             let weight = bonds.weight_of(entry, [here, b], xi);
-            let direction = L::direction(xi.map(lanes), eta.map(lanes));
-            visit(BondAt {
-                neighbour: j,
-                xi: spatial(xi),
-                eta: spatial(eta),
-                force: spatial(direction.map(|y| weight * pull * y.0[0])),
-            });
+            let force = force_of_bond::<L, D>(weight, [p, s], xi, eta);
+            visit(BondAt::new(j, xi, eta, force));
         }
     }
 }

@@ -1,0 +1,205 @@
+//! The families of a lattice body bond by bond: what every force on a stencil asks of them beside its loops.
+
+use super::layout::{Chunk, GridLayout};
+use super::stencil::Stencil;
+use crate::error::{PericlesError, Result};
+use crate::lanes::LANES;
+use crate::operator::DamageMeasure;
+use crate::operator::damage::BlockDamage;
+use crate::parallel::{components_mut, for_each_part};
+use crate::space::PointCloud;
+
+/// The bonds of a lattice body, those that are left and those that pre-cracks cut.
+#[derive(Clone, Copy)]
+pub(in crate::operator) struct Families<'a, const D: usize> {
+    pub cloud: &'a PointCloud,
+    pub layout: &'a GridLayout,
+    pub stencil: &'a Stencil<D>,
+    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    pub blocks: &'a [BlockDamage],
+    /// Sites whose bonds never break, one byte for each place (in chunks).
+    pub held: Option<&'a [u8]>,
+    /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
+    pub precut: &'a [(u64, u8)],
+    pub damage: DamageMeasure,
+}
+
+impl<const D: usize> Families<'_, D> {
+    /// Which of a chunk's bonds of one offset may break.
+    pub fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
+        let Some(held) = self.held else { return 0xFF };
+        let cell = self.stencil.cells()[offset];
+        let there = self.layout.neighbour_bits(chunk, cell, |place| held[place]);
+        !(held[chunk.place as usize] | there)
+    }
+
+    /// Wants every bond that is left to be one that the body has: others would lead beyond its points.
+    pub fn check_bonds(&self) -> Result<()> {
+        let m = self.stencil.len();
+        let mut precut = self.precut.iter().peekable();
+        for (block, state) in self.blocks.iter().enumerate() {
+            let numbers = self.layout.chunks_of(block);
+            for (number, intact) in numbers.zip(state.intact.chunks(m)) {
+                let chunk = &self.layout.chunks()[number];
+                for (offset, &cell) in self.stencil.cells().iter().enumerate() {
+                    let group = (number * m + offset) as u64;
+                    let cut = precut.next_if(|&&(at, _)| at == group);
+                    let family = self.layout.neighbours(chunk, cell) & !cut.map_or(0, |cut| cut.1);
+                    if intact[offset] & !family != 0 {
+                        let point = self.cloud.user_number(chunk.point as usize);
+                        let reason =
+                            format!("it has bonds near point {point} that the body does not have");
+                        return Err(PericlesError::BadArchive { reason });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
+    pub fn for_each_block(
+        &self,
+        values: &mut [f64],
+        visit: impl Fn(usize, usize, &[u8], &mut [f64]) + Sync,
+    ) {
+        let m = self.stencil.len();
+        let mut nothing = vec![(); self.blocks.len()];
+        for_each_part(
+            components_mut::<1>(values, self.cloud.len()),
+            &mut nothing,
+            &|block| self.layout.first_point(block),
+            &|block, [values], ()| {
+                let first = self.layout.first_point(block);
+                let intact = self.blocks[block].intact.chunks(m);
+                for (number, intact) in self.layout.chunks_of(block).zip(intact) {
+                    visit(first, number, intact, values);
+                }
+            },
+        );
+    }
+
+    /// Calls `visit((lane, point), offset, intact)` for all bonds of a chunk's geometric families that damage counts, point by point.
+    pub fn for_each_counted(
+        &self,
+        number: usize,
+        intact: &[u8],
+        mut visit: impl FnMut((usize, usize), usize, bool),
+    ) {
+        let m = self.stencil.len();
+        let chunk = &self.layout.chunks()[number];
+        let first = self
+            .precut
+            .partition_point(|&(group, _)| group < (number * m) as u64);
+        let mut precut = self.precut[first..].iter().peekable();
+        for (offset, &cell) in self.stencil.cells().iter().enumerate() {
+            let mut family = self.layout.neighbours(chunk, cell);
+            if let Some((_, cut)) =
+                precut.next_if(|&&(group, _)| group == (number * m + offset) as u64)
+                && !self.damage.count_precut
+            {
+                family &= !cut;
+            }
+            for (lane, point) in chunk.points() {
+                if family >> lane & 1 == 1 {
+                    visit((lane, point), offset, intact[offset] >> lane & 1 == 1);
+                }
+            }
+        }
+    }
+
+    /// Damage of each point, 0 … 1.
+    pub fn damage_into(&self, out: &mut [f64]) {
+        let volumes = self.stencil.volumes();
+        let mut whole = vec![0.0; self.cloud.len()];
+        out.fill(0.0);
+        for (sums, all) in [(&mut whole[..], true), (&mut *out, false)] {
+            self.for_each_block(sums, |first, number, intact, sums| {
+                self.for_each_counted(number, intact, |(_, point), offset, intact| {
+                    if intact || all {
+                        let weight = if self.damage.count {
+                            1.0
+                        } else {
+                            volumes[offset]
+                        };
+                        sums[point - first] += weight;
+                    }
+                });
+            });
+        }
+        for (damage, whole) in out.iter_mut().zip(whole) {
+            *damage = if whole > 0.0 {
+                1.0 - *damage / whole
+            } else {
+                0.0
+            };
+        }
+    }
+
+    /// Calls `visit` with the two ends of every bond that is left, once or twice for each.
+    pub fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
+        for (number, block) in self.blocks.iter().enumerate() {
+            let chunks = self.layout.chunks_of(number);
+            for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
+                let chunk = &self.layout.chunks()[chunk];
+                // The other end of a bond tells of it otherwise.
+                let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
+                for (mask, offset) in forward {
+                    for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
+                        let place = chunk.place as usize * LANES + lane;
+                        let there = place.wrapping_add_signed(offset.shift);
+                        let j = self.layout.point_at(there);
+                        if j < n && j != i {
+                            visit(i, j);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Calls `visit` for every own point that point i is bonded to at the start, once each.
+    pub fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let place = self.layout.place_of(i);
+        let (number, lane) = self.layout.chunk_at(place);
+        let chunk = &self.layout.chunks()[number];
+        let (n, m) = (self.cloud.len(), self.stencil.len());
+        let mut near = Vec::new();
+        for (k, &cell) in self.stencil.cells().iter().enumerate() {
+            let mut family = self.layout.neighbours(chunk, cell);
+            let group = (number * m + k) as u64;
+            if let Ok(found) = self
+                .precut
+                .binary_search_by_key(&group, |&(group, _)| group)
+            {
+                family &= !self.precut[found].1;
+            }
+            if family >> lane & 1 == 1 {
+                let there = place.wrapping_add_signed(self.stencil.offsets()[k].shift);
+                near.push(self.layout.point_at(there));
+            }
+        }
+        if !self.layout.is_of_points() {
+            // A point may be a neighbour more than once, and its own.
+            near.retain(|&j| j < n && j != i);
+            near.sort_unstable();
+            near.dedup();
+        }
+        near.into_iter().for_each(visit);
+    }
+}
+
+impl<'a, const D: usize> Families<'a, D> {
+    /// The place of an own point, and the offsets of its bonds that are left.
+    pub fn bonds_of(self, i: usize) -> (usize, impl Iterator<Item = usize> + use<'a, D>) {
+        let place = self.layout.place_of(i);
+        let (chunk, lane) = self.layout.chunk_at(place);
+        let block = self.layout.block_of(chunk);
+        let m = self.stencil.len();
+        let first = (chunk - self.layout.chunks_of(block).start) * m;
+        let intact: &'a [u8] = &self.blocks[block].intact[first..first + m];
+        let left = (0..m).filter(move |&k| intact[k] >> lane & 1 == 1);
+        (place, left)
+    }
+}

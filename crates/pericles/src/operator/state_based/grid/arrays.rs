@@ -1,0 +1,123 @@
+//! What the loops of a solid on a lattice read.
+
+use crate::lanes::{LANES, Lanes};
+use crate::operator::grid::layout::Chunk;
+use crate::operator::grid::stencil::Stencil;
+
+/// One bond of the stencil of a solid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SolidOffset<const D: usize> {
+    /// From a node's place in a padded array to that of its neighbour.
+    pub shift: isize,
+    /// ξ, m.
+    pub xi: [f64; D],
+    /// 1/|ξ|², m⁻².
+    pub inverse_square: f64,
+    /// ω = w b V, m³.
+    pub weight: f64,
+    /// ω |ξ|², m⁵.
+    pub weighted_square: f64,
+}
+
+/// Padded rows (see [`GridLayout`](crate::operator::grid::layout::GridLayout)) as the loops see them.
+#[derive(Clone, Copy)]
+pub(super) struct Arrays<'a, const D: usize> {
+    pub offsets: &'a [SolidOffset<D>],
+    /// Displacement, or another vector.
+    pub u: [&'a [f64]; D],
+    /// p = A θ/m, or its change; the pass over points does not read it.
+    pub pressure: &'a [f64],
+    /// s = B/m.
+    pub stiffness: &'a [f64],
+    /// Unused places before the first row.
+    pub margin: usize,
+}
+
+/// Eight bonds of one offset.
+pub(super) struct Bonds<T, const D: usize> {
+    pub xi: [T; D],
+    pub eta: [T; D],
+    pub inverse_square: T,
+}
+
+/// The offsets of a stencil whose stiffness is ω.
+pub(super) fn solid_offsets<const D: usize>(stencil: &Stencil<D>) -> Vec<SolidOffset<D>> {
+    let offsets = stencil.offsets().iter().zip(stencil.lengths());
+    let solid = offsets.map(|(offset, length)| SolidOffset {
+        shift: offset.shift,
+        xi: offset.xi,
+        inverse_square: offset.inverse_square,
+        weight: offset.stiffness,
+        weighted_square: offset.stiffness * (length * length),
+    });
+    solid.collect()
+}
+
+impl<'a, const D: usize> Arrays<'a, D> {
+    /// The same arrays, of which the compiler sees that they have one length: one check for all of them, in place of one for each.
+    #[inline(always)]
+    pub fn alike(&self) -> Self {
+        let length = self.u[0].len();
+        let mut u = self.u;
+        for c in 0..D {
+            u[c] = &self.u[c][..length];
+        }
+        Self {
+            u,
+            pressure: &self.pressure[..length],
+            stiffness: &self.stiffness[..length],
+            ..*self
+        }
+    }
+
+    /// The place of a chunk's first node in the arrays.
+    #[inline(always)]
+    pub fn place(&self, chunk: &Chunk) -> usize {
+        self.margin + chunk.place as usize * LANES
+    }
+
+    #[inline(always)]
+    pub fn here<T: Lanes>(&self, place: usize) -> [T; D] {
+        let mut here = [T::splat(0.0); D];
+        for c in 0..D {
+            here[c] = T::load(self.u[c], place);
+        }
+        here
+    }
+
+    /// The difference of the vectors at both ends of the bonds of an offset.
+    #[inline(always)]
+    pub fn eta<T: Lanes>(&self, place: usize, shift: isize, here: &[T; D]) -> [T; D] {
+        let there = place.wrapping_add_signed(shift);
+        let mut eta = *here;
+        for c in 0..D {
+            eta[c] = T::load(self.u[c], there) - here[c];
+        }
+        eta
+    }
+
+    /// The bonds of an offset.
+    #[inline(always)]
+    pub fn bonds<T: Lanes>(
+        &self,
+        place: usize,
+        offset: &SolidOffset<D>,
+        here: &[T; D],
+    ) -> Bonds<T, D> {
+        let mut xi = *here;
+        for c in 0..D {
+            xi[c] = T::splat(offset.xi[c]);
+        }
+        Bonds {
+            xi,
+            eta: self.eta(place, offset.shift, here),
+            inverse_square: T::splat(offset.inverse_square),
+        }
+    }
+
+    /// η of one bond.
+    pub fn difference(&self, place: usize, shift: isize) -> [f64; D] {
+        let there = place.wrapping_add_signed(shift);
+        std::array::from_fn(|c| self.u[c][there] - self.u[c][place])
+    }
+}

@@ -1,0 +1,156 @@
+//! Breaking of a chunk's bonds, decided where the pass over points has seen a large strain.
+
+use super::arrays::Arrays;
+use crate::domain::Field;
+use crate::lanes::LANES;
+use crate::material::{PairForce, SolidClasses};
+use crate::operator::damage::{BreakEvent, Tally};
+use crate::operator::grid::families::Families;
+use crate::operator::grid::layout::Chunk;
+use crate::operator::state_based::breaking::{LosingBond, Loss, States};
+use crate::operator::state_based::kinematics::Kinematics;
+use crate::step_end::StepEnd;
+
+/// Breaking as the loops see it.
+#[derive(Clone, Copy)]
+pub(super) struct StencilRule<'a, const D: usize> {
+    /// Bonds with a measure above threshold |ξ|² exceed the critical stretch of the weakest pair of materials.
+    pub threshold: f64,
+    /// Limits by the sites that bonds lead to.
+    pub classes: &'a SolidClasses,
+    /// Which bonds may break, and the points at their ends.
+    pub families: Families<'a, D>,
+    pub states: &'a States,
+    pub volumes: &'a [f64],
+    /// The step that ended.
+    pub step: &'a StepEnd<'a>,
+    /// Mean velocities over the step, where breaking asks for them.
+    pub velocity: Option<Field<'a>>,
+    /// Note what breaks, so that the other end can be cleared.
+    pub note_events: bool,
+}
+
+/// A chunk whose bonds are looked at one by one.
+#[derive(Clone, Copy)]
+pub(super) struct ChunkBonds<'a> {
+    pub chunk: &'a Chunk,
+    /// The lanes that are looked at.
+    pub lanes: u8,
+    /// Its number among all chunks.
+    pub number: usize,
+}
+
+/// Breaks the over-stretched bonds of a chunk's lanes, of which `intact` has a byte for every offset, and books their energy; returns whether there were any.
+///
+/// Decided with [`PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
+#[cold]
+#[inline(never)]
+pub(super) fn break_chunk<L: Kinematics, const D: usize>(
+    arrays: &Arrays<'_, D>,
+    rule: &StencilRule<'_, D>,
+    bonds: ChunkBonds<'_>,
+    intact: &mut [u8],
+    tally: &mut Tally,
+) -> bool {
+    let (place, layout) = (arrays.place(bonds.chunk), rule.families.layout);
+    let mut broken = vec![0; intact.len()];
+    let mut any = false;
+    for (k, offset) in arrays.offsets.iter().enumerate() {
+        let mut over = 0;
+        for lane in lanes_of(intact[k] & bonds.lanes) {
+            let here = place + lane;
+            let eta = arrays.difference(here, offset.shift);
+            let (measure, square) = L::Measure::stretch_measure(offset.xi, eta);
+            if measure > rule.threshold * square {
+                let ends = [here, here.wrapping_add_signed(offset.shift)];
+                let [a, b] = ends.map(|place| layout.site_at(place - arrays.margin));
+                let limit = rule.classes.limits(a, b).stretch;
+                over |= u8::from(measure > L::Measure::threshold(limit) * square) << lane;
+            }
+        }
+        if over != 0 {
+            broken[k] = over & rule.families.breakable(bonds.chunk, k);
+            any |= broken[k] != 0;
+        }
+    }
+    if any {
+        take_bonds::<L, D>(arrays, rule, bonds, intact, &broken, tally);
+    }
+    any
+}
+
+/// Clears the bits of bonds that are broken, and books the energy that their points lose.
+pub(super) fn take_bonds<L: Kinematics, const D: usize>(
+    arrays: &Arrays<'_, D>,
+    rule: &StencilRule<'_, D>,
+    bonds: ChunkBonds<'_>,
+    intact: &mut [u8],
+    broken: &[u8],
+    tally: &mut Tally,
+) {
+    for (lane, i) in bonds.chunk.points() {
+        let is_of_lane = |bits: &&u8| *bits >> lane & 1 == 1;
+        let count = broken.iter().filter(is_of_lane).count();
+        if count == 0 {
+            continue;
+        }
+        tally.broken.add(count as u64);
+        let loss = loss_of::<L, D>(arrays, rule, [arrays.place(bonds.chunk), lane], i, |k| {
+            [intact[k], broken[k]]
+        });
+        let volume = rule.volumes[i];
+        tally
+            .dissipated
+            .add(loss.dissipated(rule.states, [i, i], volume, rule.step));
+    }
+    for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
+        *intact &= !broken;
+        if rule.note_events {
+            let group = bonds.number * arrays.offsets.len() + k;
+            tally
+                .events
+                .extend(lanes_of(*broken).map(|lane| BreakEvent {
+                    point: bonds.chunk.point,
+                    entry: group * LANES + lane,
+                    dissipated: 0.0,
+                }));
+        }
+    }
+}
+
+/// What point i in a lane of the chunk at a place loses; `bits` are those left of an offset, and those that break.
+fn loss_of<L: Kinematics, const D: usize>(
+    arrays: &Arrays<'_, D>,
+    rule: &StencilRule<'_, D>,
+    [place, lane]: [usize; 2],
+    i: usize,
+    bits: impl Fn(usize) -> [u8; 2],
+) -> Loss {
+    let here = place + lane;
+    let mut loss = Loss::default();
+    for (k, offset) in arrays.offsets.iter().enumerate() {
+        let [left, broken] = bits(k).map(|bits| bits >> lane & 1 == 1);
+        if !left {
+            continue;
+        }
+        let there = here.wrapping_add_signed(offset.shift) - arrays.margin;
+        let velocity = |field: Field<'_>| {
+            let j = rule.families.layout.point_at(there);
+            field.difference([i, j])
+        };
+        let bond = LosingBond {
+            xi: offset.xi,
+            eta: arrays.difference(here, offset.shift),
+            velocity: rule.velocity.map_or([0.0; D], velocity),
+            weight: offset.weight,
+            factor: 1.0,
+        };
+        loss.add::<L, D>(&bond, broken);
+    }
+    loss
+}
+
+/// The lanes whose bits are set.
+fn lanes_of(bits: u8) -> impl Iterator<Item = usize> {
+    (0..LANES).filter(move |lane| bits >> lane & 1 == 1)
+}

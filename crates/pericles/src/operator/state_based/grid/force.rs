@@ -1,0 +1,384 @@
+//! The force operator of linear peridynamic solids on a lattice.
+
+use std::sync::Arc;
+
+use super::arrays::{Arrays, SolidOffset, solid_offsets};
+use super::breaking::{ChunkBonds, StencilRule, take_bonds};
+use super::kernels::{accept_chunks, dilatation_chunks};
+use crate::domain::{Field, Letter};
+use crate::error::Result;
+use crate::family::{Crack, Cut, EndRule, VolumeCorrection};
+use crate::kernel::Influence;
+use crate::lanes::LANES;
+use crate::material::{BondLimits, PairForce, SolidClasses};
+use crate::operator::damage::{BlockDamage, DamageMeasure, bonds_left};
+use crate::operator::grid::block::ChunkBlock;
+use crate::operator::grid::build::LatticeBonds;
+use crate::operator::grid::families::Families;
+use crate::operator::grid::layout::GridLayout;
+use crate::operator::grid::padded::{Frame, Padded};
+use crate::operator::grid::stencil::Stencil;
+use crate::operator::grid::wanted::WantedPoints;
+use crate::operator::pool::Pool;
+use crate::operator::state_based::breaking::States;
+use crate::operator::state_based::kinematics::Kinematics;
+use crate::operator::{InstructionSet, On};
+use crate::parallel::{components_mut, for_each_chunk, for_each_part};
+use crate::space::PointCloud;
+use crate::step_end::StepEnd;
+
+/// The force density of linear peridynamic solids on a lattice, N/m³: that of [`LinearSolidForce`](crate::operator::LinearSolidForce), several times faster.
+///
+/// All nodes share one stencil, as in [`GridForce`](crate::operator::GridForce): both passes take rows along x eight nodes at a time, without roots and divisions while strains are small. The influence function and
+/// the partial volume are constants of an offset; A/m and B/m are numbers of a point, so that materials may differ from point to point.
+///
+/// Memory: per point one byte per eight bonds, copies of the displacement and of p = A θ/m, and five numbers; row ends are padded to eight nodes.
+pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
+    pub(super) cloud: Arc<PointCloud>,
+    pub(super) layout: Arc<GridLayout>,
+    pub(super) stencil: Stencil<D>,
+    pub(super) offsets: Vec<SolidOffset<D>>,
+    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    pub(super) blocks: Vec<BlockDamage>,
+    held: Option<Vec<u8>>,
+    precut: Vec<(u64, u8)>,
+    /// Numbers of points, those of ghosts behind own ones.
+    pub(super) states: States,
+    /// s = B/m in padded rows.
+    stiffness: Padded<f64, 1>,
+    /// Limits by the sites that bonds lead to.
+    pub(super) classes: SolidClasses,
+    /// The limits of the weakest pair of materials.
+    pub(super) weakest: BondLimits,
+    damage: DamageMeasure,
+    pub(super) directed_bonds: u64,
+    work: Pool<Work<D>>,
+    pub(super) instruction_set: InstructionSet,
+    kinematics: std::marker::PhantomData<L>,
+}
+
+crate::saved! {
+    impl<L: Kinematics, const D: usize> Saved for LinearSolidGrid<L, D> {
+        blocks: under("operator/grid"),
+        cloud, layout, stencil, offsets, held, precut, states, stiffness, classes, weakest: fixed,
+        damage, directed_bonds, instruction_set, kinematics: fixed,
+        work: scratch,
+    } then |force| force.families().check_bonds()
+}
+
+/// Work arrays of one evaluation.
+struct Work<const D: usize> {
+    u: Padded<f64, D>,
+    pressure: Padded<f64, 1>,
+    /// p of all points, those of ghosts behind own ones.
+    of_points: Vec<f64>,
+    wanted: WantedPoints,
+}
+
+/// What an evaluation needs of the padded rows.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    /// The points that it is wanted for.
+    pub on: &'a On<'a>,
+    /// Whether rows are needed beyond the neighbours of these points.
+    pub whole: bool,
+}
+
+impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
+    /// The force of solids with one influence function on the points of a lattice with pre-cracks, and what each crack removed. Bonds of the points `no_fail` never break; bonds break by their stretch only.
+    ///
+    /// # Errors
+    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
+    pub fn new(
+        cloud: &Arc<PointCloud>,
+        (influence, horizon): (&Influence, f64),
+        correction: VolumeCorrection,
+        classes: &SolidClasses,
+        cracks: &[(Crack, EndRule)],
+        no_fail: &[u32],
+        damage: DamageMeasure,
+    ) -> Result<(Self, Vec<Cut>)> {
+        let weight = |xi| influence.alpha_of(xi, horizon);
+        let LatticeBonds {
+            sites,
+            layout,
+            stencil,
+            blocks,
+            held,
+            cuts,
+            precut,
+        } = LatticeBonds::<D>::new(cloud, horizon, correction, &weight, cracks, no_fail)?;
+        let offsets = solid_offsets(&stencil);
+        let families = Families {
+            cloud,
+            layout: &layout,
+            stencil: &stencil,
+            blocks: &blocks,
+            held: None,
+            precut: &precut,
+            damage,
+        };
+        let mut volumes = vec![0.0; cloud.len()];
+        families.for_each_block(&mut volumes, |first, number, intact, volumes| {
+            families.for_each_counted(number, intact, |(_, point), offset, intact| {
+                if intact {
+                    volumes[point - first] += offsets[offset].weighted_square;
+                }
+            });
+        });
+        let domain = cloud.domain();
+        let spread = |of_points: &[f64]| domain.with_ghosts(of_points).into_owned();
+        let states = States::new::<D>(&volumes, classes, &spread);
+        let farthest = stencil.farthest_shift();
+        let mut stiffness = Padded::new(&layout, farthest);
+        let (own, ghosts) = states.stiffness.split_at(cloud.len());
+        let own = Field::new(own, ghosts);
+        stiffness.fill(&layout, own, &Frame::of(own, 1.0));
+        let layout = Arc::new(layout);
+        let (shared, points) = (layout.clone(), cloud.len() + domain.ghost_points());
+        let work = Pool::new(0, move || Work {
+            u: Padded::new(&shared, farthest),
+            pressure: Padded::new(&shared, farthest),
+            of_points: vec![0.0; points],
+            wanted: WantedPoints::new(&shared),
+        });
+        let force = Self {
+            cloud: cloud.clone(),
+            directed_bonds: bonds_left(&blocks),
+            classes: classes.on_sites(&sites),
+            weakest: classes.weakest(),
+            instruction_set: InstructionSet::detect(),
+            kinematics: std::marker::PhantomData,
+            layout,
+            stencil,
+            offsets,
+            blocks,
+            held,
+            precut,
+            states,
+            stiffness,
+            damage,
+            work,
+        };
+        Ok((force, cuts))
+    }
+
+    /// The weighted volume m of a point, m⁵ for a dimensionless influence function; infinite for a point without bonds.
+    pub fn weighted_volume(&self, i: usize) -> f64 {
+        D as f64 / self.states.dilatation[i]
+    }
+
+    /// The families.
+    pub(super) fn families(&self) -> Families<'_, D> {
+        Families {
+            cloud: &self.cloud,
+            layout: &self.layout,
+            stencil: &self.stencil,
+            blocks: &self.blocks,
+            held: self.held.as_deref(),
+            precut: &self.precut,
+            damage: self.damage,
+        }
+    }
+
+    /// Copies a vector and p for the dilatations given to padded rows and hands them on, with the wanted lanes of each chunk or none if all points are wanted.
+    pub(super) fn with_arrays<R>(
+        &self,
+        u: Field<'_>,
+        dilatations: Option<Field<'_>>,
+        Wanted { on, whole }: Wanted<'_>,
+        work: impl FnOnce(&Arrays<'_, D>, Option<&[u8]>) -> R,
+    ) -> R {
+        let mut lent = self.work.take();
+        let Work {
+            u: rows,
+            pressure,
+            of_points,
+            wanted,
+        } = &mut *lent;
+        let layout = &*self.layout;
+        let all = matches!(on, On::All);
+        if !all {
+            wanted.set(layout, on, self.stencil.radius());
+        }
+        let around = (!all && !whole && layout.is_of_points()).then_some(&*wanted);
+        let frame = Frame::of(u, 1.0);
+        match around {
+            None => rows.fill(layout, u, &frame),
+            Some(wanted) => rows.fill_around(layout, u, &frame, wanted),
+        }
+        if let Some(dilatations) = dilatations {
+            self.pressures_into(dilatations, of_points);
+            let (own, ghosts) = of_points.split_at(self.cloud.len());
+            let of_points = Field::new(own, ghosts);
+            let frame = Frame::of(of_points, 1.0);
+            match around {
+                None => pressure.fill(layout, of_points, &frame),
+                Some(wanted) => {
+                    pressure.fill_around(layout, of_points, &frame, wanted);
+                }
+            }
+        }
+        let [pressure] = pressure.components();
+        let [stiffness] = self.stiffness.components();
+        let arrays = Arrays {
+            offsets: &self.offsets,
+            u: rows.components(),
+            pressure,
+            stiffness,
+            margin: rows.margin(),
+        };
+        work(&arrays, (!all).then(|| wanted.lanes()))
+    }
+
+    /// p = A θ/m of all points, those of ghosts behind own ones.
+    fn pressures_into(&self, dilatations: Field<'_>, out: &mut [f64]) {
+        let n = self.cloud.len();
+        let (own, ghosts) = out.split_at_mut(n);
+        for_each_chunk(own, &|first, pressures| {
+            let of = first..first + pressures.len();
+            let factors = &self.states.pressure[of.clone()];
+            let pairs = factors.iter().zip(&dilatations.owned[of]);
+            for (pressure, (factor, theta)) in pressures.iter_mut().zip(pairs) {
+                *pressure = factor * theta;
+            }
+        });
+        for (g, pressure) in ghosts.iter_mut().enumerate() {
+            *pressure = self.states.pressure[n + g] * dilatations.ghosts[g];
+        }
+    }
+
+    /// Runs a read-only loop over the blocks with wanted points.
+    pub(super) fn sweep<const C: usize>(
+        &self,
+        lanes: Option<&[u8]>,
+        out: &mut [f64],
+        chunks: impl Fn(&ChunkBlock<'_>, &[u8], &mut [&mut [f64]; C]) + Sync,
+    ) {
+        // A vector of nothing: the blocks' state is only read, and no memory is taken.
+        let mut nothing = vec![(); self.blocks.len()];
+        for_each_part(
+            components_mut::<C>(out, self.cloud.len()),
+            &mut nothing,
+            &|block| self.layout.first_point(block),
+            &|block, mut out, ()| {
+                if let Some(chunk_block) = ChunkBlock::of(&self.layout, lanes, block) {
+                    chunks(&chunk_block, &self.blocks[block].intact, &mut out);
+                }
+            },
+        );
+    }
+
+    /// Sets the dilatations of the points named by `on`.
+    pub(super) fn dilatations_into(&self, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
+        let (set, factors) = (self.instruction_set, &self.states.dilatation[..]);
+        let wanted = Wanted { on, whole: false };
+        self.with_arrays(u, None, wanted, |arrays, lanes| {
+            self.sweep::<1>(lanes, out, |block, intact, out| {
+                dilatation_chunks::<L, D>(set, arrays, factors, block, intact, out);
+            });
+        });
+    }
+
+    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch and sets the points' dilatations.
+    pub(super) fn break_by_stretch(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        dilatations: &mut [f64],
+    ) {
+        let mut blocks = std::mem::take(&mut self.blocks);
+        let (set, whole) = (self.instruction_set, !matches!(on, On::All));
+        let moved = step.ghost_velocities(self.cloud.domain());
+        let rule = StencilRule {
+            threshold: L::Measure::threshold(self.weakest.stretch),
+            classes: &self.classes,
+            families: self.families(),
+            states: &self.states,
+            volumes: self.cloud.volumes(),
+            step,
+            velocity: step.velocities(&moved),
+            note_events: whole,
+        };
+        self.with_arrays(u, None, Wanted { on, whole }, |arrays, lanes| {
+            for_each_part(
+                [dilatations],
+                &mut blocks,
+                &|block| self.layout.first_point(block),
+                &|block, mut out, state: &mut BlockDamage| {
+                    if let Some(block) = ChunkBlock::of(&self.layout, lanes, block) {
+                        let BlockDamage { intact, tally } = state;
+                        accept_chunks::<L, D>(set, arrays, &rule, &block, intact, &mut out, tally);
+                    }
+                },
+            );
+            if whole {
+                self.clear_other_ends(&rule, arrays, &mut blocks);
+            }
+        });
+        self.blocks = blocks;
+    }
+
+    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
+    fn clear_other_ends(
+        &self,
+        rule: &StencilRule<'_, D>,
+        arrays: &Arrays<'_, D>,
+        blocks: &mut [BlockDamage],
+    ) {
+        let (m, layout) = (self.stencil.len(), &*self.layout);
+        let mut letters = Vec::new();
+        for block in &mut *blocks {
+            for event in block.tally.events.drain(..) {
+                let (group, lane) = (event.entry / LANES, event.entry % LANES);
+                let (chunk, offset) = (group / m, group % m);
+                let place = layout.chunks()[chunk].place as usize * LANES + lane;
+                let there = place.wrapping_add_signed(self.offsets[offset].shift);
+                let back = self.stencil.opposite(offset) as f64;
+                letters.push(Letter {
+                    from: layout.point_at(place),
+                    to: layout.point_at(there),
+                    numbers: [back, 0.0, 0.0, 0.0],
+                });
+            }
+        }
+        let rule = StencilRule {
+            note_events: false,
+            ..*rule
+        };
+        for letter in self.cloud.domain().deliver(letters) {
+            let offset = letter.numbers[0] as usize;
+            let (number, lane) = layout.chunk_at(layout.place_of(letter.to));
+            let block = layout.block_of(number);
+            let first = (number - layout.chunks_of(block).start) * m;
+            let BlockDamage { intact, tally } = &mut blocks[block];
+            let intact = &mut intact[first..first + m];
+            let mut broken = vec![0; m];
+            broken[offset] = intact[offset] & 1 << lane;
+            let bonds = ChunkBonds {
+                chunk: &layout.chunks()[number],
+                lanes: 1 << lane,
+                number,
+            };
+            take_bonds::<L, D>(arrays, &rule, bonds, intact, &broken, tally);
+        }
+    }
+
+    /// Memory, bytes.
+    pub(super) fn own_bytes(&self) -> usize {
+        let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
+        let farthest = self.stencil.farthest_shift();
+        let rows = Padded::<f64, D>::bytes_for(&self.layout, farthest)
+            + 2 * Padded::<f64, 1>::bytes_for(&self.layout, farthest);
+        let points = size_of::<f64>() * (self.cloud.len() + self.cloud.domain().ghost_points());
+        masks
+            + rows
+            + points
+            + WantedPoints::bytes_for(&self.layout)
+            + self.states.bytes()
+            + self.layout.bytes()
+            + self.held.as_ref().map_or(0, Vec::len)
+            + size_of_val(&self.precut[..])
+    }
+}

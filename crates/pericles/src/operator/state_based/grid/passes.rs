@@ -1,0 +1,233 @@
+//! [`TwoPass`] and [`Breakable`] for linear peridynamic solids on a lattice.
+
+use super::force::{LinearSolidGrid, Wanted};
+use super::kernels::{force_chunks, square_chunks};
+use super::tangent::{dilatation_change_chunks, tangent_chunks};
+use crate::domain::Field;
+use crate::lanes::LANES;
+use crate::material::PairForce;
+use crate::operator::state_based::kinematics::Kinematics;
+use crate::operator::{
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, On, TwoPass, damage,
+};
+use crate::parallel::for_each_chunk;
+use crate::step_end::StepEnd;
+
+/// All points.
+const ALL: Wanted<'static> = Wanted {
+    on: &On::All,
+    whole: true,
+};
+
+impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
+    /// The dilatation θ.
+    fn values_per_point(&self) -> usize {
+        1
+    }
+
+    fn values_into(&self, _t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+        self.dilatations_into(u, on, values);
+    }
+
+    fn value_changes_into(&self, _t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
+        changes.fill(0.0);
+        let set = self.instruction_set;
+        self.with_arrays(u, None, ALL, |arrays, _| {
+            self.with_arrays(direction, None, ALL, |direction, _| {
+                self.sweep::<1>(None, changes, |block, intact, out| {
+                    dilatation_change_chunks::<L, D>(set, arrays, direction, block, intact, out);
+                });
+            });
+        });
+        for_each_chunk(changes, &|first, changes| {
+            let factors = &self.states.dilatation[first..];
+            for (change, factor) in changes.iter_mut().zip(factors) {
+                *change *= factor;
+            }
+        });
+    }
+
+    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+        let set = self.instruction_set;
+        let wanted = Wanted { on, whole: false };
+        self.with_arrays(at.u, Some(at.values), wanted, |arrays, lanes| {
+            self.sweep::<D>(lanes, out, |block, intact, out| {
+                force_chunks::<L, D>(set, arrays, block, intact, out);
+            });
+        });
+    }
+
+    fn add_bond_tangent(&self, _t: f64, at: AtPoints<'_>, change: AtPoints<'_>, out: &mut [f64]) {
+        let set = self.instruction_set;
+        self.with_arrays(at.u, Some(at.values), ALL, |arrays, _| {
+            self.with_arrays(change.u, Some(change.values), ALL, |direction, _| {
+                self.sweep::<D>(None, out, |block, intact, out| {
+                    tangent_chunks::<L, D>(set, arrays, direction, block, intact, out);
+                });
+            });
+        });
+    }
+
+    fn add_energy_density(&self, _t: f64, at: AtPoints<'_>, out: &mut [f64]) {
+        let (set, states) = (self.instruction_set, &self.states);
+        let mut squares = vec![0.0; self.cloud.len()];
+        self.with_arrays(at.u, None, ALL, |arrays, _| {
+            self.sweep::<1>(None, &mut squares, |block, intact, out| {
+                square_chunks::<L, D>(set, arrays, block, intact, out);
+            });
+        });
+        for_each_chunk(out, &|first, out| {
+            for (i, energy) in (first..).zip(out) {
+                *energy += states.energy_density([i, i], at.values.owned[i], squares[i]);
+            }
+        });
+    }
+
+    /// That of [`LinearSolidForce`](crate::operator::LinearSolidForce).
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        let (families, m) = (self.families(), self.stencil.len());
+        let mut rows = vec![0.0; self.cloud.len()];
+        families.for_each_block(&mut rows, |first, number, intact, rows| {
+            let chunk = &self.layout.chunks()[number];
+            for (lane, i) in chunk.points() {
+                let place = chunk.place as usize * LANES + lane;
+                for k in (0..m).filter(|&k| intact[k] >> lane & 1 == 1) {
+                    let offset = &self.offsets[k];
+                    let j = self
+                        .layout
+                        .point_at(place.wrapping_add_signed(offset.shift));
+                    let springs = self.states.spring::<D>(i, 1.0) + self.states.spring::<D>(j, 1.0);
+                    rows[i - first] += offset.weight.abs() * springs;
+                }
+            }
+        });
+        let square = |(i, row): (usize, &f64)| 2.0 * row / density(i);
+        let own = rows.iter().enumerate().map(square).fold(0.0, f64::max);
+        self.cloud.domain().max(own).sqrt()
+    }
+
+    fn is_linear(&self) -> bool {
+        L::LINEAR
+    }
+
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.families().for_each_neighbour(i, visit);
+    }
+
+    /// A critical stretch is decided in the pass over points itself.
+    fn end_values_into(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        needed: &On<'_>,
+        values: &mut [f64],
+    ) {
+        if self.can_break() {
+            self.break_by_stretch(step, u, on, values);
+            if matches!(on, On::All) {
+                return;
+            }
+        }
+        self.dilatations_into(u, needed, values);
+    }
+
+    fn breaking(&self) -> Option<&dyn Breakable> {
+        Some(self)
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        Some(self)
+    }
+
+    fn dilatation(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
+    fn bonds(&self) -> Option<&dyn BondView> {
+        (!self.cloud.domain().is_divided()).then_some(self)
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.directed_bonds
+    }
+
+    fn bytes(&self) -> usize {
+        self.own_bytes()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.instruction_set = set;
+        }
+    }
+}
+
+impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
+    fn dissipated(&self) -> f64 {
+        damage::dissipated(self.cloud.domain(), &self.blocks)
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        damage::dissipate(&mut self.blocks, energy);
+    }
+
+    /// None: the energy that a bond stores at its critical stretch depends on the other bonds of its ends.
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        Vec::new()
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        damage::broken_bonds(self.cloud.domain(), &self.blocks)
+    }
+
+    fn can_break(&self) -> bool {
+        self.weakest.stretch.is_finite()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        self.families().damage_into(out);
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        self.families().for_each_intact(visit);
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if !self.can_break() {
+            return;
+        }
+        let (families, m) = (self.families(), self.stencil.len());
+        let ghosts = self.cloud.domain().ghosts(u);
+        let u = Field::new(u, &ghosts);
+        let over = |place: usize, i: usize, k: usize| {
+            let there = place.wrapping_add_signed(self.offsets[k].shift);
+            let [a, b] = [place, there].map(|place| self.layout.site_at(place));
+            let threshold = L::Measure::threshold(fraction * self.classes.limits(a, b).stretch);
+            let eta = u.difference::<D>([i, self.layout.point_at(there)]);
+            let (measure, square) = L::Measure::stretch_measure(self.offsets[k].xi, eta);
+            measure > threshold * square
+        };
+        let mut found = vec![0.0; self.cloud.len()];
+        families.for_each_block(&mut found, |first, number, intact, found| {
+            let chunk = &self.layout.chunks()[number];
+            for k in 0..m {
+                let bits = intact[k] & families.breakable(chunk, k);
+                for (lane, i) in chunk.points() {
+                    let place = chunk.place as usize * LANES + lane;
+                    if bits >> lane & 1 == 1 && found[i - first] == 0.0 && over(place, i, k) {
+                        found[i - first] = 1.0;
+                    }
+                }
+            }
+        });
+        for (mark, found) in marks.iter_mut().zip(found) {
+            *mark |= found > 0.0;
+        }
+    }
+}

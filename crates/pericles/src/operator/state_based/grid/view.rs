@@ -1,0 +1,42 @@
+//! [`BondView`] for linear peridynamic solids on a lattice.
+
+use super::force::LinearSolidGrid;
+use crate::domain::Field;
+use crate::operator::state_based::kinematics::Kinematics;
+use crate::operator::state_based::view::{force_of_bond, weighted_extension};
+use crate::operator::{BondAt, BondView};
+
+impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
+    /// p = A θ/m of a point.
+    fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
+        let (place, left) = self.families().bonds_of(i);
+        let extension: f64 = left
+            .map(|k| {
+                let offset = &self.offsets[k];
+                let there = place.wrapping_add_signed(offset.shift);
+                let eta = u.difference::<D>([i, self.layout.point_at(there)]);
+                weighted_extension::<L, D>(offset.weight, offset.xi, eta)
+            })
+            .sum();
+        self.states.pressure[i] * self.states.dilatation[i] * extension
+    }
+}
+
+/// The dilatations of a point and its neighbours are computed for each call.
+impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let pressure = self.pressure_of(u, i);
+        let (place, left) = self.families().bonds_of(i);
+        for k in left {
+            let offset = &self.offsets[k];
+            let j = self
+                .layout
+                .point_at(place.wrapping_add_signed(offset.shift));
+            let eta = u.difference::<D>([i, j]);
+            let p = pressure + self.pressure_of(u, j);
+            let s = self.states.stiffness[i] + self.states.stiffness[j];
+            let force = force_of_bond::<L, D>(offset.weight, [p, s], offset.xi, eta);
+            visit(BondAt::new(j, offset.xi, eta, force));
+        }
+    }
+}
