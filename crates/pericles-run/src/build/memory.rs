@@ -17,7 +17,9 @@
 
 use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};
-use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, PartConstants, Scheme, Solid};
+use pericles_deck::{
+    BuildError, Fault, InterfaceFailure, KeyPath, Keys, MaterialModel, Model, Scheme, Solid,
+};
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
@@ -237,13 +239,21 @@ impl Assembler<'_> {
             };
         };
         let corrected = solid.material.surface_correction != Default::default();
-        let parts = solid.material.parts.iter().map(|part| &part.constants);
+        let others = self.model.materials.iter().map(|other| &other.model);
         let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
         let worked = by_energy(&state_based.solid.failure)
-            || parts.into_iter().any(|constants| match constants {
-                PartConstants::StateBased { failure, .. } => by_energy(failure),
-                PartConstants::Bonds { .. } => false,
-            });
+            || others.into_iter().any(|model| match model {
+                MaterialModel::StateBased(state) => by_energy(&state.solid.failure),
+                MaterialModel::Bonds(_) => false,
+            })
+            || self
+                .model
+                .interfaces
+                .iter()
+                .any(|interface| match &interface.failure {
+                    Some(InterfaceFailure::StateBased(failure)) => by_energy(failure),
+                    _ => false,
+                });
         LISTED + if corrected { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
     }
 
@@ -253,16 +263,14 @@ impl Assembler<'_> {
         !shape.is_listed()
             && !shape.is_refined()
             && shape.rectangular().is_none()
-            && material.inclusions.is_empty()
-            && material.parts.is_empty()
+            && self.model.assignments.is_empty()
             && material.surface_correction == Default::default()
             && !self.model.output.wants_tensors()
     }
 
     /// Whether bonds of a list differ one by one.
     fn keeps_every_bond(&self, solid: &Solid) -> bool {
-        !solid.material.inclusions.is_empty()
-            || !solid.material.parts.is_empty()
+        !self.model.assignments.is_empty()
             || solid.material.surface_correction != Default::default()
             || solid.shape.is_refined()
             || solid.shape.is_listed()
