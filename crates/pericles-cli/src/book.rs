@@ -121,6 +121,7 @@ fn decks_of_the_book_are_built() {
             let (place, text) = (&block.place, deck(block));
             let deck = Deck::parse(&text, place, &[]);
             let deck = deck.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
+            assert!(deck.warnings().is_empty(), "{place}: {:?}", deck.warnings());
             let built = build(&deck, &Resources::default());
             built.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
             count += 1;

@@ -220,7 +220,10 @@ end = 1
     fs::write(place.path().join("two.toml"), two).unwrap();
     let output = succeed(place.path(), "dispersion two.toml --quiet --out two");
     let said = common::text(&output.stderr);
-    assert!(said.contains("one inclusion is left out"), "{said}");
+    assert!(
+        said.contains("one assigned stiffness is left out"),
+        "{said}"
+    );
     assert!(
         said.contains("the surface correction is left out"),
         "{said}"

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
+use crate::words::Worded;
 
 /// A boundary with memory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -60,16 +61,10 @@ pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
 }
 
 fn absorbing(table: Table<'_>) -> Option<BoundaryCondition> {
-    let sides = [Side::Left, Side::Right].map(|side| (side.name(), side));
     let side = table
         .required("side")
-        .and_then(|item| item.choice("side", &sides));
-    let methods = [
-        KernelMethod::Discrete,
-        KernelMethod::SemiDiscrete,
-        KernelMethod::Historical,
-    ];
-    let method = table.choice_or_first("method", "method", &methods.map(|m| (m.name(), m)));
+        .and_then(|item| item.choice("side", &Side::words()));
+    let method = table.worded("method", "method");
     let form = table.choice_or_first(
         "history",
         "history",

@@ -10,8 +10,9 @@ use crate::body::{BodyRead, SolidShape};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::{MODULI, STRENGTHS};
+use crate::words::Worded;
 
-/// How the constants of bonds follow from moduli and fracture energies: the same for all materials of a body.
+/// How the constants of bonds follow from moduli and fracture energies.
 pub(crate) struct ConstantRules {
     /// The state of stress.
     pub(crate) state: Option<StressState>,
@@ -118,29 +119,21 @@ pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<M
         }
         Some(value)
     });
-    let calibration = table.choice_or_first(
-        "modulus",
-        "calibration",
-        &[
-            ("continuum", Calibration::Continuum),
-            ("lattice", Calibration::Lattice),
-            ("unmodified", Calibration::Unmodified),
-        ],
-    );
+    let calibration = table.worded("modulus", "calibration");
     Some(Modulus {
         value: value?,
         calibration: calibration?,
     })
 }
 
-/// How critical stretches follow from fracture energies.
+/// How critical stretches follow from fracture energies. `shared`: other materials take it over, so that it has a meaning even where the bonds of this one never break.
 pub(crate) fn fracture_calibration(
     table: &Table<'_>,
     body: &BodyRead,
+    shared: bool,
 ) -> Option<FractureCalibration> {
     let listed = body.shape.as_ref().is_some_and(SolidShape::is_listed);
-    let breaks = STRENGTHS.iter().any(|key| table.has(key)) || table.has("part");
-    if !breaks {
+    if !shared && !STRENGTHS.iter().any(|key| table.has(key)) {
         table.forbid(
             "fracture_calibration",
             "bonds without `fracture_energy` never break",
@@ -155,11 +148,7 @@ pub(crate) fn fracture_calibration(
         table.record("fracture_calibration", calibration.name());
         return Some(calibration);
     };
-    let given = item.choice(
-        "fracture calibration",
-        &[FractureCalibration::Lattice, FractureCalibration::Continuum]
-            .map(|calibration| (calibration.name(), calibration)),
-    )?;
+    let given = item.choice("fracture calibration", &FractureCalibration::words())?;
     if listed && given == FractureCalibration::Lattice {
         item.out_of_range("\"continuum\": points listed in a file have no lattice planes");
         return None;

@@ -49,11 +49,7 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
             None
         }
     };
-    let ends = table.choice_or_first(
-        "ends",
-        "end rule",
-        &[("closed", EndRule::Closed), ("open", EndRule::Open)],
-    );
+    let ends = table.worded("ends", "end rule");
     let crack = surface.zip(ends);
     if let (Some((surface, ends)), Some(spacing)) = (&crack, frame.spacing) {
         // The same tolerance as when bonds are cut.

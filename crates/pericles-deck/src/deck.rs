@@ -4,16 +4,21 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
+use crate::assign::{self, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
 use crate::boundary;
+use crate::caution::Caution;
 use crate::conditions::{self, Prescribe};
 use crate::crack;
 use crate::document::{self, Node};
 use crate::error::DeckError;
 use crate::exact;
 use crate::fault::Fault;
-use crate::finding::Finding;
-use crate::material::{self, Material};
+use crate::finding::{Finding, Warning};
+use crate::former::{self, Former};
+use crate::inheritance::inherit;
+use crate::interface::{self, MaterialInterface};
+use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
 use crate::model::{Body, Model, Solid};
 use crate::output;
 use crate::overrides;
@@ -32,6 +37,15 @@ pub struct Deck {
     /// What the deck says, as plain data.
     pub model: Model,
     record: Record,
+    /// Tables of former releases that it has.
+    former: Option<Former>,
+}
+
+/// The document of a deck with its overrides, in the present form.
+pub(crate) struct Document {
+    pub(crate) root: Node,
+    pub(crate) sources: Sources,
+    pub(crate) former: Option<Former>,
 }
 
 impl Deck {
@@ -41,19 +55,28 @@ impl Deck {
         overrides: &[String],
         survey: Survey,
     ) -> Result<Survey, DeckError> {
-        let (root, sources) = document(text, "specimen", overrides)?;
-        let (_, survey) = Self::read_with(Ledger::surveyed(sources, survey), &root)?;
+        let document = Document::of(text, "specimen", overrides)?;
+        let ledger = Ledger::surveyed(document.sources, survey);
+        let (_, survey) = Self::read_with(ledger, &document.root, document.former)?;
         Ok(survey)
     }
 
     /// Reads all tables of a document.
-    pub(crate) fn read_with(ledger: Ledger, root: &Node) -> Result<(Self, Survey), DeckError> {
+    pub(crate) fn read_with(
+        ledger: Ledger,
+        root: &Node,
+        former: Option<Former>,
+    ) -> Result<(Self, Survey), DeckError> {
         let model = ledger.root(root).and_then(model);
         let closed = ledger.close();
         match model {
             Some(model) if closed.problems.is_empty() => {
-                let record = closed.record;
-                Ok((Self { model, record }, closed.survey))
+                let deck = Self {
+                    model,
+                    record: closed.record,
+                    former,
+                };
+                Ok((deck, closed.survey))
             }
             _ => Err(DeckError::refused(closed.problems)),
         }
@@ -88,6 +111,18 @@ impl Deck {
     /// The overrides that were applied.
     pub fn overrides(&self) -> impl Iterator<Item = &str> {
         (1..self.record.sources.count()).map(|k| self.record.sources.text(k))
+    }
+
+    /// Warnings about the text itself: tables in a form of former releases.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let former = self.former.iter().map(|former| {
+            let caution = Caution::FormerTables {
+                tables: former.tables.clone(),
+                text: former.text.clone(),
+            };
+            Finding::new(caution, self.record.sources.locate(former.place))
+        });
+        former.collect()
     }
 
     /// What was found in the model, with the place in the text that it concerns.
@@ -126,20 +161,23 @@ fn model(root: Table<'_>) -> Option<Model> {
     let body = body::read(root.required("body").and_then(|item| item.table()));
     let frame = body.frame;
     let (sets, names) = set::read(root.table_or_empty("sets"), frame);
-    let material = root.required("material").and_then(|item| item.table());
-    let (made, gaussian) = match &body.surface {
+    let (made, gaussian, several) = match &body.surface {
         Some(read) => {
-            let surface = surface_of(&root, read, material, frame, &names);
-            (surface.map(Body::Surface), Some(None))
+            let surface = surface_of(&root, read, frame, &names);
+            let several = surface_assignments(&root, &names);
+            (surface.map(Body::Surface), Some(None), several)
         }
         None => {
             root.forbid(
                 "geodesics",
                 "only surfaces (shape = \"icosphere\", \"torus\" …) have distances along them",
             );
-            let material = material.and_then(|table| material::read(table, &body, &names));
-            let gaussian = material.as_ref().map(exact::gaussian_length);
-            (solid_of(&body, material).map(Body::Solid), gaussian)
+            let materials = material::read(&root, &body, &names);
+            let gaussian = materials.own.as_ref().map(exact::gaussian_length);
+            let several = several_of(&root, &materials, &body, &names);
+            root.place_as("material", materials.place);
+            let solid = solid_of(&body, materials.own);
+            (solid.map(Body::Solid), gaussian, several)
         }
     };
     let cracks = each(&root, "crack", |table| crack::read(table, frame));
@@ -168,9 +206,13 @@ fn model(root: Table<'_>) -> Option<Model> {
         .table_or_empty("checkpoint")
         .and_then(output::checkpoint);
     root.finish();
+    let (materials, assignments, interfaces) = several?;
     Some(Model {
         title: title?,
         body: made?,
+        materials,
+        assignments,
+        interfaces,
         sets: sets?,
         cracks: cracks?,
         initial: initial?,
@@ -185,18 +227,68 @@ fn model(root: Table<'_>) -> Option<Model> {
     })
 }
 
-/// The document of a deck with its overrides.
-pub(crate) fn document(
-    text: &str,
-    file_name: &str,
-    overrides: &[String],
-) -> Result<(Node, Sources), DeckError> {
-    let mut sources = Sources::new(file_name, text);
-    let mut root = document::parse(&sources)?;
-    for text in overrides {
-        overrides::apply(&mut root, text, &mut sources)?;
+impl Document {
+    pub(crate) fn of(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
+        let mut sources = Sources::new(file_name, text);
+        let mut root = document::parse(&sources)?;
+        for text in overrides {
+            overrides::apply(&mut root, text, &mut sources)?;
+        }
+        let former = former::rewrite(&mut root, &sources);
+        inherit(&mut root);
+        Ok(Self {
+            root,
+            sources,
+            former,
+        })
     }
-    Ok((root, sources))
+}
+
+/// Materials beside the body's, assignments and interfaces.
+type Several = (Vec<NamedMaterial>, Vec<Assignment>, Vec<MaterialInterface>);
+
+/// What a body has of materials beside its own.
+fn several_of(
+    root: &Table<'_>,
+    materials: &Materials,
+    body: &BodyRead,
+    sets: &SetNames,
+) -> Option<Several> {
+    let names = &materials.names[..];
+    let own = materials.own.as_ref();
+    let assignable = match own.map(|own| &own.model) {
+        Some(MaterialModel::StateBased(_)) => Assignable::StateBased(names),
+        _ => Assignable::Bonds(names),
+    };
+    let assignments = match own {
+        Some(_) => each(root, "assign", |table| {
+            assign::read(table, &assignable, sets)
+        }),
+        // What may be assigned is not known.
+        None => root.optional("assign").and(None),
+    };
+    let interfaces = match materials.others.as_deref() {
+        Some([]) => {
+            root.forbid(
+                "interface",
+                "only a body of several materials ([materials.NAME], [[assign]]) has interfaces",
+            );
+            Some(Vec::new())
+        }
+        _ => interface::read(root.tables("interface"), names, own, body),
+    };
+    Some((materials.others.clone()?, assignments?, interfaces?))
+}
+
+/// The assignments of a surface.
+fn surface_assignments(root: &Table<'_>, sets: &SetNames) -> Option<Several> {
+    for key in ["materials", "interface"] {
+        root.forbid(key, "surfaces have one material");
+    }
+    let assignments = each(root, "assign", |table| {
+        assign::read(table, &Assignable::Surface, sets)
+    });
+    Some((Vec::new(), assignments?, Vec::new()))
 }
 
 /// A body of points with volumes, as far as it and its material could be read.
@@ -212,7 +304,6 @@ fn solid_of(body: &BodyRead, material: Option<Material>) -> Option<Solid> {
 fn surface_of(
     root: &Table<'_>,
     read: &SurfaceRead,
-    material: Option<Table<'_>>,
     frame: Frame,
     names: &SetNames,
 ) -> Option<SurfaceBody> {
@@ -220,14 +311,14 @@ fn surface_of(
     let geodesics = root
         .table_or_empty("geodesics")
         .and_then(surface::geodesics);
-    let (material, no_fail, inclusions) = surface::material(material?, frame.spacing, names)?;
+    let material = root.required("material").and_then(|item| item.table());
+    let (material, no_fail) = surface::material(material?, frame.spacing, names)?;
     let (method, ball) = geodesics?;
     Some(SurfaceBody {
         shape: read.shape.clone()?,
         areas: read.areas?,
         material,
         no_fail,
-        inclusions,
         method,
         ball,
     })

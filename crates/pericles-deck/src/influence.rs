@@ -1,9 +1,9 @@
 //! The influence function of a material.
 
 use pericles::family::VolumeCorrection;
-use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
+use pericles::kernel::{ClassOffset, ClassTable, Influence, InfluenceFunction};
 use pericles::material::{StateInfluence, StressState};
-use pericles_dispersion::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
+use pericles_dispersion::tuning::{ScalingModel, TunedTable, Tuning, Weights};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -33,14 +33,7 @@ pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<Influenc
     let table = table.table_or_empty("influence")?;
     let mut tuned = None;
     let function = function(&table, setting, &mut tuned);
-    let acts_on = table.choice_or_first(
-        "acts_on",
-        "argument",
-        &[
-            ("stretch", ActsOn::Stretch),
-            ("displacement", ActsOn::Displacement),
-        ],
-    );
+    let acts_on = table.worded("acts_on", "argument");
     // Without the function nobody knows which other keys belong here.
     let influence = Influence {
         function: function?,
@@ -259,11 +252,8 @@ enum LowerBound {
 fn tuned(table: &Table<'_>, setting: &Setting) -> Option<TunedTable> {
     const NONE: &str = "none";
     const AUTO: &str = "auto";
-    let methods = Method::ALL.map(|method| (method.name(), method));
-    let method = table.choice_or_first("method", "method of tuning", &methods);
-    let combinations = Combination::ALL.map(|combination| (combination.name(), combination));
-    let combination =
-        table.choice_or_first("combination", "combination of branches", &combinations);
+    let method = table.worded("method", "method of tuning");
+    let combination = table.worded("combination", "combination of branches");
     let weight = |key| {
         if setting.dimension == Some(1) {
             table.forbid(

@@ -31,6 +31,12 @@ impl KeyPath {
         Some(Self(steps.to_vec()))
     }
 
+    /// The same place below another table; none if it is not below this one.
+    pub(crate) fn moved(&self, from: &Self, to: &Self) -> Option<Self> {
+        let rest = self.0.strip_prefix(&from.0[..])?;
+        Some(Self(to.0.iter().chain(rest).cloned().collect()))
+    }
+
     pub(crate) fn steps(&self) -> &[Step] {
         &self.0
     }

@@ -73,6 +73,7 @@
 //!
 #![doc = include_str!("language.md")]
 
+mod assign;
 mod body;
 mod boundary;
 mod caution;
@@ -90,7 +91,10 @@ mod expression;
 mod fault;
 mod finding;
 mod form;
+mod former;
 mod influence;
+mod inheritance;
+mod interface;
 mod key_path;
 mod material;
 mod model;
@@ -99,7 +103,6 @@ mod newmark;
 mod output;
 mod overrides;
 mod parse;
-mod part;
 mod quantity;
 mod reader;
 mod region;
@@ -117,7 +120,9 @@ mod time;
 mod units;
 mod vocabulary;
 mod wording;
+mod words;
 
+pub use assign::Assignment;
 pub use body::{
     Lattice, PointsFile, Quadrature, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas,
 };
@@ -133,11 +138,11 @@ pub use exact::{Exact, KnownSolution, Pulse};
 pub use expression::{Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
+pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
-pub use material::{Inclusion, Material, MaterialModel};
+pub use material::{Material, MaterialModel, NamedMaterial};
 pub use model::{Body, Model, Solid};
 pub use output::{Checkpoint, CrackOutput, FragmentOutput, Output, Picture, Precision};
-pub use part::{MaterialInterface, Part, PartConstants, PartPlace};
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens};

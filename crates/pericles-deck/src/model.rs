@@ -5,12 +5,14 @@ use std::path::Path;
 use pericles::material::StressState;
 use serde::{Deserialize, Serialize};
 
+use crate::assign::Assignment;
 use crate::body::{SolidShape, SurfaceShape};
 use crate::boundary::BoundaryCondition;
 use crate::conditions::{Initial, Load, Prescribe, Probe};
 use crate::crack::PreCrack;
 use crate::exact::Exact;
-use crate::material::Material;
+use crate::interface::MaterialInterface;
+use crate::material::{Material, NamedMaterial};
 use crate::output::{Checkpoint, Output};
 use crate::set::NamedSet;
 use crate::surface::SurfaceBody;
@@ -82,6 +84,15 @@ pub struct Model {
     pub title: Option<String>,
     /// `[body]` and `[material]`, of a surface `[geodesics]` as well.
     pub body: Body,
+    /// `[materials]`, without the body's own material.
+    #[serde(default)]
+    pub materials: Vec<NamedMaterial>,
+    /// `[[assign]]`
+    #[serde(default, rename = "assign")]
+    pub assignments: Vec<Assignment>,
+    /// `[[interface]]`
+    #[serde(default, rename = "interface")]
+    pub interfaces: Vec<MaterialInterface>,
     /// `[sets]`, without the set "all" of all points.
     #[serde(default)]
     pub sets: Vec<NamedSet>,
@@ -214,6 +225,9 @@ impl Model {
         Self {
             title: None,
             body,
+            materials: Vec::new(),
+            assignments: Vec::new(),
+            interfaces: Vec::new(),
             sets: Vec::new(),
             cracks: Vec::new(),
             initial: Vec::new(),

@@ -1,6 +1,6 @@
 //! The options of `scheme = "newmark"`.
 
-use pericles::time::{InnerSolver, NewmarkOptions, VelocityNorm};
+use pericles::time::{InnerSolver, NewmarkOptions};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
@@ -30,16 +30,7 @@ pub(crate) fn read(table: &Table<'_>) -> Option<NewmarkOptions> {
     let tolerance = table.or("tolerance", default.tolerance, |item| {
         item.positive(Quantity::Velocity)
     });
-    let norm = table.choice_or_first(
-        "norm",
-        "norm",
-        &[
-            VelocityNorm::Sum,
-            VelocityNorm::Weighted,
-            VelocityNorm::Largest,
-        ]
-        .map(|norm| (norm.name(), norm)),
-    );
+    let norm = table.worded("norm", "norm");
     let iterations = table.or("iterations", default.iterations, |item| {
         let count = item.count()?;
         match u32::try_from(count) {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::deck::{Deck, document};
+use crate::deck::{Deck, Document};
 use crate::error::DeckError;
 use crate::reader::Ledger;
 use crate::schema::home_of;
@@ -26,8 +26,9 @@ impl Deck {
     /// # Errors
     /// Everything that is wrong in it.
     pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
-        let (root, sources) = document(text, file_name, overrides)?;
-        let (deck, _) = Self::read_with(Ledger::new(sources, home_of), &root)?;
+        let document = Document::of(text, file_name, overrides)?;
+        let ledger = Ledger::new(document.sources, home_of);
+        let (deck, _) = Self::read_with(ledger, &document.root, document.former)?;
         deck.refuse_unstable_table()?;
         Ok(deck)
     }

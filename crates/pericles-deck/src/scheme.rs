@@ -3,7 +3,7 @@
 use pericles::time::{
     Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor, RelaxationOptions,
 };
-use pericles_waves::{FunctionMethod, LoadRule, TrigonometricOptions};
+use pericles_waves::TrigonometricOptions;
 use serde::{Deserialize, Serialize};
 
 use crate::newmark;
@@ -293,11 +293,7 @@ fn only<T>(
 }
 
 fn linear_solver(table: &Table<'_>) -> Option<LinearSolver> {
-    table.choice_or_first(
-        "linear_solver",
-        "linear solver",
-        &LinearSolver::ALL.map(|solver| (solver.name(), solver)),
-    )
+    table.worded("linear_solver", "linear solver")
 }
 
 fn alpha(table: &Table<'_>) -> Option<f64> {
@@ -324,16 +320,8 @@ fn tolerance(table: &Table<'_>) -> Option<f64> {
 }
 
 fn trigonometric(table: &Table<'_>) -> Option<TrigonometricOptions> {
-    let functions = table.choice_or_first(
-        "functions",
-        "way of computing functions",
-        &FunctionMethod::ALL.map(|method| (method.name(), method)),
-    );
-    let load_rule = table.choice_or_first(
-        "loads",
-        "rule for loads",
-        &[("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)],
-    );
+    let functions = table.worded("functions", "way of computing functions");
+    let load_rule = table.worded("loads", "rule for loads");
     let regularisation = table.or("regularisation", 0.0, |item| {
         item.within(
             Quantity::Number,
@@ -412,16 +400,8 @@ fn follow(table: Table<'_>) -> Option<Follow> {
 }
 
 fn interface(table: &Table<'_>) -> Option<Interface> {
-    let predictor = table.choice_or_first(
-        "predictor",
-        "predictor",
-        &[Predictor::Structured, Predictor::BackwardDifference].map(|kind| (kind.name(), kind)),
-    );
-    let interpolant = table.choice_or_first(
-        "interpolant",
-        "interpolant",
-        &[Interpolant::Hermite, Interpolant::Stages].map(|kind| (kind.name(), kind)),
-    );
+    let predictor = table.worded("predictor", "predictor");
+    let interpolant = table.worded("interpolant", "interpolant");
     Some(Interface {
         predictor: predictor?,
         interpolant: interpolant?,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use miette::{LabeledSpan, NamedSource, SourceSpan};
 
 /// A stretch of one of the texts a deck is read from: number 0 is the deck, the following are the overrides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) struct Place {
     pub(crate) source: usize,
     pub(crate) start: usize,

@@ -36,7 +36,7 @@ impl StateBased {
     }
 }
 
-/// How the constants of state-based materials are read: the same for all materials of a body.
+/// How the constants of state-based materials are read.
 pub(crate) struct SolidRules {
     state: Option<StressState>,
     criterion: Option<Criterion>,
@@ -51,14 +51,14 @@ enum Criterion {
 }
 
 impl SolidRules {
-    /// The rules in a material's table; `calibration` follows from the body.
+    /// The rules in a material's table; `calibration` follows from the body. `shared`: other materials take them over.
     pub(crate) fn read(
         table: &Table<'_>,
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
+        shared: bool,
     ) -> Self {
-        let breaks = STRENGTHS.iter().any(|key| table.has(key)) || table.has("part");
-        if !breaks {
+        if !shared && !STRENGTHS.iter().any(|key| table.has(key)) {
             for key in ["failure", "stretch_definition"] {
                 table.forbid(key, "bonds without `fracture_energy` never break");
             }
@@ -85,15 +85,7 @@ impl SolidRules {
                 );
                 Some(StretchDefinition::default())
             }
-            _ => table.choice_or_first(
-                "stretch_definition",
-                "definition of the critical stretch",
-                &[
-                    ("closing", StretchDefinition::Closing),
-                    ("bond", StretchDefinition::Bond),
-                    ("iso", StretchDefinition::Isotropic),
-                ],
-            ),
+            _ => table.worded("stretch_definition", "definition of the critical stretch"),
         };
         Self {
             state,

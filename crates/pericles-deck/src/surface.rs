@@ -5,7 +5,7 @@ use pericles_manifold::{PowerMaterial, SurfaceBond};
 use serde::{Deserialize, Serialize};
 
 use crate::body::{SurfaceShape, VertexAreas};
-use crate::material::{self, Inclusion};
+use crate::material::forbid_former_tables;
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -24,9 +24,6 @@ pub struct SurfaceBody {
     /// Sets whose bonds never break.
     #[serde(default)]
     pub no_fail: Vec<String>,
-    /// Parts that are stiffer or softer, later ones before earlier ones.
-    #[serde(default, rename = "inclusion")]
-    pub inclusions: Vec<Inclusion>,
     /// How distances along the surface are found.
     #[serde(default, with = "crate::form")]
     pub method: GeodesicMethod,
@@ -51,11 +48,7 @@ pub(crate) fn geodesics(table: Table<'_>) -> Option<(GeodesicMethod, Ball)> {
             method
         }),
     };
-    let ball = table.choice_or_first(
-        "ball",
-        "ball",
-        &[("geodesic", Ball::Geodesic), ("euclid", Ball::Euclid)],
-    );
+    let ball = table.worded("ball", "ball");
     table.finish();
     Some((method?, ball?))
 }
@@ -65,7 +58,8 @@ pub(crate) fn material(
     table: Table<'_>,
     spacing: Option<f64>,
     sets: &SetNames,
-) -> Option<(PowerMaterial, Vec<String>, Vec<Inclusion>)> {
+) -> Option<(PowerMaterial, Vec<String>)> {
+    forbid_former_tables(&table);
     table.choice_or_first("model", "model", &[("power", ())]);
     table.maybe("name", |item| item.text());
     let positive = |key, quantity| table.required(key).and_then(|item| item.positive(quantity));
@@ -86,14 +80,7 @@ pub(crate) fn material(
             |horizon| horizon > 0.0 && spacing.is_none_or(|spacing| horizon > spacing),
         )
     });
-    let bond = table.choice_or_first(
-        "bond",
-        "bond",
-        &[
-            ("displacement", SurfaceBond::Displacement),
-            ("chord", SurfaceBond::Chord),
-        ],
-    );
+    let bond = table.worded("bond", "bond");
     let self_cell = table.optional("self_cell").map_or_else(
         || {
             table.record("self_cell", false);
@@ -116,11 +103,6 @@ pub(crate) fn material(
     let no_fail = table
         .optional("no_fail")
         .map_or(Some(Vec::new()), |item| sets.references(&item));
-    let inclusions: Vec<Option<Inclusion>> = table
-        .tables("inclusion")
-        .into_iter()
-        .map(|table| material::inclusion(table, sets))
-        .collect();
     table.finish();
     Some((
         PowerMaterial {
@@ -134,6 +116,5 @@ pub(crate) fn material(
             critical_stretch: critical_stretch?,
         },
         no_fail?,
-        inclusions.into_iter().collect::<Option<_>>()?,
     ))
 }

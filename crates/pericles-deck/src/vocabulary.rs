@@ -35,10 +35,37 @@ pub(crate) const REGIONS: &[&str] = SELECTIONS.split_at(SELECTIONS.len() - 2).0;
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
 /// The horizon.
 pub(crate) const HORIZONS: &[&str] = &["horizon", "horizon_ratio"];
-/// Where a part of another material is.
-pub(crate) const PLACES: &[&str] = &["set", "block"];
 /// The strength of bonds.
 pub(crate) const STRENGTHS: &[&str] = &["fracture_energy", "critical_stretch"];
+/// What each of several materials gives for itself; all else in its table is said of all bonds of the body.
+pub(crate) const OWN_CONSTANTS: &[&str] = &[
+    "name",
+    "density",
+    "youngs_modulus",
+    "bulk_modulus",
+    "shear_modulus",
+    "poisson_ratio",
+    "modulus",
+    "fracture_energy",
+    "critical_stretch",
+];
+/// How limits follow from a fracture energy: a material or interface that gives one takes these over from the first material.
+pub(crate) const FAILURE_RULES: &[&str] =
+    &["fracture_calibration", "failure", "stretch_definition"];
+/// What may be assigned to sets.
+pub(crate) const ASSIGNED: &[&str] = &["material", "stiffness"];
+/// What the constant of bonds between two materials follows from.
+pub(crate) const INTERFACE_STIFFNESSES: &[&str] =
+    &["rule", "youngs_modulus", "bulk_modulus", "shear_modulus"];
+/// What an interface is about.
+pub(crate) const INTERFACE_KEYS: &[&str] = &[
+    "rule",
+    "youngs_modulus",
+    "bulk_modulus",
+    "shear_modulus",
+    "fracture_energy",
+    "critical_stretch",
+];
 /// When output is due.
 pub(crate) const SCHEDULES: &[&str] = &["interval", "every", "count"];
 /// When a checkpoint is due.
@@ -80,6 +107,7 @@ pub(crate) fn replaces(given: &str, other: &str) -> bool {
         DEPTHS,
         LOADS,
         FINE_REGIONS,
+        INTERFACE_STIFFNESSES,
     ];
     given == other
         || alternatives

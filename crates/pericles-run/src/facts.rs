@@ -286,9 +286,11 @@ impl Facts {
         let waves = assembly.judge_waves(&deck.model);
         let warnings = assembly.warnings.iter().chain(&waves);
         let located = |warning: &ModelWarning| deck.located(warning.clone()).line();
+        let of_text = deck.warnings().into_iter().map(|warning| warning.line());
+        let warnings = of_text.chain(warnings.map(located)).collect();
         Self {
             changed_defaults: changed_defaults(deck, assembly),
-            ..Self::with(&deck.model, assembly, warnings.map(located).collect())
+            ..Self::with(&deck.model, assembly, warnings)
         }
     }
 }

@@ -4,7 +4,7 @@ use pericles::kernel::ActsOn;
 use pericles::material::{
     BondConstants, BondMaterial, Calibration, LinearSolidConstants, StateInfluence,
 };
-use pericles_deck::{MaterialModel, Part, Solid, StateBased, SurfaceBody, VertexAreas};
+use pericles_deck::{MaterialModel, NamedMaterial, Solid, StateBased, SurfaceBody, VertexAreas};
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
@@ -18,7 +18,7 @@ pub(super) fn material(
     solid: &Solid,
     constants: &MaterialConstants,
     facts: &Facts,
-    parts: &[MaterialConstants],
+    others: (&[NamedMaterial], &[MaterialConstants]),
 ) -> Vec<Line> {
     let mut lines = match (&solid.material.model, constants) {
         (MaterialModel::Bonds(material), MaterialConstants::Bonds(constants)) => {
@@ -33,8 +33,8 @@ pub(super) fn material(
     if !facts.crack_planes.is_empty() {
         lines.push(Line::new("crack planes", crack_planes(facts)));
     }
-    for (part, own) in solid.material.parts.iter().zip(parts) {
-        lines.push(other_material(part, own));
+    for (other, own) in others.0.iter().zip(others.1) {
+        lines.push(other_material(other, own));
     }
     let speeds = constants.waves(solid.material.density(), solid.state);
     let mut waves = format!("pressure {} m/s", speed(speeds.pressure));
@@ -112,8 +112,8 @@ fn state_based(
     lines
 }
 
-/// A material of `[[material.part]]`.
-fn other_material(part: &Part, own: &MaterialConstants) -> Line {
+/// A material of `[materials]`.
+fn other_material(other: &NamedMaterial, own: &MaterialConstants) -> Line {
     let finite = |x: f64| x.is_finite().then_some(x);
     let elastic = own
         .state_based()
@@ -123,15 +123,15 @@ fn other_material(part: &Part, own: &MaterialConstants) -> Line {
     });
     let text = format!(
         "{}: Young's modulus {}{ratio}, {} kg/m³; breaking {}",
-        part.name,
+        other.name,
         quantity(own.young(), "Pa"),
-        significant(part.density, 4),
+        significant(other.model.density(), 4),
         breaking(own)
     );
     let mut entry = json!({
-        "name": part.name,
+        "name": other.name,
         "youngs_modulus": own.young(),
-        "density": part.density,
+        "density": other.model.density(),
         "critical_stretch": finite(own.critical_stretch()),
         "fracture_energy": finite(own.fracture_energy()),
     });
@@ -139,7 +139,7 @@ fn other_material(part: &Part, own: &MaterialConstants) -> Line {
         entry["poisson_ratio"] = ratio.into();
         entry["critical_bond_energy"] = finite(own.critical_bond_energy()).into();
     }
-    Line::new("besides", text).with_entry("parts", entry)
+    Line::new("material", text).with_entry("materials", entry)
 }
 
 /// A speed with whole metres per second, or with three digits where it is small.

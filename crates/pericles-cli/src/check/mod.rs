@@ -49,7 +49,8 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     lines.extend(neighbours(&assembly));
     match (&model.body, &assembly.constants) {
         (Body::Solid(solid), Some(constants)) => {
-            lines.extend(material(solid, constants, &facts, &assembly.parts));
+            let others = (&model.materials[..], &assembly.other_materials[..]);
+            lines.extend(material(solid, constants, &facts, others));
         }
         (Body::Solid(_), None) => {}
         (Body::Surface(surface), _) => lines.extend(surface_material(surface)),

@@ -3,7 +3,7 @@
 mod wavevectors;
 
 use pericles::material::BondMaterial;
-use pericles_deck::Solid;
+use pericles_deck::{Model, Solid};
 use pericles_dispersion::spectrum::{SpectrumRun, measure};
 use pericles_dispersion::tuning::{TunedTable, bond_classes, continuum_speeds};
 use pericles_dispersion::{BondLattice, Contour, Stability, polar_speeds, stability, trace};
@@ -41,7 +41,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
         return Err(CliError::UnstableSpectrum);
     }
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-dispersion")?;
-    let left_out = left_out(solid);
+    let left_out = left_out(model, solid);
     for part in &left_out {
         console::note(format_args!(
             "warning: plane waves are those of [material] in the interior of the body: {part}"
@@ -333,22 +333,28 @@ impl Analysis {
 }
 
 /// What a deck has that the plane waves of its first material know nothing of.
-fn left_out(solid: &Solid) -> Vec<String> {
-    let material = &solid.material;
-    let counted = |count: usize, what: &str| match count {
+fn left_out(model: &Model, solid: &Solid) -> Vec<String> {
+    let counted = |count: usize, what: [&str; 2]| match count {
         0 => None,
-        1 => Some(format!("one {what} is left out")),
-        _ => Some(format!("{count} {what}s are left out")),
+        1 => Some(format!("one {} is left out", what[0])),
+        _ => Some(format!("{count} {} are left out", what[1])),
     };
+    let stiffnesses = model.assignments.iter().filter_map(|one| one.stiffness);
     let refined = solid
         .shape
         .lattice()
         .map_or(0, |lattice| lattice.finer.len());
-    let correction = material.surface_correction != Default::default();
+    let correction = solid.material.surface_correction != Default::default();
     [
-        counted(material.parts.len(), "other material"),
-        counted(material.inclusions.len(), "inclusion"),
-        counted(refined, "region with a finer grid"),
+        counted(model.materials.len(), ["other material", "other materials"]),
+        counted(
+            stiffnesses.count(),
+            ["assigned stiffness", "assigned stiffnesses"],
+        ),
+        counted(
+            refined,
+            ["region with a finer grid", "regions with a finer grid"],
+        ),
         correction.then(|| "the surface correction is left out".to_owned()),
     ]
     .into_iter()

@@ -10,6 +10,12 @@ impl Subject for Caution {
 
     fn advice(&self) -> Option<String> {
         let advice = match self {
+            Self::FormerTables { text, .. } => {
+                return Some(format!("the present form, which means the same:\n\n{text}"));
+            }
+            Self::UnusedMaterial { .. } => {
+                "assign it with [[assign]] set = …, material = …, or leave it out"
+            }
             Self::CrackCutsNothing => {
                 "it must pass between points of the body that lie within a horizon of each other"
             }
@@ -104,7 +110,8 @@ impl Subject for Caution {
 
     fn label(&self) -> &'static str {
         match self {
-            Self::CrackCutsNothing => "no effect",
+            Self::FormerTables { .. } => "former form",
+            Self::CrackCutsNothing | Self::UnusedMaterial { .. } => "no effect",
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "in pieces",
             Self::LargeStretch { .. } => "very strong",

@@ -16,6 +16,20 @@ use crate::wording::{percent, prefixed, reach, short, spot};
 #[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum Caution {
+    /// Tables of former releases.
+    #[error("{} {} a former form", tables.join(", "), if tables.len() == 1 { "is" } else { "are" })]
+    FormerTables {
+        /// As they are written in a deck.
+        tables: Vec<&'static str>,
+        /// What takes their place.
+        text: String,
+    },
+    /// A material that nothing is made of.
+    #[error("the material `{material}` is not assigned to any set")]
+    UnusedMaterial {
+        /// Its name.
+        material: String,
+    },
     /// A pre-crack without effect.
     #[error("this crack cuts no bond")]
     CrackCutsNothing,

@@ -2,17 +2,20 @@
 
 use pericles::kernel::Influence;
 use pericles::material::{
-    BondFailure, ElasticModulus, Fracture, Modulus, StressState, SurfaceCorrection,
+    BondFailure, ElasticModulus, Fracture, InterfaceStiffness, Modulus, StressState,
+    SurfaceCorrection,
 };
 use pericles::space::{Region, Shape};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use super::ranges::{Check, POSITIVE};
 use crate::body::{Lattice, Quadrature, SolidShape, VertexAreas};
+use crate::fault::Fault;
+use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
-use crate::material::{Inclusion, Material, MaterialModel};
-use crate::model::Solid;
-use crate::part::PartConstants;
+use crate::material::{Material, MaterialModel, difference};
+use crate::model::{Model, Solid};
+use crate::remark::Remark;
 use crate::state_based::StateBased;
 use crate::surface::SurfaceBody;
 
@@ -120,49 +123,80 @@ impl Check {
 
     fn material(&mut self, material: &Material, state: StressState, dimension: usize) {
         let key = KeyPath::from("material");
-        self.positive(key.key("density"), material.density());
-        self.positive(key.key("horizon"), material.horizon());
-        match &material.model {
+        self.model(&key, &material.model, state, dimension);
+        if let MaterialModel::StateBased(_) = &material.model {
+            let allowed =
+                "allowed: none or energy; weighted volumes account for missing bonds already";
+            let right = material.surface_correction != SurfaceCorrection::Volume;
+            self.within(right, key.key("surface_correction"), "volume", allowed);
+        }
+    }
+
+    fn model(
+        &mut self,
+        key: &KeyPath,
+        model: &MaterialModel,
+        state: StressState,
+        dimension: usize,
+    ) {
+        self.positive(key.key("density"), model.density());
+        self.positive(key.key("horizon"), model.horizon());
+        match model {
             MaterialModel::Bonds(bonds) => {
-                self.modulus(&key, &bonds.modulus, state);
-                self.fracture(&key, &bonds.fracture);
-                self.influence(&key, &bonds.influence, dimension, bonds.horizon);
+                self.modulus(key, &bonds.modulus, state);
+                self.fracture(key, &bonds.fracture);
+                self.influence(key, &bonds.influence, dimension, bonds.horizon);
             }
-            MaterialModel::StateBased(solid) => {
-                self.state_based(&key, solid, state, dimension);
-                let allowed =
-                    "allowed: none or energy; weighted volumes account for missing bonds already";
-                let right = material.surface_correction != SurfaceCorrection::Volume;
-                self.within(right, key.key("surface_correction"), "volume", allowed);
-            }
+            MaterialModel::StateBased(solid) => self.state_based(key, solid, state, dimension),
         }
-        self.inclusions(&material.inclusions);
-        for (k, part) in material.parts.iter().enumerate() {
-            let key = key.key("part").index(k);
-            self.positive(key.key("density"), part.density);
-            match (&part.constants, &material.model) {
-                (PartConstants::Bonds { modulus, fracture }, MaterialModel::Bonds(_)) => {
-                    self.modulus(&key, modulus, state);
-                    self.fracture(&key, fracture);
-                }
-                (PartConstants::StateBased { elastic, failure }, MaterialModel::StateBased(_)) => {
-                    self.engine(key.clone(), elastic.resolve(state));
-                    self.failure(&key, failure);
-                }
-                _ => {
-                    let allowed = "allowed: constants of the kind of the body's material, bond-based or state-based";
-                    self.within(false, key, &part.name, allowed);
+    }
+
+    /// Materials beside the body's, assignments and interfaces.
+    pub(super) fn several(&mut self, model: &Model) {
+        let (solid, dimension) = (model.body.solid(), model.body.dimension().clamp(1, 3));
+        let own = solid.map(|solid| solid.material.name());
+        let others = model.materials.iter().map(|other| other.name.as_str());
+        let names: Vec<&str> = own.into_iter().chain(others).collect();
+        if let Some(solid) = solid {
+            for other in &model.materials {
+                let key = KeyPath::from("materials").key(&other.name);
+                self.model(&key, &other.model, solid.state, dimension);
+                if let Some(name) = difference(&solid.material.model, &other.model) {
+                    let table = key.to_string();
+                    let fault = Fault::NotShared { key: name, table };
+                    self.problems.push(Remark::new(key.key(name), fault));
                 }
             }
         }
-        let pairs = material.interface.critical_stretches.iter().enumerate();
-        for (k, (pair, stretch)) in pairs {
-            let key = KeyPath::from("material.interface.pair").index(k);
-            self.positive(key.key("critical_stretch"), *stretch);
-            let known = |&number: &u8| usize::from(number) <= material.parts.len();
-            let right = pair.iter().all(known) && pair[0] != pair[1];
-            let allowed = "allowed: the numbers of two different materials, 0 for the body's, from 1 on for the parts'";
-            self.within(right, key.key("between"), format!("{pair:?}"), allowed);
+        let allowed = "allowed: the name of a material of the body";
+        for (k, assignment) in model.assignments.iter().enumerate() {
+            let key = KeyPath::from("assign").index(k);
+            if let Some(stiffness) = assignment.stiffness {
+                self.positive(key.key("stiffness"), stiffness);
+            }
+            if let Some(name) = &assignment.material {
+                let known = names.contains(&name.as_str());
+                self.within(known, key.key("material"), name, allowed);
+            }
+        }
+        for (k, interface) in model.interfaces.iter().enumerate() {
+            let key = KeyPath::from("interface").index(k);
+            if let Some(pair) = &interface.between {
+                let known = pair.iter().all(|name| names.contains(&name.as_str()));
+                let allowed = "allowed: the names of two different materials of the body";
+                let right = known && pair[0] != pair[1];
+                self.within(right, key.key("between"), pair.join(", "), allowed);
+            }
+            if let (Some(InterfaceStiffness::Modulus(modulus)), Some(solid)) =
+                (&interface.stiffness, solid)
+            {
+                self.modulus(&key, modulus, solid.state);
+            }
+            match &interface.failure {
+                Some(InterfaceFailure::Bonds(fracture)) => self.fracture(&key, fracture),
+                Some(InterfaceFailure::StateBased(failure)) => self.failure(&key, failure),
+                None => {}
+            }
         }
     }
 
@@ -220,13 +254,6 @@ impl Check {
         self.engine(key.key("influence"), influence.check(dimension, horizon));
     }
 
-    fn inclusions(&mut self, inclusions: &[Inclusion]) {
-        for (k, inclusion) in inclusions.iter().enumerate() {
-            let key = KeyPath::from("material.inclusion").index(k);
-            self.positive(key.key("stiffness"), inclusion.stiffness);
-        }
-    }
-
     pub(super) fn surface(&mut self, surface: &SurfaceBody) {
         if let VertexAreas::Same(area) = surface.areas {
             self.positive("body.areas".into(), area);
@@ -264,6 +291,5 @@ impl Check {
             critical_stretch,
             POSITIVE,
         );
-        self.inclusions(&surface.inclusions);
     }
 }

@@ -23,6 +23,7 @@ impl Model {
             Body::Solid(solid) => check.solid(&body, solid),
             Body::Surface(surface) => check.surface(surface),
         }
+        check.several(self);
         for set in &self.sets {
             if let Members::Region(region) = &set.members {
                 check.region(&KeyPath::from("sets").key(&set.name), region);

@@ -53,7 +53,15 @@ impl Subject for Fault {
                 "make the set thicker along this axis, or extend it to the face of the body".into()
             }
             Self::FineSetsOverlap { .. } => "define one set that is the union of both".into(),
-            Self::EmptyPart { .. } => "its set or blocks have none, or later parts have taken them".into(),
+            Self::EmptyMaterial { .. } => {
+                "later assignments replace all of its points: put the larger set first".into()
+            }
+            Self::NoMaterial { .. } => {
+                "assign one to them with [[assign]], or call the material of all points without an assignment [materials.default]".into()
+            }
+            Self::NotShared { .. } => {
+                "the materials of a body differ in density, elastic constants and failure; give all else once, in [material]".into()
+            }
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),
             Self::BadSurfaceFile { .. } => {
@@ -136,7 +144,9 @@ impl Subject for Fault {
             | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",
             Self::BadOverride { .. } => "cannot be applied",
-            Self::EmptySet { .. } | Self::EmptyPart { .. } => "no points here",
+            Self::EmptySet { .. } | Self::EmptyMaterial { .. } => "no points here",
+            Self::NoMaterial { .. } => "incomplete",
+            Self::NotShared { .. } => "not shared",
             Self::BadDiscretisation { .. } => "not of these points",
             Self::LostValue { .. } => "not finite",
             Self::NeverStops { .. } => "never met",

@@ -5,7 +5,7 @@ mod advice;
 use pericles::PericlesError;
 use pericles::units::quantity;
 
-use crate::wording::{bytes, count, names, shortened};
+use crate::wording::{bytes, count, names, shortened, spot};
 
 /// Kinds of wrong.
 #[derive(Debug, thiserror::Error)]
@@ -275,11 +275,32 @@ pub enum Fault {
         /// The set.
         set: String,
     },
-    /// A part of another material without points.
-    #[error("the part `{part}` has no point")]
-    EmptyPart {
+    /// A material that is assigned, but to no point.
+    #[error("no point has the material `{}`", shortened(material))]
+    EmptyMaterial {
         /// Its name.
-        part: String,
+        material: String,
+    },
+    /// Points without a material.
+    #[error(
+        "{points} of {of} points have no material, such as that at {} m",
+        spot(place)
+    )]
+    NoMaterial {
+        /// How many.
+        points: usize,
+        /// All points.
+        of: usize,
+        /// One of them, m.
+        place: Vec<f64>,
+    },
+    /// A material that differs from the body's in what all bonds share.
+    #[error("`{key}` in {table} differs from that of the other materials")]
+    NotShared {
+        /// The key.
+        key: &'static str,
+        /// The table.
+        table: String,
     },
     /// A set with the fine time step that bonds reach across.
     #[error(

@@ -1,10 +1,12 @@
 //! Surfaces and their materials.
 
+use pericles_manifold::geodesic::GeodesicMethod;
 use pericles_manifold::surface::SurfaceChecks;
 use pericles_manifold::{PowerMaterial, SurfaceBond};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::described;
+use super::{Described, described};
 
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "PowerMaterial", deny_unknown_fields)]
@@ -29,6 +31,18 @@ struct SurfaceChecksForm {
     #[serde(rename = "several")]
     several_components: bool,
     flip: bool,
+}
+
+impl Described for GeodesicMethod {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        let unknown = |_| D::Error::custom(format!("`{word}` is none of {}", Self::NAMES));
+        word.parse().map_err(unknown)
+    }
 }
 
 described!(PowerMaterial: PowerMaterialForm, SurfaceChecks: SurfaceChecksForm);

@@ -4,7 +4,8 @@ use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration,
-    GivenConstants, LinearSolid, Modulus, PairLaw, StateInfluence, StretchDefinition,
+    GivenConstants, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
+    StateInfluence, StretchDefinition,
 };
 use pericles::operator::DamageMeasure;
 use serde::{Deserialize, Serialize};
@@ -119,6 +120,17 @@ enum BondFailureForm {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(
+    remote = "InterfaceStiffness",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+enum InterfaceStiffnessForm {
+    Rule(#[serde(with = "crate::form")] InterfaceRule),
+    Modulus(#[serde(with = "crate::form")] Modulus),
+}
+
+#[derive(Serialize, Deserialize)]
 #[serde(remote = "DamageMeasure", deny_unknown_fields)]
 struct DamageMeasureForm {
     count: bool,
@@ -134,5 +146,6 @@ described!(
     GivenConstants: GivenConstantsForm,
     StateInfluence: StateInfluenceForm,
     BondFailure: BondFailureForm,
+    InterfaceStiffness: InterfaceStiffnessForm,
     DamageMeasure: DamageMeasureForm,
 );

@@ -11,7 +11,6 @@ mod space;
 mod time;
 mod tuned;
 mod waves;
-mod words;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,16 +1,16 @@
 //! Bond-based materials.
 
-use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, Treatment};
+use pericles::material::{BondMaterial, CubicLaw, PairLaw, Treatment};
 
-use super::keys::{damage, density, form, horizon, interface, no_fail, setting, volume_correction};
-use super::types::{Inclusion, Material, MaterialModel};
+use super::keys::{
+    damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
+};
+use super::types::{Material, MaterialModel};
 use crate::body::BodyRead;
 use crate::constants::{
     ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
 };
 use crate::influence::{InfluenceRead, influence};
-use crate::part::{self, PartRules};
-use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
 
@@ -19,7 +19,9 @@ pub(super) fn read(
     law: Option<PairLaw>,
     body: &BodyRead,
     sets: &SetNames,
+    shared: bool,
 ) -> Option<Material> {
+    forbid_former_tables(&table);
     for key in ["strains", "failure", "stretch_definition"] {
         table.forbid(key, "it belongs to model = \"state-based\"");
     }
@@ -30,15 +32,7 @@ pub(super) fn read(
     let modulus = modulus(&table, body.state);
     let extent = horizon(&table, body.frame.spacing);
     let volume_correction = volume_correction(&table);
-    let surface_correction = table.choice_or_first(
-        "surface_correction",
-        "surface correction",
-        &[
-            ("none", SurfaceCorrection::None),
-            ("volume", SurfaceCorrection::Volume),
-            ("energy", SurfaceCorrection::Energy),
-        ],
-    );
+    let surface_correction = table.worded("surface_correction", "surface correction");
     poisson_ratio(&table, body.state);
     let influence = influence(&table, &setting(body, extent.as_ref(), volume_correction));
     let (influence, tuned) = match influence {
@@ -47,14 +41,8 @@ pub(super) fn read(
     };
     let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
     let fracture = fracture(&table);
-    let fracture_calibration = fracture_calibration(&table, body);
+    let fracture_calibration = fracture_calibration(&table, body, shared);
     let no_fail = no_fail(&table, sets);
-    let inclusions: Vec<Option<Inclusion>> = table
-        .tables("inclusion")
-        .into_iter()
-        .map(|table| inclusion(table, sets))
-        .collect();
-    let parts = table.tables("part");
     let damage = damage(&table);
     let form = form(&table);
     let rules = ConstantRules {
@@ -65,11 +53,10 @@ pub(super) fn read(
     rules.judge_volume_correction(&table);
     let modulus = rules.modulus(&table, modulus);
     let fracture = rules.fracture(fracture);
-    let parts = part::parts(parts, &PartRules::Bonds(&rules), sets);
-    let interface = interface(&table, name.as_ref(), parts.as_deref(), false);
     table.finish();
     Some(Material {
         name: name?,
+        is_default: true,
         model: MaterialModel::Bonds(BondMaterial {
             law: law?,
             density: density?,
@@ -81,9 +68,6 @@ pub(super) fn read(
         }),
         tuned,
         no_fail: no_fail?,
-        inclusions: inclusions.into_iter().collect::<Option<_>>()?,
-        parts: parts?,
-        interface: interface?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,
@@ -125,17 +109,5 @@ fn treated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
         Kind::Exact => law?,
         Kind::FirstOrder => PairLaw::Linear,
         Kind::As(treatment) => PairLaw::Treated(cubic, treatment),
-    })
-}
-
-pub(crate) fn inclusion(table: Table<'_>, sets: &SetNames) -> Option<Inclusion> {
-    let set = table.required("set").and_then(|item| sets.reference(&item));
-    let stiffness = table
-        .required("stiffness")
-        .and_then(|item| item.positive(Quantity::Number));
-    table.finish();
-    Some(Inclusion {
-        set: set?,
-        stiffness: stiffness?,
     })
 }

@@ -7,11 +7,23 @@ use pericles_waves::ForceForm;
 
 use crate::body::BodyRead;
 use crate::influence::Setting;
-use crate::part::{self, MaterialInterface, Part};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
 use crate::vocabulary::HORIZONS;
+
+/// Refuses tables of former releases that could not be rewritten.
+pub(crate) fn forbid_former_tables(table: &Table<'_>) {
+    table.forbid(
+        "part",
+        "define materials in [materials.NAME] and assign them to sets with [[assign]]",
+    );
+    table.forbid("inclusion", "give `stiffness` in [[assign]]");
+    table.forbid(
+        "interface",
+        "bonds between two materials have tables [[interface]]",
+    );
+}
 
 pub(super) fn density(table: &Table<'_>) -> Option<f64> {
     let item = table.required("density");
@@ -19,15 +31,7 @@ pub(super) fn density(table: &Table<'_>) -> Option<f64> {
 }
 
 pub(super) fn volume_correction(table: &Table<'_>) -> Option<VolumeCorrection> {
-    table.choice_or_first(
-        "volume_correction",
-        "volume correction",
-        &[
-            ("extended", VolumeCorrection::Extended),
-            ("linear", VolumeCorrection::Linear),
-            ("none", VolumeCorrection::None),
-        ],
-    )
+    table.worded("volume_correction", "volume correction")
 }
 
 pub(super) fn no_fail(table: &Table<'_>, sets: &SetNames) -> Option<Vec<String>> {
@@ -53,39 +57,7 @@ pub(super) fn setting(
 
 /// How bonds are kept.
 pub(super) fn form(table: &Table<'_>) -> Option<ForceForm> {
-    table.choice_or_first(
-        "bonds",
-        "form of bonds",
-        &[
-            ("fastest", ForceForm::Fastest),
-            ("grid", ForceForm::Grid),
-            ("grid-f32", ForceForm::FloatGrid),
-            ("list", ForceForm::List),
-            ("convolution", ForceForm::Convolution),
-            ("spectral", ForceForm::Spectral),
-        ],
-    )
-}
-
-/// Bonds between materials, where there are several.
-pub(super) fn interface(
-    table: &Table<'_>,
-    name: Option<&Option<String>>,
-    parts: Option<&[Part]>,
-    state_based: bool,
-) -> Option<MaterialInterface> {
-    if !table.has("part") {
-        table.forbid(
-            "interface",
-            "only a body with [[material.part]] has interfaces",
-        );
-        return Some(MaterialInterface::default());
-    }
-    let interface = table.table_or_empty("interface");
-    let own = name.cloned().flatten();
-    let others = parts?.iter().map(|part| Some(part.name.clone()));
-    let names: Vec<Option<String>> = std::iter::once(own).chain(others).collect();
-    part::interface(interface?, &names, state_based)
+    table.worded("bonds", "form of bonds")
 }
 
 /// A horizon as written.

@@ -1,33 +1,32 @@
 //! State-based materials.
 
 use pericles::kernel::Influence;
-use pericles::material::{LinearSolid, StateInfluence, Strains, SurfaceCorrection};
+use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
-use super::keys::{damage, density, form, horizon, interface, no_fail, setting, volume_correction};
+use super::keys::{
+    damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
+};
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
 use crate::influence::state_influence;
-use crate::part::{self, PartRules};
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::state_based::{SolidRules, StateBased};
 
-pub(super) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
+pub(super) fn read(
+    table: Table<'_>,
+    body: &BodyRead,
+    sets: &SetNames,
+    shared: bool,
+) -> Option<Material> {
+    forbid_former_tables(&table);
     table.forbid(
         "treatment",
         "it belongs to model = \"green-strain\" or \"literal57\"",
     );
-    table.forbid(
-        "inclusion",
-        "inclusions scale the constant of bonds; give a [[material.part]] with elastic constants of its own",
-    );
     let name = table.maybe("name", |item| item.text());
-    let strains = table.choice_or_first(
-        "strains",
-        "strains",
-        &[("finite", Strains::Finite), ("small", Strains::Small)],
-    );
+    let strains = table.worded("strains", "strains");
     let density = density(&table);
     let extent = horizon(&table, body.frame.spacing);
     let volume_correction = volume_correction(&table);
@@ -41,13 +40,16 @@ pub(super) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         _ => None,
     };
     let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
-    let rules = SolidRules::read(&table, body.state, fracture_calibration(&table, body));
+    let rules = SolidRules::read(
+        &table,
+        body.state,
+        fracture_calibration(&table, body, shared),
+        shared,
+    );
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let no_fail = no_fail(&table, sets);
     let damage = damage(&table);
     let form = form(&table);
-    let parts = part::parts(table.tables("part"), &PartRules::StateBased(&rules), sets);
-    let interface = interface(&table, name.as_ref(), parts.as_deref(), true);
     table.finish();
     let solid = LinearSolid {
         density: density?,
@@ -60,8 +62,6 @@ pub(super) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
     Some(Material {
         name: name?,
         no_fail: no_fail?,
-        parts: parts?,
-        interface: interface?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,

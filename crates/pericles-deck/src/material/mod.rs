@@ -1,13 +1,17 @@
-//! `[material]`: constants, horizon, influence function and breaking.
+//! `[material]` and `[materials.NAME]`: constants, horizon, influence function and breaking.
 
 mod bond_based;
 mod keys;
 mod linear_solid;
+mod several;
+mod shared;
 mod types;
 
-pub use types::{Inclusion, Material, MaterialModel};
+pub use types::{Material, MaterialModel, NamedMaterial};
 
-pub(crate) use bond_based::inclusion;
+pub(crate) use keys::forbid_former_tables;
+pub(crate) use several::{Materials, read};
+pub(crate) use shared::difference;
 
 use pericles::material::PairLaw;
 
@@ -15,11 +19,12 @@ use crate::body::BodyRead;
 use crate::reader::Table;
 use crate::set::SetNames;
 
-pub(crate) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option<Material> {
+/// One table of a material. `shared`: other materials take over what is said of all bonds of the body.
+fn material(table: Table<'_>, body: &BodyRead, sets: &SetNames, shared: bool) -> Option<Material> {
     match model(&table) {
-        Some(ModelWord::StateBased) => linear_solid::read(table, body, sets),
-        Some(ModelWord::Law(law)) => bond_based::read(table, Some(law), body, sets),
-        None => bond_based::read(table, None, body, sets),
+        Some(ModelWord::StateBased) => linear_solid::read(table, body, sets, shared),
+        Some(ModelWord::Law(law)) => bond_based::read(table, Some(law), body, sets, shared),
+        None => bond_based::read(table, None, body, sets, shared),
     }
 }
 

@@ -7,16 +7,18 @@ use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
 use serde::{Deserialize, Serialize};
 
-use crate::part::{MaterialInterface, Part};
 use crate::state_based::StateBased;
 
 /// The material with what goes with it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// A name for people.
+    /// Its name, for people, assignments and interfaces; "default" if it is left out ([`Material::name`]).
     #[serde(default)]
     pub name: Option<String>,
+    /// Whether points without an assignment have this material. If not, every point needs an assignment.
+    #[serde(default = "yes")]
+    pub is_default: bool,
     /// Law, constants, horizon and breaking.
     pub model: MaterialModel,
     /// How the coefficients of the influence function were found, if it is tuned against dispersion.
@@ -25,15 +27,6 @@ pub struct Material {
     /// Sets whose bonds never break.
     #[serde(default)]
     pub no_fail: Vec<String>,
-    /// Parts that are stiffer or softer, later ones before earlier ones.
-    #[serde(default, rename = "inclusion")]
-    pub inclusions: Vec<Inclusion>,
-    /// Other materials, later ones before earlier ones.
-    #[serde(default, rename = "part")]
-    pub parts: Vec<Part>,
-    /// Bonds between materials.
-    #[serde(default)]
-    pub interface: MaterialInterface,
     /// What is done about the bonds that points near surfaces lack.
     #[serde(default, with = "crate::form")]
     pub surface_correction: SurfaceCorrection,
@@ -73,12 +66,10 @@ impl From<MaterialModel> for Material {
     fn from(model: MaterialModel) -> Self {
         Self {
             name: None,
+            is_default: true,
             model,
             tuned: None,
             no_fail: Vec::new(),
-            inclusions: Vec::new(),
-            parts: Vec::new(),
-            interface: MaterialInterface::default(),
             surface_correction: SurfaceCorrection::default(),
             damage: None,
             form: ForceForm::default(),
@@ -86,7 +77,69 @@ impl From<MaterialModel> for Material {
     }
 }
 
+/// A material beside the body's, assigned to sets by its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NamedMaterial {
+    /// Its name.
+    pub name: String,
+    /// Law, constants, horizon and breaking; what all bonds of a body share must be that of the body's material.
+    pub model: MaterialModel,
+}
+
+impl MaterialModel {
+    /// Mass density ρ, kg/m³.
+    pub fn density(&self) -> f64 {
+        match self {
+            Self::Bonds(bonds) => bonds.density,
+            Self::StateBased(state) => state.solid.density,
+        }
+    }
+
+    /// Horizon δ, m.
+    pub fn horizon(&self) -> f64 {
+        match self {
+            Self::Bonds(bonds) => bonds.horizon,
+            Self::StateBased(state) => state.solid.horizon,
+        }
+    }
+
+    /// Partial volumes at the horizon.
+    pub fn volume_correction(&self) -> VolumeCorrection {
+        match self {
+            Self::Bonds(bonds) => bonds.volume_correction,
+            Self::StateBased(state) => state.solid.volume_correction,
+        }
+    }
+
+    /// The word of `model`, whatever the treatment of a law.
+    pub fn name(&self) -> &'static str {
+        let Self::Bonds(bonds) = self else {
+            return "state-based";
+        };
+        match bonds.law {
+            PairLaw::BondStretch => "bond-stretch",
+            PairLaw::Linear => "linear",
+            PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
+            PairLaw::Literal57 | PairLaw::Treated(CubicLaw::Literal57, _) => "literal57",
+        }
+    }
+}
+
+/// For fields that are true if they are left out.
+fn yes() -> bool {
+    true
+}
+
 impl Material {
+    /// The name of a material that has none.
+    pub const DEFAULT: &'static str = "default";
+
+    /// What assignments and interfaces call it.
+    pub fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or(Self::DEFAULT)
+    }
+
     /// The bond-based material, if it is one.
     pub fn bonds(&self) -> Option<&BondMaterial> {
         match &self.model {
@@ -113,48 +166,21 @@ impl Material {
 
     /// Mass density ρ, kg/m³.
     pub fn density(&self) -> f64 {
-        match &self.model {
-            MaterialModel::Bonds(bonds) => bonds.density,
-            MaterialModel::StateBased(state) => state.solid.density,
-        }
+        self.model.density()
     }
 
     /// Horizon δ, m.
     pub fn horizon(&self) -> f64 {
-        match &self.model {
-            MaterialModel::Bonds(bonds) => bonds.horizon,
-            MaterialModel::StateBased(state) => state.solid.horizon,
-        }
+        self.model.horizon()
     }
 
     /// Partial volumes at the horizon.
     pub fn volume_correction(&self) -> VolumeCorrection {
-        match &self.model {
-            MaterialModel::Bonds(bonds) => bonds.volume_correction,
-            MaterialModel::StateBased(state) => state.solid.volume_correction,
-        }
+        self.model.volume_correction()
     }
 
     /// The word of `material.model`, whatever the treatment of a law.
     pub fn model_name(&self) -> &'static str {
-        let MaterialModel::Bonds(bonds) = &self.model else {
-            return "state-based";
-        };
-        match bonds.law {
-            PairLaw::BondStretch => "bond-stretch",
-            PairLaw::Linear => "linear",
-            PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
-            PairLaw::Literal57 | PairLaw::Treated(CubicLaw::Literal57, _) => "literal57",
-        }
+        self.model.name()
     }
-}
-
-/// A part of other stiffness.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Inclusion {
-    /// The set.
-    pub set: String,
-    /// Stiffness over the material's; a bond has the mean of its ends.
-    pub stiffness: f64,
 }

@@ -9,7 +9,8 @@ mod survey;
 mod table;
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::mem::{Discriminant, discriminant};
 
 use serde_json::{Map, Value as Json};
 
@@ -33,9 +34,11 @@ pub(crate) struct Ledger {
     /// None for a survey: the homes of keys follow from it.
     home_of: Option<HomeOf>,
     problems: RefCell<Vec<Problem>>,
+    reported: RefCell<HashSet<(Place, Discriminant<Fault>)>>,
     /// Keys that are there, misspelt, with their tables: they are not missing.
     misspelt: RefCell<BTreeSet<(String, String)>>,
     places: RefCell<BTreeMap<KeyPath, Place>>,
+    aliases: RefCell<Vec<(KeyPath, KeyPath)>>,
     json: RefCell<Json>,
     survey: Option<RefCell<Survey>>,
 }
@@ -54,8 +57,10 @@ impl Ledger {
             sources,
             home_of: None,
             problems: RefCell::default(),
+            reported: RefCell::default(),
             misspelt: RefCell::default(),
             places: RefCell::default(),
+            aliases: RefCell::default(),
             json: RefCell::new(Json::Object(Map::new())),
             survey: None,
         }
@@ -87,8 +92,16 @@ impl Ledger {
     }
 
     pub(crate) fn report(&self, place: Place, fault: Fault) {
-        let at = self.sources.locate(place);
-        self.problems.borrow_mut().push(Problem::new(fault, at));
+        // What several tables take over from one is wrong once.
+        let missing = matches!(
+            fault,
+            Fault::MissingKey { .. } | Fault::MissingChoice { .. }
+        );
+        let found = (place, discriminant(&fault));
+        if self.reported.borrow_mut().insert(found) || missing {
+            let at = self.sources.locate(place);
+            self.problems.borrow_mut().push(Problem::new(fault, at));
+        }
     }
 
     /// Takes back that a key is missing: it is there, misspelt.
@@ -116,6 +129,11 @@ impl Ledger {
 
     fn note_place(&self, path: &KeyPath, place: Place) {
         self.places.borrow_mut().insert(path.clone(), place);
+    }
+
+    /// Says that messages about the table at one path are about that at another.
+    fn alias(&self, known: KeyPath, written: KeyPath) {
+        self.aliases.borrow_mut().push((known, written));
     }
 
     /// Enters a value into the record.
@@ -160,6 +178,7 @@ impl Ledger {
             record: Record {
                 sources: self.sources,
                 places: self.places.into_inner(),
+                aliases: self.aliases.into_inner(),
                 json: self.json.into_inner(),
             },
             survey: self.survey.map(RefCell::into_inner).unwrap_or_default(),
@@ -179,6 +198,8 @@ pub(crate) struct Closed {
 pub(crate) struct Record {
     pub(crate) sources: Sources,
     places: BTreeMap<KeyPath, Place>,
+    /// Tables under the paths that messages know them by.
+    aliases: Vec<(KeyPath, KeyPath)>,
     pub(crate) json: Json,
 }
 
@@ -195,8 +216,8 @@ impl Record {
     pub(crate) fn place(&self, path: &KeyPath) -> Place {
         let mut path = path.clone();
         loop {
-            if let Some(place) = self.places.get(&path) {
-                return *place;
+            if let Some(place) = self.given(&path) {
+                return place;
             }
             match path.parent() {
                 Some(parent) => path = parent,
@@ -207,6 +228,13 @@ impl Record {
 
     /// Whether the deck gives a value, instead of leaving it to its default.
     pub(crate) fn is_given(&self, path: &KeyPath) -> bool {
-        self.places.contains_key(path)
+        self.given(path).is_some()
+    }
+
+    fn given(&self, path: &KeyPath) -> Option<Place> {
+        let aliases = self.aliases.iter();
+        let mut others = aliases.filter_map(|(known, written)| path.moved(known, written));
+        let own = self.places.get(path).copied();
+        own.or_else(|| others.find_map(|path| self.places.get(&path).copied()))
     }
 }

@@ -11,6 +11,7 @@ use crate::key_path::KeyPath;
 use crate::nearest::nearest;
 use crate::source::Place;
 use crate::vocabulary::{canonical, synonyms};
+use crate::words::Worded;
 
 /// A table being read.
 pub(crate) struct Table<'a> {
@@ -71,9 +72,22 @@ impl<'a> Table<'a> {
 
     /// Whether a key is present, under any of its names.
     pub(crate) fn has(&self, key: &str) -> bool {
+        self.place_of(key).is_some()
+    }
+
+    /// The table as messages name it.
+    pub(crate) fn name(&self) -> String {
+        self.path.to_string()
+    }
+
+    /// Where the value of a key stands, under any of its names.
+    pub(crate) fn place_of(&self, key: &str) -> Option<Place> {
+        let names =
+            |entry: &&Entry| entry.key == key || synonyms(key).contains(&entry.key.as_str());
         self.entries
             .iter()
-            .any(|entry| entry.key == key || synonyms(key).contains(&entry.key.as_str()))
+            .find(names)
+            .map(|entry| entry.node.place)
     }
 
     /// The value of a key that may be left out.
@@ -243,6 +257,11 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// A value of the engine by its word, with a default, which is the first.
+    pub(crate) fn worded<T: Worded>(&self, key: &'static str, what: &'static str) -> Option<T> {
+        self.choice_or_first(key, what, &T::words())
+    }
+
     /// The tables of an array of tables; none of them if the key is left out.
     pub(crate) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
         self.optional(key)
@@ -282,6 +301,18 @@ impl<'a> Table<'a> {
             let item = Item::new(self.ledger, path, &entry.node);
             (entry.key.as_str(), entry.key_place, item)
         })
+    }
+
+    /// Notes a table that is not read by itself, for other tables take over its keys.
+    pub(crate) fn taken_over(&self) {
+        self.ledger.note(|survey| survey.visited(&self.path));
+    }
+
+    /// Says that messages about the values of a table are about those of another one, if it is given.
+    pub(crate) fn place_as(&self, key: &str, written: Option<KeyPath>) {
+        if let Some(written) = written {
+            self.ledger.alias(self.path.key(key), written);
+        }
     }
 
     /// Reports keys that nobody asked for.

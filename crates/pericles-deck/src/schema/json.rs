@@ -16,7 +16,7 @@ pub(super) fn document(schema: &Schema) -> Json {
         definitions.insert(title(quantity, positive), number(quantity, positive));
     }
     for name in schema.survey.definitions() {
-        let mut definition = if schema.forms(name).is_empty() {
+        let mut definition = if schema.forms(name).is_empty() || schema.is_shared(name) {
             schema.table(name)
         } else {
             schema.value(name)
@@ -123,6 +123,7 @@ impl Schema {
                     json!({ "type": "array", "items": &entry, "minItems": 1, "maxItems": 3 });
                 json!({ "anyOf": [entry, list] })
             }
+            Form::Table if self.is_shared(place) => reference(place),
             Form::Table => return self.table(place),
             Form::Names(name) => {
                 json!({ "type": "object", "additionalProperties": reference(name) })

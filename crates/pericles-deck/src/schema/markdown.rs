@@ -16,6 +16,10 @@ pub(super) fn document(schema: &Schema) -> String {
     page.section("");
     page.text += "\n## Shared forms\n\nWhat several keys take.\n";
     for name in schema.survey.definitions() {
+        // A table of the deck has its section above.
+        if schema.is_shared(name) {
+            continue;
+        }
         page.heading(3, &format!("`{name}`"));
         page.about(name);
         if schema.survey.table(name).is_some() {

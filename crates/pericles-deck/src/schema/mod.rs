@@ -3,7 +3,7 @@
 //! Keys, forms, words, ranges and defaults are what the reader asks for while it reads the [`specimens`], so that a schema and the reader cannot
 //! disagree; only the sentences that explain the keys are written down, in `descriptions.toml`. Tests want every key of the reader to have its
 //! form and its sentence, and every sentence its key. Which keys go together with which shape, model or scheme is beyond the schema: it allows
-//! more than the reader, never less.
+//! more than the reader, never less. Tables of former releases are no part of it, so that editors mark them.
 
 mod descriptions;
 mod json;
@@ -51,14 +51,15 @@ pub(crate) fn home_of(key: &str) -> Option<&'static str> {
 
 fn homes(schema: &Schema) -> BTreeMap<&'static str, Option<String>> {
     let definitions = schema.survey.definitions();
-    let mut found: BTreeMap<&'static str, (usize, Option<String>)> = BTreeMap::new();
+    let mut found: BTreeMap<&'static str, ((usize, bool), Option<String>)> = BTreeMap::new();
     for (place, table) in schema.survey.tables() {
         let first = place.split(['.', '[']).next().unwrap_or_default();
         // What several tables share has no place of its own.
-        if place.is_empty() || definitions.contains(&first) {
+        if place.is_empty() || definitions.contains(&first) && !schema.is_shared(first) {
             continue;
         }
-        let depth = place.split('.').count();
+        // Of a table and a list of tables the table comes first.
+        let depth = (place.split('.').count(), place.ends_with("[]"));
         let written = match place.strip_suffix("[]") {
             Some(list) => format!("[[{list}]]"),
             None => format!("[{place}]"),
@@ -100,6 +101,13 @@ impl Schema {
             survey,
             descriptions: Descriptions::new(),
         }
+    }
+
+    /// Whether a table of the deck is a definition too: [material] has the keys of every entry of [materials].
+    fn is_shared(&self, place: &str) -> bool {
+        let root = self.survey.table("");
+        let of_the_deck = root.is_some_and(|root| root.keys().any(|key| key == place));
+        of_the_deck && self.survey.definitions().contains(&place)
     }
 
     /// The forms of a value; those that a definition says are left to it.

@@ -65,15 +65,6 @@ fracture_calibration = "lattice"
 no_fail = "top"
 bonds = "list"
 damage = { measure = "count", count_precut = true }
-inclusion = [{ set = "top", stiffness = 2 }]
-part = [
-    { name = "a", set = "top", density = 1, youngs_modulus = 1, modulus = "lattice", poisson_ratio = 0.25, fracture_energy = 1 },
-    { name = "b", block = 2, density = 1, bulk_modulus = 1, critical_stretch = 1 },
-    { name = "c", block = [2, 3], density = 1, shear_modulus = 1 },
-]
-[material.interface]
-rule = "harmonic"
-pair = [{ between = ["a", "b"], critical_stretch = 1 }]
 [sets.top]
 layer = { side = "+y", depth = 1 }
 [[crack]]
@@ -235,10 +226,24 @@ dt = 1
 
 /// A material with every key of state-based ones.
 const STATE_BASED: &str = "material={ model = 'state-based', strains = 'small', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, volume_correction = 'none', \
-     surface_correction = 'energy', influence = { function = 'inverse' }, fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond', fracture_calibration = 'lattice', no_fail = 'top', \
-     part = [{ name = 'a', set = 'top', density = 1, youngs_modulus = 1, poisson_ratio = 0.1, fracture_energy = 1 }, \
-             { name = 'b', block = 2, density = 1, bulk_modulus = 2, shear_modulus = 1, critical_stretch = 1 }], \
-     interface = { pair = [{ between = ['a', 'b'], critical_stretch = 1 }] } }";
+     surface_correction = 'energy', influence = { function = 'inverse' }, fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond', fracture_calibration = 'lattice', no_fail = 'top' }";
+
+/// Materials with every key that they may give for themselves.
+const MATERIALS: &str = "materials={ \
+     a = { density = 1, youngs_modulus = 1, modulus = 'lattice', poisson_ratio = 0.25, fracture_energy = 1, fracture_calibration = 'lattice', horizon_ratio = 3 }, \
+     b = { density = 1, bulk_modulus = 1, critical_stretch = 1 }, \
+     c = { density = 1, shear_modulus = 1 } }";
+
+const ASSIGN: &str = "assign=[{ set = 'top', material = 'a' }, { set = ['top'], material = 'b', stiffness = 2 }, { set = 'all', stiffness = 1 }, { set = 'top', material = 'c' }]";
+
+const INTERFACES: &str = "interface=[{ rule = 'harmonic' }, { between = ['a', 'b'], rule = 'weaker', critical_stretch = 1 }, \
+     { between = ['a', 'c'], youngs_modulus = 1, modulus = 'lattice', fracture_energy = 1, fracture_calibration = 'lattice' }, \
+     { between = ['b', 'c'], bulk_modulus = 1 }, { between = ['glass', 'a'], shear_modulus = 1 }]";
+
+const STATE_BASED_MATERIALS: &str = "materials={ a = { density = 1, youngs_modulus = 1, poisson_ratio = 0.1, fracture_energy = 1, failure = 'bond-energy' }, \
+     b = { density = 1, bulk_modulus = 2, shear_modulus = 1, critical_stretch = 1 } }";
+
+const STATE_BASED_INTERFACES: &str = "interface=[{ critical_stretch = 1 }, { between = ['a', 'b'], fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond' }]";
 
 /// All of them.
 #[rustfmt::skip]
@@ -271,7 +276,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
         SURFACE,
         &[
             "geodesics={ method = 'edge', ball = 'euclid' }",
-            "material={ model = 'power', name = 'a', density = 1, kappa = 1, alpha = 0.5, p = 2, horizon = 1, bond = 'displacement', self_cell = true, critical_stretch = 1, no_fail = 'all', inclusion = [{ set = 'all', stiffness = 2 }] }",
+            "material={ model = 'power', name = 'a', density = 1, kappa = 1, alpha = 0.5, p = 2, horizon = 1, bond = 'displacement', self_cell = true, critical_stretch = 1, no_fail = 'all' }",
+            "assign=[{ set = 'all', stiffness = 2 }]",
         ],
     ),
     // Influence functions.
@@ -296,6 +302,10 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &["material={ model = 'state-based', density = 1, bulk_modulus = 2, shear_modulus = 1, horizon_ratio = 3, influence = { function = 'isotropic' } }"]),
     specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'bond-energy', fracture_energy = 1 }"]),
     specimen(BAR, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, horizon = 3, critical_stretch = 1, failure = 'stretch' }"]),
+    // Several materials.
+    specimen(PLATE, &[MATERIALS, ASSIGN, INTERFACES]),
+    specimen(PLATE, &[STATE_BASED, STATE_BASED_MATERIALS, "assign=[{ set = 'top', material = 'a' }]", STATE_BASED_INTERFACES]),
+    specimen(PLATE, &["material={ horizon_ratio = 3 }", "materials={ default = { density = 1, youngs_modulus = 1 } }"]),
     // Other laws.
     specimen(BAR, &["material.model=green-strain", "material.treatment=taylor-2"]),
     specimen(PLATE, &["material.shear_modulus=1"]),

@@ -41,7 +41,7 @@ pub fn assemble(
     } = &discretisation;
     let BodyParts {
         constants,
-        parts,
+        others,
         bonds,
         cracks,
         density,
@@ -104,7 +104,7 @@ pub fn assemble(
         surface,
         sets,
         constants,
-        parts,
+        other_materials: others,
         form: bonds.form,
         precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
         cracks,

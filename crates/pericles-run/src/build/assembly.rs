@@ -27,8 +27,8 @@ pub struct Assembly {
     pub surface: Option<Arc<Surface>>,
     /// The constants of the material; none for a surface, whose pair law has its own.
     pub constants: Option<MaterialConstants>,
-    /// The constants of the other materials, in the order of `[[material.part]]`.
-    pub parts: Vec<MaterialConstants>,
+    /// The constants of the materials beside the body's, in the order of [`Model::materials`](pericles_deck::Model::materials).
+    pub other_materials: Vec<MaterialConstants>,
     /// How the bonds are kept.
     pub form: ForceForm,
     /// Bonds that pre-cracks cut.

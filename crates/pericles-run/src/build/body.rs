@@ -7,8 +7,8 @@ use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, Fault, Inclusion, KeyPath, MaterialModel, ModelWarning, Remark, Scheme,
-    Solid, SurfaceBody,
+    BuildError, Caution, Fault, KeyPath, MaterialModel, ModelWarning, Remark, Scheme, Solid,
+    SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
@@ -16,7 +16,7 @@ use pericles_waves::{AssembledForce, ForceForm};
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::discretisation::{Discretisation, Grids, Sets};
-use super::parts::Composition;
+use super::materials::{Between, Composition};
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;
 use crate::composition::requirements;
@@ -24,7 +24,7 @@ use crate::composition::requirements;
 /// Force and material of a body.
 pub(super) struct BodyParts {
     pub(super) constants: Option<MaterialConstants>,
-    pub(super) parts: Vec<MaterialConstants>,
+    pub(super) others: Vec<MaterialConstants>,
     pub(super) bonds: AssembledForce,
     pub(super) cracks: Vec<TrackedCrack>,
     pub(super) density: PointScalar,
@@ -66,13 +66,14 @@ impl Assembler<'_> {
         warnings.extend(self.judge_classes(material, &constants));
         warnings.extend(self.judge_solid(solid, &known));
         let no_fail = self.union_of(sets, &solid.material.no_fail)?;
-        let stiffness = self.stiffness_of(&solid.material.inclusions, cloud, sets)?;
+        let stiffness = self.stiffness_of(cloud, sets)?;
         let Composition {
             classes,
             materials,
+            interfaces,
             density,
-            parts,
-        } = self.parts(solid, (material, &constants), cloud, sets, warnings)?;
+            others,
+        } = self.materials(solid, (material, &constants), (cloud, sets), warnings)?;
         let body = BondBody {
             cloud,
             material,
@@ -87,7 +88,8 @@ impl Assembler<'_> {
             classes: classes.as_ref(),
             correction: solid.material.surface_correction,
         };
-        let (bonds, cracks) = self.bonds(solid, composite, (grids, &materials), warnings)?;
+        let (bonds, cracks) =
+            self.bonds(solid, composite, (grids, &materials, &interfaces), warnings)?;
         let refused = bonds.form.refusal(Feature::Tensors.into());
         if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
             let fields = "the fields Stress and Strain are";
@@ -101,7 +103,7 @@ impl Assembler<'_> {
             cracks,
             density,
             constants: Some(known),
-            parts: parts.into_iter().map(MaterialConstants::Bonds).collect(),
+            others: others.into_iter().map(MaterialConstants::Bonds).collect(),
         })
     }
 
@@ -130,7 +132,7 @@ impl Assembler<'_> {
             cracks: Vec::new(),
             density: PointScalar::Uniform(body.material.density),
             constants: None,
-            parts: Vec::new(),
+            others: Vec::new(),
         })
     }
 
@@ -175,36 +177,12 @@ impl Assembler<'_> {
         Ok(points)
     }
 
-    /// Stiffness of each point over the material's; empty without inclusions.
-    pub(super) fn stiffness_of(
-        &self,
-        inclusions: &[Inclusion],
-        cloud: &PointCloud,
-        sets: &Sets,
-    ) -> Result<Vec<f64>, BuildError> {
-        let mut stiffness = vec![
-            1.0;
-            if inclusions.is_empty() {
-                0
-            } else {
-                cloud.len()
-            }
-        ];
-        for (k, inclusion) in inclusions.iter().enumerate() {
-            let path = KeyPath::from("material.inclusion").index(k);
-            for &i in self.members(sets, &inclusion.set, &path)? {
-                stiffness[i as usize] = inclusion.stiffness;
-            }
-        }
-        Ok(stiffness)
-    }
-
     /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
         solid: &Solid,
         composite: CompositeBody<'_>,
-        (grids, materials): (&Grids, &[BondMaterial]),
+        (grids, materials, interfaces): (&Grids, &[BondMaterial], &[Between]),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
         let cloud = composite.body.cloud;
@@ -217,7 +195,7 @@ impl Assembler<'_> {
             ..composite
         };
         let assembled = if grids.ratios.len() > 1 {
-            self.graded_bonds(solid, &composite, grids, materials)?
+            self.graded_bonds(solid, &composite, grids, (materials, interfaces))?
         } else {
             let form = match solid.material.form {
                 ForceForm::Fastest

@@ -136,7 +136,7 @@ impl<'a> Assembler<'a> {
     fn plane_waves(self, assembly: &Assembly) -> Option<PlaneWaves> {
         let solid = self.model.body.solid()?;
         let (material, constants) = bonds_of(solid, assembly)?;
-        if !solid.material.parts.is_empty() {
+        if !self.model.materials.is_empty() {
             return None;
         }
         let lattice = self.lattice_of(solid, assembly, material, constants).ok()?;

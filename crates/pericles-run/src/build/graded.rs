@@ -7,6 +7,7 @@ use pericles_waves::AssembledForce;
 
 use super::assembler::Assembler;
 use super::discretisation::Grids;
+use super::materials::Between;
 use super::refusal::{at, at_material};
 
 impl Assembler<'_> {
@@ -15,13 +16,12 @@ impl Assembler<'_> {
         solid: &Solid,
         composite: &CompositeBody<'_>,
         grids: &Grids,
-        materials: &[BondMaterial],
+        (materials, interfaces): (&[BondMaterial], &[Between]),
     ) -> Result<AssembledForce, BuildError> {
         let features = composite.features().with(Feature::SeveralSpacings, true);
         solid.material.form.check(features).map_err(at_material)?;
         GradedBody::check(features).map_err(|error| at("material.surface_correction", error))?;
         let body = &composite.body;
-        let interface = &solid.material.interface;
         let graded = GradedBody {
             cloud: body.cloud,
             ratios: &grids.ratios,
@@ -30,8 +30,7 @@ impl Assembler<'_> {
             materials: composite.classes.map(|classes| Materials {
                 all: materials,
                 of_point: classes.of_point(),
-                rule: interface.rule,
-                critical_stretches: &interface.critical_stretches,
+                interfaces,
             }),
             state: solid.state,
             cracks: body.cracks,

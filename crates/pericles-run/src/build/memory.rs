@@ -17,7 +17,9 @@
 
 use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};
-use pericles_deck::{BuildError, Fault, KeyPath, Keys, Model, PartConstants, Scheme, Solid};
+use pericles_deck::{
+    BuildError, Fault, InterfaceFailure, KeyPath, Keys, MaterialModel, Model, Scheme, Solid,
+};
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
@@ -200,11 +202,13 @@ impl Assembler<'_> {
                 false => listed * neighbours,
             },
             ForceForm::Convolution | ForceForm::Spectral => transform,
-            ForceForm::Grid | ForceForm::FloatGrid if has_one_stiffness(solid) => neighbours / 8.0,
+            ForceForm::Grid | ForceForm::FloatGrid if self.has_one_stiffness(solid) => {
+                neighbours / 8.0
+            }
             // A factor a bond, at most.
             ForceForm::Grid | ForceForm::FloatGrid => neighbours * (0.125 + 8.0),
             _ if solid.shape.is_periodic() => transform,
-            _ if is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
+            _ if self.is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
             _ => listed * neighbours,
         };
         let own = match solid.material.state_based() {
@@ -235,10 +239,10 @@ impl Assembler<'_> {
 
     /// Bytes of a bond of a list while families are found.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
-        let worked = breaks_by_energy(solid);
+        let worked = self.breaks_by_energy(solid);
         let kept = match solid.material.state_based() {
             Some(_) => solid.material.surface_correction != Default::default(),
-            None => !is_on_one_grid(solid),
+            None => !self.is_on_one_grid(solid),
         };
         LISTED + if kept { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
     }
@@ -248,32 +252,31 @@ impl Assembler<'_> {
         let shape = &solid.shape;
         !shape.is_listed()
             && solid.material.surface_correction == Default::default()
-            && !breaks_by_energy(solid)
+            && !self.breaks_by_energy(solid)
     }
-}
 
-/// Whether all bonds of the same vector have one stiffness.
-fn has_one_stiffness(solid: &Solid) -> bool {
-    let material = &solid.material;
-    material.inclusions.is_empty()
-        && material.parts.is_empty()
-        && material.surface_correction == Default::default()
-}
+    /// Whether all bonds of the same vector have one stiffness.
+    fn has_one_stiffness(&self, solid: &Solid) -> bool {
+        self.model.assignments.is_empty() && solid.material.surface_correction == Default::default()
+    }
 
-/// Whether one stencil or transform can serve all points.
-fn is_on_one_grid(solid: &Solid) -> bool {
-    has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
-}
+    /// Whether one stencil or transform can serve all points.
+    fn is_on_one_grid(&self, solid: &Solid) -> bool {
+        self.has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
+    }
 
-/// Whether bonds of a state-based body break by their energy.
-fn breaks_by_energy(solid: &Solid) -> bool {
-    let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
-    let part = |constants: &PartConstants| match constants {
-        PartConstants::StateBased { failure, .. } => by_energy(failure),
-        PartConstants::Bonds { .. } => false,
-    };
-    let material = &solid.material;
-    let state_based = material.state_based();
-    state_based.is_some_and(|state_based| by_energy(&state_based.solid.failure))
-        || material.parts.iter().any(|one| part(&one.constants))
+    /// Whether bonds of a state-based body break by their energy.
+    fn breaks_by_energy(&self, solid: &Solid) -> bool {
+        let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
+        let others = self.model.materials.iter().map(|other| &other.model);
+        let own = solid.material.state_based();
+        own.is_some_and(|own| by_energy(&own.solid.failure))
+            || others.into_iter().any(|model| match model {
+                MaterialModel::StateBased(state) => by_energy(&state.solid.failure),
+                MaterialModel::Bonds(_) => false,
+            })
+            || self.model.interfaces.iter().any(|interface| {
+                matches!(&interface.failure, Some(InterfaceFailure::StateBased(failure)) if by_energy(failure))
+            })
+    }
 }

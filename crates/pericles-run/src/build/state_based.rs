@@ -5,14 +5,17 @@ use pericles::material::{
     SurfaceCorrection,
 };
 use pericles::operator::{Feature, LinearSolidBody};
+use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, ModelWarning, PartConstants, Remark, Solid, StateBased,
+    BuildError, Caution, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning, Remark,
+    Solid, StateBased,
 };
 
 use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
+use super::materials::PairRule;
 use super::refusal::{at, at_material, at_path};
 
 impl Assembler<'_> {
@@ -36,33 +39,25 @@ impl Assembler<'_> {
             warnings,
         );
         let mut all = vec![constants.clone()];
-        for (k, part) in material.parts.iter().enumerate() {
-            let path = KeyPath::from("material.part").index(k);
-            let PartConstants::StateBased { elastic, failure } = &part.constants else {
-                return Err(self.other_kind(&path, &part.name));
+        let mut solids = vec![&state_based.solid];
+        for other in &self.model.materials {
+            let path = KeyPath::from("materials").key(&other.name);
+            let MaterialModel::StateBased(own) = &other.model else {
+                return Err(self.other_kind(&path, &other.name));
             };
-            let own = LinearSolid {
-                density: part.density,
-                elastic: *elastic,
-                failure: *failure,
-                ..state_based.solid.clone()
-            };
-            let own = own.constants(cloud, solid.state);
-            let own = own.map_err(|error| at_path(&path, error.into()))?;
-            self.judge_limits(&own, failure, &path, warnings);
-            all.push(own);
+            solids.push(&own.solid);
+            let constants = own.solid.constants(cloud, solid.state);
+            let constants = constants.map_err(|error| at_path(&path, error.into()))?;
+            self.judge_limits(&constants, &own.solid.failure, &path, warnings);
+            all.push(constants);
         }
-        let (of_point, density) = self.points_of_parts(material, cloud, sets)?;
+        let (of_point, density) = self.points_of_materials(material, (cloud, sets), warnings)?;
         let classes = match of_point {
             None => None,
             Some(of_point) => {
                 let classes = SolidClasses::new(of_point, &all);
-                let mut classes = classes.map_err(|error| at("material.part", error))?;
-                for &(pair, stretch) in &material.interface.critical_stretches {
-                    let limits = BondLimits {
-                        stretch,
-                        ..BondLimits::NONE
-                    };
+                let mut classes = classes.map_err(|error| at("materials", error))?;
+                for (pair, limits) in self.limits_between(solid, &solids, cloud)? {
                     classes.set_limits(pair, limits);
                 }
                 Some(classes)
@@ -98,11 +93,39 @@ impl Assembler<'_> {
         warnings.extend(self.judge_isotropy(constants.as_ref()));
         Ok(BodyParts {
             constants,
-            parts: all.collect(),
+            others: all.collect(),
             bonds: bonds.into(),
             cracks,
             density,
         })
+    }
+
+    /// What bonds between two materials can bear, where the deck says so.
+    fn limits_between(
+        &self,
+        solid: &Solid,
+        solids: &[&LinearSolid],
+        cloud: &PointCloud,
+    ) -> Result<Vec<([u8; 2], BondLimits)>, BuildError> {
+        let mut found = Vec::new();
+        for PairRule {
+            pair,
+            interface,
+            path,
+        } in self.pair_rules(&solid.material)
+        {
+            let failure = match interface.failure {
+                None => continue,
+                Some(InterfaceFailure::StateBased(failure)) => failure,
+                Some(InterfaceFailure::Bonds(_)) => {
+                    return Err(self.other_kind(&path, "bond-based"));
+                }
+            };
+            let [a, b] = pair.map(|number| solids[usize::from(number)]);
+            let limits = a.limits_towards(b, failure, cloud, solid.state);
+            found.push((pair, limits.map_err(|error| at_path(&path, error.into()))?));
+        }
+        Ok(found)
     }
 
     /// Refuses what state-based bodies do not represent, and forms that do not represent them.
@@ -111,8 +134,11 @@ impl Assembler<'_> {
         let found = [
             (
                 Feature::Inclusions,
-                !solid.material.inclusions.is_empty(),
-                "material.inclusion",
+                self.model
+                    .assignments
+                    .iter()
+                    .any(|one| one.stiffness.is_some()),
+                "assign",
             ),
             (Feature::SeveralSpacings, shape.is_refined(), "body.refine"),
             (

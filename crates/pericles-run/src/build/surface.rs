@@ -84,7 +84,7 @@ impl Assembler<'_> {
                 },
             })?;
         let no_fail = self.union_of(sets, &deck.no_fail)?;
-        let stiffness = self.stiffness_of(&deck.inclusions, cloud, sets)?;
+        let stiffness = self.stiffness_of(cloud, sets)?;
         force::SurfaceBody {
             surface,
             cloud,

@@ -95,16 +95,16 @@ fn deck_with(feature: Feature, form: &Form) -> String {
             ", influence = { function = \"gaussian\", length = 1, acts_on = \"displacement\" }"
         }
         Breaking => ", critical_stretch = 0.1",
-        SeveralMaterials => {
-            ", part = [{ name = \"other\", set = \"part\", density = 1, youngs_modulus = 2 }]"
-        }
         StateBased => ", poisson_ratio = 0.2",
         BondEnergy => ", poisson_ratio = 0.2, failure = \"bond-energy\", fracture_energy = 1e-3",
-        Inclusions => ", inclusion = [{ set = \"part\", stiffness = 2 }]",
         SurfaceCorrection => ", surface_correction = \"volume\"",
         _ => "",
     };
     let others = match feature {
+        SeveralMaterials => {
+            "materials.other = { density = 1, youngs_modulus = 2 }\nassign = [{ set = \"part\", material = \"other\" }]\n"
+        }
+        Inclusions => "assign = [{ set = \"part\", stiffness = 2 }]\n",
         PreCracks => "crack = [{ segment = [[0, 4], [6, 4]] }]\n",
         Tensors => "output = { fields = { names = [\"Stress\"] } }\n",
         _ => "",

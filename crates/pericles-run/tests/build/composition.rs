@@ -3,6 +3,7 @@
 //! A cell that works is run, compared with another route (a fine run of an adaptive scheme on the list of bonds, or a static state), repeated on two, three and seven
 //! threads, and stopped and resumed, to the same bits. A cell that does not is refused with its reason.
 
+use pericles::observe::Energies;
 use pericles::{Archive, Control, Saved, Simulation};
 use pericles_deck::{Deck, DeckError};
 
@@ -193,7 +194,8 @@ fn stored(run: &Simulation) -> Archive {
 
 /// What a finished run leaves.
 pub struct Ended {
-    archive: Archive,
+    pub archive: Archive,
+    pub energies: Energies,
     u: Vec<f64>,
     momentum: [f64; 3],
     impulse: [f64; 3],
@@ -214,6 +216,7 @@ impl Ended {
         system.hold(&mut force);
         Self {
             archive: stored(run),
+            energies,
             u: state.u.clone(),
             momentum: system.momentum(&state.v),
             impulse: system.ledger().impulse,

@@ -130,7 +130,7 @@ fn ends_that_cannot_be_continued_are_refused() {
         ),
         (
             "[[initial]]",
-            "[sets.left]\nlayer = { side = \"-x\", cells = 2 }\n[[material.inclusion]]\nset = \"left\"\nstiffness = 2\n[[initial]]",
+            "[sets.left]\nlayer = { side = \"-x\", cells = 2 }\n[[assign]]\nset = \"left\"\nstiffness = 2\n[[initial]]",
             (22, 1),
             "the outer layer at -x is not homogeneous: the bond from point",
         ),

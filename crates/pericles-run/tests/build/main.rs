@@ -12,6 +12,7 @@ mod ends;
 mod extremes;
 mod initial;
 mod material;
+mod materials;
 mod memory;
 mod model;
 mod plate;
@@ -130,15 +131,17 @@ density = "7850 kg/m3"
 youngs_modulus = "210 GPa"
 horizon_ratio = 3
 critical_stretch = 0.3
-[[material.part]]
-name = "glue"
-set = "middle"
+[materials.glue]
 density = "1200 kg/m3"
 youngs_modulus = "7 GPa"
 critical_stretch = 0.01
-[material.interface]
+[[assign]]
+set = "middle"
+material = "glue"
+[[interface]]
+between = ["glue", "steel"]
 rule = "weaker"
-pair = [{ between = ["glue", "steel"], critical_stretch = 0.005 }]
+critical_stretch = 0.005
 [sets]
 left = { where = "x < 0.003" }
 middle = { where = "0.009 < x < 0.011" }

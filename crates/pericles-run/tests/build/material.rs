@@ -113,10 +113,10 @@ fn bars_have_no_poisson_s_ratio() {
         "{message}"
     );
     assert!(message.contains("leave it out"), "{message}");
-    let part = "horizon_ratio = 3\npart = [{ name = \"a\", block = 1, density = 1, youngs_modulus = 1, nu = 0.3 }]";
-    let message = refusal(BAR, part);
+    let other = "horizon_ratio = 3\n[materials.a]\ndensity = 1\nyoungs_modulus = 1\nnu = 0.3";
+    let message = refusal(BAR, other);
     assert!(
-        message.contains("`nu` has no place in [material.part.0]"),
+        message.contains("`nu` has no place in [materials.a]"),
         "{message}"
     );
 }
@@ -124,10 +124,10 @@ fn bars_have_no_poisson_s_ratio() {
 #[test]
 fn a_pair_of_materials_is_given_once() {
     let interface = |second: &str| {
-        let part = "{ name = \"b\", block = 1, density = 1, youngs_modulus = 1 }";
         format!(
-            "name = \"a\"\nhorizon_ratio = 3\npart = [{part}]\n[material.interface]\n\
-             pair = [{{ between = [\"a\", \"b\"], critical_stretch = 0.1 }}, {{ between = {second}, critical_stretch = 0.2 }}]"
+            "name = \"a\"\nhorizon_ratio = 3\n[materials.b]\ndensity = 1\nyoungs_modulus = 1\n\
+             [[interface]]\nbetween = [\"a\", \"b\"]\ncritical_stretch = 0.1\n\
+             [[interface]]\nbetween = {second}\ncritical_stretch = 0.2"
         )
     };
     for second in ["[\"a\", \"b\"]", "[\"b\", \"a\"]"] {

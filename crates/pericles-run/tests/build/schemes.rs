@@ -141,7 +141,7 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
     let inclusion = |text: &str| {
         text.replace(
             "[sets]",
-            "[[material.inclusion]]\nset = \"core\"\nstiffness = 16\n[sets]\n\
+            "[[assign]]\nset = \"core\"\nstiffness = 16\n[sets]\n\
              core = { box = { min = [\"9 mm\", \"open\"], max = [\"11 mm\", \"open\"] } }",
         )
     };

@@ -294,8 +294,11 @@ fn what_makes_no_physical_sense_is_said() {
     );
     refused(
         "[sets]",
-        "[[material.part]]\nname = \"more\"\nset = \"middle\"\ndensity = 1\nyoungs_modulus = 1\n[sets]",
-        &["the part `glue` has no point"],
+        "[materials.more]\ndensity = 1\nyoungs_modulus = 1\n[[assign]]\nset = \"middle\"\nmaterial = \"more\"\n[sets]",
+        &[
+            "no point has the material `glue`",
+            "put the larger set first",
+        ],
     );
 }
 

@@ -50,7 +50,7 @@ fn an_interface_splits_a_pulse_as_impedances_say() {
     let impedance = |young: f64, density: f64| (young * density).sqrt();
     let (first, second) = (impedance(210e9, 7850.0), impedance(70e9, 2700.0));
     for rule in ["harmonic", "arithmetic", "weaker"] {
-        let change = format!("material.interface.rule={rule}");
+        let change = format!("interface.0.rule={rule}");
         let (mut run, point) = example("wave/two-materials.toml", &[&change]);
         let (before, behind) = (point("before"), point("behind"));
         let (mut sent, mut reflected, mut transmitted) = (0.0f64, 0.0f64, 0.0f64);

@@ -187,12 +187,18 @@ time = { end = 4, dt = 0.2 }
 
 /// Two materials: each point has the constants of its own, and bonds between them the limit of their pair.
 #[test]
-fn parts_and_pairs_of_materials() {
-    let parts = r#", name = "steel", critical_stretch = 0.1, part = [{ name = "glue", set = "part", density = 2, bulk_modulus = 3, shear_modulus = 1, fracture_energy = 1e-3 }], interface = { pair = [{ between = ["steel", "glue"], critical_stretch = 1e-5 }] }"#;
-    let text = strained("strain", 0.3, parts) + "sets.part = { where = \"x > 8\" }\n";
+fn materials_and_their_interfaces() {
+    let text = strained("strain", 0.3, ", name = \"steel\", critical_stretch = 0.1");
+    let text = text
+        + r#"
+materials.glue = { density = 2, bulk_modulus = 3, shear_modulus = 1, fracture_energy = 1e-3 }
+assign = [{ set = "part", material = "glue" }]
+interface = [{ between = ["steel", "glue"], critical_stretch = 1e-5 }]
+sets.part = { where = "x > 8" }
+"#;
     let text = text.replace("function = \"isotropic\"", "function = \"conical\"");
     let built = build(&text);
-    let glue = built.parts[0].state_based().unwrap();
+    let glue = built.other_materials[0].state_based().unwrap();
     assert!((glue.elastic.bulk() / 3.0 - 1.0).abs() < 1e-14);
     assert_eq!(built.system.density().at(0), 1.0);
     let mut run = built.simulation();

@@ -101,7 +101,7 @@ fn limits(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
                 for stiffness in [1, ratio * ratio] {
                     let changes = [
                         format!("time.interpolant={interpolant}"),
-                        format!("material.inclusion.0.stiffness={stiffness}"),
+                        format!("assign.0.stiffness={stiffness}"),
                     ];
                     let method = Method::Two(order, ratio);
                     let found = limit(method, &changes, 1.15 * full)?;
@@ -122,7 +122,7 @@ fn limits(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
         }
     }
     for (ratio, stiffness) in [(4u32, 1), (4, 16)] {
-        let changes = [format!("material.inclusion.0.stiffness={stiffness}")];
+        let changes = [format!("assign.0.stiffness={stiffness}")];
         let method = Method::Respa(ratio);
         let at_one = growth(method, &changes, 1.0, [500, 20_000])?;
         let case = format!(

@@ -17,7 +17,8 @@ pub enum InterfaceRule {
 }
 
 impl InterfaceRule {
-    fn mix(self, [a, b]: [f64; 2]) -> f64 {
+    /// The constant of a bond between two materials, from theirs.
+    pub fn mix(self, [a, b]: [f64; 2]) -> f64 {
         match self {
             // A mean of equals is that number, to the last bit.
             _ if a == b => a,
@@ -71,6 +72,30 @@ impl PairClasses {
     /// # Errors
     /// A number that is not one of the materials given.
     pub fn set_critical_stretch(&mut self, pair: [u8; 2], stretch: f64) -> Result<()> {
+        for class in self.classes_of(pair)? {
+            self.critical_stretch[class] = stretch;
+        }
+        Ok(())
+    }
+
+    /// Gives bonds between two materials a constant of their own.
+    ///
+    /// # Errors
+    /// A number that is not one of the materials given.
+    pub fn set_micromodulus(&mut self, pair: [u8; 2], micromodulus: f64) -> Result<()> {
+        for class in self.classes_of(pair)? {
+            self.micromodulus[class] = micromodulus;
+        }
+        Ok(())
+    }
+
+    /// Refuses a number that is not one of the materials given.
+    pub(super) fn check_pair(&self, pair: [u8; 2]) -> Result<()> {
+        self.classes_of(pair).map(|_| ())
+    }
+
+    /// The classes of bonds between two materials, seen from either end.
+    fn classes_of(&self, pair: [u8; 2]) -> Result<[usize; 2]> {
         let [a, b] = pair.map(usize::from);
         let last = a.max(b);
         if last >= self.count {
@@ -80,9 +105,7 @@ impl PairClasses {
                 allowed: "numbers of the materials given, from 0",
             });
         }
-        self.critical_stretch[a * self.count + b] = stretch;
-        self.critical_stretch[b * self.count + a] = stretch;
-        Ok(())
+        Ok([a * self.count + b, b * self.count + a])
     }
 
     /// The same by the sites that bonds lead to.

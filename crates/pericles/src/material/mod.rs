@@ -19,6 +19,7 @@ mod bond_material;
 mod composite;
 mod constants;
 mod crack_planes;
+mod interface;
 mod lattice;
 mod law;
 mod modulus;
@@ -33,6 +34,7 @@ pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration
 pub use composite::{InterfaceRule, PairClasses};
 pub use constants::BondConstants;
 pub use crack_planes::CrackPlane;
+pub use interface::{InterfaceStiffness, MaterialInterface};
 pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};
 pub use pair_force::PairForce;

@@ -7,7 +7,9 @@ use super::limits::{Feature, Features, Limit};
 use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule};
-use crate::material::{BondConstants, BondMaterial, InterfaceRule, PairClasses, StressState};
+use crate::material::{
+    BondConstants, BondMaterial, InterfaceRule, MaterialInterface, PairClasses, StressState,
+};
 use crate::space::{PointCloud, check_length};
 
 /// Several materials of a body, which share law, horizon, influence function and partial volumes.
@@ -17,10 +19,8 @@ pub struct Materials<'a> {
     pub all: &'a [BondMaterial],
     /// The number of each point's material.
     pub of_point: &'a [u8],
-    /// The constant of bonds between two materials.
-    pub rule: InterfaceRule,
-    /// Critical stretches of bonds between two materials that differ from the smaller one of theirs.
-    pub critical_stretches: &'a [([u8; 2], f64)],
+    /// Bonds between two materials that do not follow the harmonic rule with the smaller critical stretch of both.
+    pub interfaces: &'a [([u8; 2], MaterialInterface)],
 }
 
 /// A body on grids of different spacing, each with a horizon of the same number of spacings.
@@ -118,9 +118,9 @@ impl GradedBody<'_> {
 
     fn laws(&self) -> Result<Laws> {
         let own = [self.material.clone()];
-        let (all, rule) = match &self.materials {
-            Some(materials) => (materials.all, materials.rule),
-            None => (&own[..], InterfaceRule::default()),
+        let (all, interfaces) = match &self.materials {
+            Some(materials) => (materials.all, materials.interfaces),
+            None => (&own[..], &[][..]),
         };
         // A table per class of bonds names those of one lattice, which this body is not.
         self.material.constants(self.cloud, self.state)?;
@@ -147,12 +147,23 @@ impl GradedBody<'_> {
             self.grid_of_point[i] * materials + material
         };
         let of_point = (0..self.cloud.len()).map(class).collect();
-        let mut classes = PairClasses::new(of_point, &constants, rule)?;
-        for &([a, b], stretch) in self.materials.map_or(&[][..], |one| one.critical_stretches) {
-            for grids in pairs(self.ratios.len() as u8) {
-                let [g, h] = grids.map(|grid| grid * materials);
-                classes.set_critical_stretch([g + a, h + b], stretch)?;
-                classes.set_critical_stretch([g + b, h + a], stretch)?;
+        let mut classes = PairClasses::new(of_point, &constants, InterfaceRule::default())?;
+        for (pair, interface) in interfaces {
+            let last = pair[0].max(pair[1]);
+            if last >= materials {
+                return Err(PericlesError::OutOfRange {
+                    quantity: "the number of a material of a pair",
+                    value: f64::from(last),
+                    allowed: "numbers of the materials given, from 0",
+                });
+            }
+            let material = &all[usize::from(pair[0])];
+            // Critical stretches between grids follow from those on each of them.
+            for (grid, &ratio) in self.ratios.iter().enumerate() {
+                let pair = pair.map(|number| grid as u8 * materials + number);
+                classes.set_interface(pair, interface, material, |across| {
+                    Ok(self.constants(across, ratio)?.1)
+                })?;
             }
         }
         Ok(Laws {

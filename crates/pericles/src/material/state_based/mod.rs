@@ -3,6 +3,7 @@
 mod classes;
 mod elastic;
 mod failure;
+mod interface;
 mod isotropic;
 mod linear_solid;
 mod surface;

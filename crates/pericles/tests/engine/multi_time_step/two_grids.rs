@@ -5,8 +5,8 @@ use std::sync::Arc;
 use pericles::domain::Field;
 use pericles::family::VolumeCorrection;
 use pericles::material::{
-    BondMaterial, CubicLaw, ElasticModulus, Fracture, FractureCalibration, InterfaceRule, Modulus,
-    PairClasses, PairLaw, StressState, Treatment,
+    BondMaterial, CubicLaw, ElasticModulus, Fracture, FractureCalibration, InterfaceRule,
+    InterfaceStiffness, MaterialInterface, Modulus, PairClasses, PairLaw, StressState, Treatment,
 };
 use pericles::operator::{
     BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials, On,
@@ -348,8 +348,7 @@ fn torn() -> Simulation {
     let materials = Materials {
         all: &all,
         of_point: &of_point,
-        rule: InterfaceRule::Harmonic,
-        critical_stretches: &[],
+        interfaces: &[],
     };
     let grids = (&points.ratios[..], &points.grid_of_point[..]);
     let force = bonds_of(&cloud, grids, &material, Some(materials), state);
@@ -407,14 +406,17 @@ fn several_materials_divided_everywhere_are_those_of_small_cells() {
     let number = |cloud: &PointCloud| -> Vec<u8> {
         cloud.axis(0).iter().map(|x| u8::from(*x > 0.06)).collect()
     };
-    let (of_point, override_) = (number(&cloud), [([0, 1], 2e-4)]);
+    let interface = MaterialInterface {
+        stiffness: InterfaceStiffness::Rule(InterfaceRule::Weaker),
+        fracture: Some(Fracture::CriticalStretch(2e-4)),
+    };
+    let (of_point, interfaces) = (number(&cloud), [([0, 1], interface)]);
     let [soft, hard] = [50e9, 90e9].map(|young| stiff(young, 3.0 * SPACING));
     let all = [soft.clone(), hard];
     let materials = Materials {
         all: &all,
         of_point: &of_point,
-        rule: InterfaceRule::Weaker,
-        critical_stretches: &override_,
+        interfaces: &interfaces,
     };
     let grids = (&points.ratios[..], &points.grid_of_point[..]);
     let found = |materials| bonds_of(&cloud, grids, &soft, Some(materials), state);

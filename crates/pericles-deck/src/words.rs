@@ -1,4 +1,4 @@
-//! Types whose values are words: those of decks.
+//! The words of decks for values of the engine: the one list from which the reader, its messages, the schema and the serialised model take them.
 
 use pericles::boundary::MotionKind;
 use pericles::family::{EndRule, VolumeCorrection};
@@ -12,7 +12,7 @@ use pericles::space::Face;
 use pericles::time::{ImplicitRule, Interpolant, LinearSolver, Predictor, VelocityNorm};
 use pericles_dispersion::tuning::{Combination, Method};
 use pericles_manifold::SurfaceBond;
-use pericles_manifold::geodesic::{Ball, GeodesicMethod};
+use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
 use pericles_waves::absorbing::history::HistoryForm;
 use pericles_waves::absorbing::{KernelMethod, Side};
@@ -20,30 +20,50 @@ use pericles_waves::{ForceForm, FunctionMethod, LoadRule};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serializer};
 
-use super::Described;
+use crate::form::Described;
 
-/// Describes a type by a list of its values with their words.
+/// A type whose values are words in decks.
+pub(crate) trait Worded: Copy + PartialEq + 'static {
+    /// All words with their values; where a key may be left out, the first is its default.
+    fn words() -> Vec<(&'static str, Self)>;
+}
+
 macro_rules! words {
     ($($type:ty: $words:expr;)*) => {$(
+        impl Worded for $type {
+            fn words() -> Vec<(&'static str, Self)> {
+                $words.into()
+            }
+        }
+
         impl Described for $type {
             fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                let words = $words;
-                let word = words.iter().find(|(_, value)| value == self).map(|(word, _)| *word);
-                let word = word.ok_or_else(|| serde::ser::Error::custom("a value without a word"))?;
-                serializer.serialize_str(word)
+                write(*self, serializer)
             }
 
             fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let word = String::deserialize(deserializer)?;
-                let words = $words;
-                let found = words.iter().find(|(known, _)| *known == word);
-                found.map(|(_, value)| *value).ok_or_else(|| {
-                    let allowed: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
-                    D::Error::custom(format!("unknown word `{word}`; allowed: {}", allowed.join(", ")))
-                })
+                read(deserializer)
             }
         }
     )*};
+}
+
+fn write<T: Worded, S: Serializer>(value: T, serializer: S) -> Result<S::Ok, S::Error> {
+    let words = T::words();
+    let word = words.iter().find(|(_, known)| *known == value);
+    let (word, _) = word.ok_or_else(|| serde::ser::Error::custom("a value without a word"))?;
+    serializer.serialize_str(word)
+}
+
+fn read<'de, T: Worded, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    let word = String::deserialize(deserializer)?;
+    let words = T::words();
+    let found = words.iter().find(|(known, _)| *known == word);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let allowed: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+        let allowed = allowed.join(", ");
+        D::Error::custom(format!("unknown word `{word}`; allowed: {allowed}"))
+    })
 }
 
 words! {
@@ -131,16 +151,4 @@ words! {
     ];
     FunctionMethod: FunctionMethod::ALL.map(|method| (method.name(), method));
     LoadRule: [("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)];
-}
-
-impl Described for GeodesicMethod {
-    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-
-    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let word = String::deserialize(deserializer)?;
-        let unknown = |_| D::Error::custom(format!("`{word}` is none of {}", Self::NAMES));
-        word.parse().map_err(unknown)
-    }
 }

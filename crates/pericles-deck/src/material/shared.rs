@@ -1,0 +1,57 @@
+//! What all materials of a body have in common.
+
+use super::types::{Material, MaterialModel};
+
+/// The first key in which two materials of one body differ though they must not.
+///
+/// A bond belongs to both of its ends: it has one law, one length up to which it exists and one weight. What is not named here, density, elastic constants and failure, may differ.
+pub(crate) fn difference(a: &MaterialModel, b: &MaterialModel) -> Option<&'static str> {
+    let horizon = !same_length(a.horizon(), b.horizon());
+    let correction = a.volume_correction() != b.volume_correction();
+    let (law, influence) = match (a, b) {
+        (MaterialModel::Bonds(a), MaterialModel::Bonds(b)) => {
+            (a.law != b.law, a.influence != b.influence)
+        }
+        (MaterialModel::StateBased(a), MaterialModel::StateBased(b)) => {
+            let influence = a.solid.influence != b.solid.influence;
+            (a.strains != b.strains, influence)
+        }
+        _ => return Some("model"),
+    };
+    let law_key = match (a.name() == b.name(), a) {
+        (false, _) => "model",
+        (true, MaterialModel::Bonds(_)) => "treatment",
+        (true, MaterialModel::StateBased(_)) => "strains",
+    };
+    let keys = [
+        (law, law_key),
+        (horizon, "horizon"),
+        (influence, "influence"),
+        (correction, "volume_correction"),
+    ];
+    first(&keys)
+}
+
+/// The first key of the whole body that two tables of materials say differently.
+pub(super) fn difference_of_tables(a: &Material, b: &Material) -> Option<&'static str> {
+    let keys = [
+        (
+            a.surface_correction != b.surface_correction,
+            "surface_correction",
+        ),
+        (a.no_fail != b.no_fail, "no_fail"),
+        (a.damage != b.damage, "damage"),
+        (a.form != b.form, "bonds"),
+    ];
+    difference(&a.model, &b.model).or_else(|| first(&keys))
+}
+
+fn first(keys: &[(bool, &'static str)]) -> Option<&'static str> {
+    let found = keys.iter().find(|(differs, _)| *differs);
+    found.map(|(_, key)| *key)
+}
+
+/// Lengths that differ by rounding only: a length and a multiple of the spacing.
+fn same_length(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
+}

@@ -1,0 +1,322 @@
+//! Several materials: which point has which, and the bonds between them.
+
+use pericles::PointScalar;
+use pericles::material::{
+    BondConstants, BondMaterial, Calibration, Fracture, InterfaceRule, PairClasses,
+};
+use pericles::space::PointCloud;
+use pericles_deck::{
+    BuildError, Caution, Fault, InterfaceFailure, KeyPath, Material, MaterialModel, ModelWarning,
+    Remark, Solid,
+};
+use pericles_waves::ForceForm;
+
+use super::assembler::Assembler;
+use super::discretisation::Sets;
+use super::refusal::{at, at_path};
+
+/// What a body is made of.
+pub(super) struct Composition {
+    pub(super) classes: Option<PairClasses>,
+    /// All materials, the body's own first.
+    pub(super) materials: Vec<BondMaterial>,
+    /// Bonds between materials that do not follow from both alone.
+    pub(super) interfaces: Vec<Between>,
+    pub(super) density: PointScalar,
+    /// Constants of the other materials, in the order of the deck.
+    pub(super) others: Vec<BondConstants>,
+}
+
+/// The numbers of two materials with what is given of the bonds between them.
+pub(super) type Between = ([u8; 2], pericles::material::MaterialInterface);
+
+/// What is given of the bonds between two materials, with the number of the table that gives it.
+pub(super) struct PairRule<'m> {
+    pub(super) pair: [u8; 2],
+    pub(super) interface: &'m pericles_deck::MaterialInterface,
+    pub(super) path: KeyPath,
+}
+
+impl<'m> Assembler<'m> {
+    /// The materials of a bond-based body: classes of bonds between them, none if there is one material only, the density, and the constants of the others.
+    pub(super) fn materials(
+        &self,
+        solid: &Solid,
+        (bonds, constants): (&BondMaterial, &BondConstants),
+        (cloud, sets): (&PointCloud, &Sets),
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<Composition, BuildError> {
+        let path = KeyPath::from("material");
+        let judged = judged_key(&bonds.fracture, &path);
+        self.judge_stretch(constants.critical_stretch, judged, warnings);
+        self.judge_stiffness(solid, constants, &path, warnings);
+        let mut all = vec![constants.clone()];
+        let mut materials = vec![bonds.clone()];
+        for other in &self.model.materials {
+            let path = KeyPath::from("materials").key(&other.name);
+            let MaterialModel::Bonds(own) = &other.model else {
+                return Err(self.other_kind(&path, &other.name));
+            };
+            materials.push(own.clone());
+            let own_constants = self
+                .constants_of(solid, own, cloud)
+                .map_err(|error| at_path(&path, error.into()))?;
+            let judged = judged_key(&own.fracture, &path);
+            self.judge_stretch(own_constants.critical_stretch, judged, warnings);
+            self.judge_stiffness(solid, &own_constants, &path, warnings);
+            all.push(own_constants);
+        }
+        let (of_point, density) =
+            self.points_of_materials(&solid.material, (cloud, sets), warnings)?;
+        let mut interfaces = Vec::new();
+        let classes = match of_point {
+            None => None,
+            Some(of_point) => {
+                let classes = PairClasses::new(of_point, &all, InterfaceRule::default());
+                let mut classes = classes.map_err(|error| at("materials", error))?;
+                for (between, path) in self.interfaces(&solid.material)? {
+                    let (pair, interface) = &between;
+                    let material = &materials[usize::from(pair[0])];
+                    let set = classes.set_interface(*pair, interface, material, |across| {
+                        self.constants_of(solid, across, cloud)
+                    });
+                    set.map_err(|error| at_path(&path, error.into()))?;
+                    let stretch = classes.pair_critical_stretch(*pair);
+                    if interface.fracture.is_some() {
+                        self.judge_stretch(stretch, path, warnings);
+                    }
+                    interfaces.push(between);
+                }
+                Some(classes)
+            }
+        };
+        all.remove(0);
+        Ok(Composition {
+            classes,
+            materials,
+            interfaces,
+            density,
+            others: all,
+        })
+    }
+
+    /// The interfaces between bond-based materials: for every pair the table that names it, and for what that leaves out the table for all pairs.
+    fn interfaces(&self, material: &Material) -> Result<Vec<(Between, KeyPath)>, BuildError> {
+        let mut all: Vec<(Between, KeyPath)> = Vec::new();
+        for PairRule {
+            pair,
+            interface,
+            path,
+        } in self.pair_rules(material)
+        {
+            let fracture = match interface.failure {
+                None => None,
+                Some(InterfaceFailure::Bonds(fracture)) => Some(fracture),
+                Some(InterfaceFailure::StateBased(_)) => {
+                    return Err(self.other_kind(&path, "state-based"));
+                }
+            };
+            let known = all.iter().position(|((known, _), _)| *known == pair);
+            let at = known.unwrap_or_else(|| {
+                all.push(((pair, Default::default()), path.clone()));
+                all.len() - 1
+            });
+            let ((_, found), at) = &mut all[at];
+            if let Some(stiffness) = interface.stiffness {
+                found.stiffness = stiffness;
+            }
+            if fracture.is_some() {
+                (found.fracture, *at) = (fracture, path);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Pairs of materials with the tables that are about them, tables for all pairs before those for one: what comes later counts.
+    pub(super) fn pair_rules(&self, material: &Material) -> Vec<PairRule<'m>> {
+        let others = self.model.materials.iter().map(|other| other.name.as_str());
+        let names: Vec<&str> = std::iter::once(material.name()).chain(others).collect();
+        // The library refuses more materials than a byte counts.
+        let count = names.len().min(256);
+        let interfaces = self.model.interfaces.iter().enumerate();
+        let (general, special): (Vec<_>, Vec<_>) =
+            interfaces.partition(|(_, interface)| interface.between.is_none());
+        let ordered = general.into_iter().chain(special);
+        let found = ordered.flat_map(|(k, interface)| {
+            let path = KeyPath::from("interface").index(k);
+            let pairs = (0..count).flat_map(move |a| (a + 1..count).map(move |b| [a, b]));
+            let joined = pairs.filter(|pair| interface.joins(pair.map(|number| names[number])));
+            let rules = joined.map(|pair| PairRule {
+                pair: pair.map(|number| number as u8),
+                interface,
+                path: path.clone(),
+            });
+            rules.collect::<Vec<_>>()
+        });
+        found.collect()
+    }
+
+    /// The number of every point's material, none if all have the body's own, and the density.
+    pub(super) fn points_of_materials(
+        &self,
+        material: &Material,
+        (cloud, sets): (&PointCloud, &Sets),
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<(Option<Vec<u8>>, PointScalar), BuildError> {
+        let others = &self.model.materials;
+        let known = |name: &str| others.iter().position(|other| other.name == name);
+        let number = |name: &str| match name == material.name() {
+            true => Some(0),
+            // The library refuses more materials than a byte counts.
+            false => known(name).map(|k| (k + 1).min(255)),
+        };
+        let mut of_point = vec![None; cloud.len()];
+        let mut last_of: Vec<Option<KeyPath>> = vec![None; others.len() + 1];
+        for (k, assignment) in self.model.assignments.iter().enumerate() {
+            let path = KeyPath::from("assign").index(k);
+            let Some(number) = assignment.material.as_deref().and_then(number) else {
+                continue;
+            };
+            for set in &assignment.sets {
+                for &i in self.members(sets, set, &path)? {
+                    of_point[i as usize] = Some(number as u8);
+                }
+            }
+            last_of[number] = Some(path);
+        }
+        self.refuse_without_material(material, &of_point, cloud)?;
+        let of_point: Vec<u8> = of_point
+            .into_iter()
+            .map(Option::unwrap_or_default)
+            .collect();
+        let own = std::iter::once(material.name()).filter(|_| !material.is_default);
+        let own = own.map(|name| (0, name));
+        let named = others.iter().map(|other| other.name.as_str());
+        for (number, name) in own.chain((1..).zip(named)) {
+            match &last_of[number] {
+                None => {
+                    let caution = Caution::UnusedMaterial {
+                        material: name.to_owned(),
+                    };
+                    warnings.push(Remark::new(KeyPath::from("materials").key(name), caution));
+                }
+                Some(path) if !of_point.contains(&(number.min(255) as u8)) => {
+                    let material = name.to_owned();
+                    return Err(at_path(path, Fault::EmptyMaterial { material }));
+                }
+                Some(_) => {}
+            }
+        }
+        if of_point.iter().all(|&number| number == 0) {
+            return Ok((None, PointScalar::Uniform(material.density())));
+        }
+        let densities: Vec<f64> = of_point
+            .iter()
+            .map(|&number| match number {
+                0 => material.density(),
+                number => others[usize::from(number) - 1].model.density(),
+            })
+            .collect();
+        Ok((Some(of_point), PointScalar::PerPoint(densities)))
+    }
+
+    /// Refuses points without an assignment, unless the body's material is theirs.
+    fn refuse_without_material(
+        &self,
+        material: &Material,
+        of_point: &[Option<u8>],
+        cloud: &PointCloud,
+    ) -> Result<(), BuildError> {
+        let without = |number: &Option<u8>| number.is_none();
+        let Some(first) = of_point
+            .iter()
+            .position(without)
+            .filter(|_| !material.is_default)
+        else {
+            return Ok(());
+        };
+        let fault = Fault::NoMaterial {
+            points: of_point.iter().filter(|number| without(number)).count(),
+            of: of_point.len(),
+            place: cloud.point(first)[..cloud.dimension()].to_vec(),
+        };
+        Err(at_path("assign", fault))
+    }
+
+    /// Stiffness of each point over that of its material; empty if it is 1 everywhere.
+    pub(super) fn stiffness_of(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+    ) -> Result<Vec<f64>, BuildError> {
+        let mut stiffness = Vec::new();
+        for (k, assignment) in self.model.assignments.iter().enumerate() {
+            let path = KeyPath::from("assign").index(k);
+            let Some(given) = assignment.stiffness else {
+                continue;
+            };
+            stiffness.resize(cloud.len(), 1.0);
+            for set in &assignment.sets {
+                for &i in self.members(sets, set, &path)? {
+                    stiffness[i as usize] = given;
+                }
+            }
+        }
+        Ok(stiffness)
+    }
+
+    /// The refusal of a material that is not of the kind of the body's.
+    pub(super) fn other_kind(&self, path: &KeyPath, material: &str) -> BuildError {
+        let (value, allowed) = (
+            material.to_owned(),
+            "allowed: bond-based or state-based, as the body's material is".into(),
+        );
+        at_path(path, Fault::OutOfRange { value, allowed })
+    }
+
+    /// The constants of a material's bonds. Forces that take integrals, by a spectrum or at Gauss nodes, have the errors of the integrals, not those of sums over
+    /// a lattice.
+    pub(super) fn constants_of(
+        &self,
+        solid: &Solid,
+        material: &BondMaterial,
+        cloud: &PointCloud,
+    ) -> pericles::Result<BondConstants> {
+        let constants = material.constants(cloud, solid.state)?;
+        let integrals = solid.material.form == ForceForm::Spectral || solid.shape.has_gauss_nodes();
+        if !integrals {
+            return Ok(constants);
+        }
+        let mut right = material.clone();
+        right.modulus.calibration = Calibration::Continuum;
+        let right = right.constants(cloud, solid.state)?;
+        let error = constants.micromodulus / right.micromodulus - 1.0;
+        Ok(BondConstants {
+            stiffness_error: error,
+            shear_error: error,
+            ..constants
+        })
+    }
+
+    /// Bonds of real materials break long before they are a fifth longer.
+    pub(super) fn judge_stretch(
+        self,
+        stretch: f64,
+        path: KeyPath,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
+        const LARGE: f64 = 0.2;
+        if stretch.is_finite() && stretch > LARGE {
+            warnings.push(Remark::new(path, Caution::LargeStretch { stretch }));
+        }
+    }
+}
+
+/// The key from which the critical stretch of a material follows.
+fn judged_key(fracture: &Fracture, path: &KeyPath) -> KeyPath {
+    match fracture {
+        Fracture::Unbreakable => path.clone(),
+        Fracture::CriticalStretch(_) => path.key("critical_stretch"),
+        Fracture::Energy { .. } => path.key("fracture_energy"),
+    }
+}

@@ -1,0 +1,421 @@
+//! Several materials in one body: assignments, interfaces, and decks of former releases.
+
+use pericles::{Control, Simulation};
+use pericles_deck::{Deck, Model};
+
+use super::composition::run_every_way;
+use super::{build, parse, refusal};
+
+fn model(text: &str) -> Model {
+    parse(text).model
+}
+
+fn warnings(text: &str) -> Vec<String> {
+    let built = build(text);
+    built
+        .warnings
+        .iter()
+        .map(|warning| warning.line())
+        .collect()
+}
+
+fn run(text: &str) -> Simulation {
+    let mut run = build(text).simulation();
+    run.run(|_| Control::Continue).unwrap();
+    run
+}
+
+/// A notched plate of three materials and a stiffened corner that tears. FORMER and PRESENT are replaced by one of the tables below.
+const PLATE: &str = r#"
+[body]
+shape = "plate"
+size = ["24 mm", "16 mm"]
+spacing = "1 mm"
+plane = "strain"
+thickness = "2 mm"
+[material]
+name = "glass"
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+fracture_energy = "135 J/m2"
+FORMER
+[sets]
+right = { where = "x > 0.014" }
+grain = { ball = { centre = ["10 mm", "12 mm"], radius = "3 mm" } }
+corner = { box = { max = ["6 mm", "5 mm"] } }
+PRESENT
+[[crack]]
+segment = [[0, "8 mm"], ["8 mm", "8 mm"]]
+[[initial]]
+velocity = [0, { expression = "12*(y - 0.008)/0.008" }]
+[time]
+end = "3 us"
+"#;
+
+const FORMER: &str = r#"[[material.part]]
+name = "steel"
+set = "right"
+density = "7850 kg/m3"
+youngs_modulus = "210 GPa"
+critical_stretch = 0.002
+[[material.part]]
+name = "hard grain"
+set = "grain"
+density = "3000 kg/m3"
+bulk_modulus = "100 GPa"
+modulus = "lattice"
+fracture_energy = "30 J/m2"
+[[material.part]]
+name = "listed"
+block = 1
+density = "2500 kg/m3"
+youngs_modulus = "60 GPa"
+[[material.inclusion]]
+set = "corner"
+stiffness = 1.7
+[material.interface]
+rule = "weaker"
+pair = [{ between = ["glass", "steel"], critical_stretch = 5e-4 }]"#;
+
+/// The same without the part of a block, which would cover the plate, in the present form.
+const PRESENT: &str = r#"[materials.steel]
+density = "7850 kg/m3"
+youngs_modulus = "210 GPa"
+critical_stretch = 0.002
+[materials."hard grain"]
+density = "3000 kg/m3"
+bulk_modulus = "100 GPa"
+modulus = "lattice"
+fracture_energy = "30 J/m2"
+[[assign]]
+set = "right"
+material = "steel"
+[[assign]]
+set = "grain"
+material = "hard grain"
+[[assign]]
+set = "corner"
+stiffness = 1.7
+[[interface]]
+rule = "weaker"
+[[interface]]
+between = ["glass", "steel"]
+critical_stretch = 5e-4"#;
+
+fn former() -> String {
+    let listed = FORMER.find("[[material.part]]\nname = \"listed\"").unwrap();
+    let inclusion = FORMER.find("[[material.inclusion]]").unwrap();
+    let tables = FORMER[..listed].to_owned() + &FORMER[inclusion..];
+    PLATE.replace("FORMER", &tables).replace("PRESENT", "")
+}
+
+fn present() -> String {
+    PLATE.replace("FORMER", "").replace("PRESENT", PRESENT)
+}
+
+#[test]
+fn a_deck_of_a_former_release_runs_as_its_present_form() {
+    let (former, present) = (former(), present());
+    assert_eq!(model(&former), model(&present));
+    assert!(parse(&present).warnings().is_empty());
+    let run = run_every_way(&former);
+    assert!(run.broken > 10, "{}", run.broken);
+    assert_eq!(run.archive, run_every_way(&present).archive);
+}
+
+#[test]
+fn the_warning_about_former_tables_is_a_text_that_takes_their_place() {
+    for (tables, without) in [
+        (FORMER.to_owned(), PLATE.replace("PRESENT", "")),
+        (
+            "part = [{ name = 'a b', block = [1, 2], density = 1e3, E = 1e9, Gc = 10 }]\n\
+             inclusion = [{ set = \"corner\", stiffness = 2 }]"
+                .to_owned(),
+            PLATE.replace("PRESENT", ""),
+        ),
+    ] {
+        let deck = parse(&without.replace("FORMER", &tables));
+        let [warning] = &deck.warnings()[..] else {
+            panic!("one warning")
+        };
+        let line = warning.line();
+        assert!(line.starts_with("deck.toml:14:"), "{line}");
+        assert!(line.contains("a former form"), "{line}");
+        let (_, text) = line.split_once("\n\n").unwrap();
+        let pasted = without.replace("FORMER", "") + text;
+        let again = parse(&pasted);
+        assert!(again.warnings().is_empty());
+        assert_eq!(again.model, deck.model, "{pasted}");
+    }
+}
+
+/// Tables that an override changes or adds are rewritten as well.
+#[test]
+fn overrides_reach_former_tables() {
+    let overrides = [
+        "material.part.0.rho=8000".to_owned(),
+        "material.interface.rule=arithmetic".to_owned(),
+    ];
+    let deck = Deck::parse(&former(), "deck.toml", &overrides).unwrap();
+    assert_eq!(deck.model.materials[0].model.density(), 8000.0);
+    let json = deck.to_json();
+    assert_eq!(json["interface"][0]["rule"], "arithmetic");
+    assert_eq!(json["materials"]["steel"]["density"], 8000.0);
+}
+
+/// A bar that is pulled at its right end, in three materials by overlapping sets.
+const LAMINATE: &str = r#"
+[body]
+shape = "bar"
+length = 120
+spacing = 1
+[material]
+name = "soft"
+strains = "small"
+model = "MODEL"
+density = 1
+youngs_modulus = 10
+horizon_ratio = 3
+[materials.hard]
+density = 3
+youngs_modulus = 40
+[materials.middle]
+density = 2
+youngs_modulus = 20
+[[assign]]
+set = ["centre", "right"]
+material = "hard"
+[[assign]]
+set = "centre"
+material = "middle"
+[sets]
+left = { layer = { side = "-x", cells = 3 } }
+end = { layer = { side = "+x", cells = 3 } }
+centre = { where = "40 < x < 80" }
+right = { where = "x > 60" }
+[[prescribe]]
+set = "left"
+displacement = 0
+[[load]]
+set = "end"
+traction = 0.01
+[time]
+scheme = "relaxation"
+tolerance = 1e-10
+"#;
+
+fn laminate(model: &str) -> String {
+    match model {
+        "state-based" => LAMINATE.replace("MODEL", model),
+        _ => LAMINATE
+            .replace("MODEL", model)
+            .replace("strains = \"small\"\n", ""),
+    }
+}
+
+/// Layers in a row bear one stress: their strains are σ/E each, and the length of all grows by the sum. Within a horizon of an interface the strain is that of neither material; the bound of the sum,
+/// 0.5 %, is chosen for that.
+#[test]
+fn a_laminate_has_the_stiffness_of_its_layers_in_series() {
+    for model in ["linear", "state-based"] {
+        let run = run(&laminate(model));
+        let density = |i: usize| run.system().density().at(i);
+        assert_eq!([density(30), density(60), density(100)], [1.0, 2.0, 3.0]);
+        let u = &run.state().u;
+        let strain = |from: usize, to: usize| (u[to] - u[from]) / (to - from) as f64;
+        for (from, to, young) in [(12, 30, 10.0), (48, 72, 20.0), (88, 108, 40.0)] {
+            let error = strain(from, to) * young / 0.01 - 1.0;
+            assert!(error.abs() < 1e-6, "{model}, E = {young}: {error:e}");
+        }
+        // Cells have their points in their middles: 27.5 of the first layer, 40 of the second, 28.5 of the third.
+        let sum = 0.01 * (27.5 / 10.0 + 40.0 / 20.0 + 28.5 / 40.0);
+        let error = (u[108] - u[12]) / sum - 1.0;
+        assert!(error.abs() < 5e-3, "{model}: {error:e}");
+    }
+}
+
+#[test]
+fn later_assignments_replace_earlier_ones() {
+    let density = |text: &str, i: usize| build(text).system.density().at(i);
+    let text = laminate("linear");
+    assert_eq!(density(&text, 70), 2.0);
+    // The other way round the larger set takes the right half of the smaller one.
+    let tables = "[[assign]]\nset = \"centre\"\nmaterial = \"middle\"\n";
+    let swapped = text.replace(tables, "");
+    let swapped = swapped.replacen("[[assign]]", &format!("{tables}[[assign]]"), 1);
+    let swapped = swapped.replace("[\"centre\", \"right\"]", "\"right\"");
+    assert_eq!([density(&swapped, 50), density(&swapped, 70)], [2.0, 3.0]);
+    // The body's own material can be assigned too.
+    let back = text.replace(
+        "[sets]",
+        "[[assign]]\nset = \"centre\"\nmaterial = \"soft\"\n[sets]",
+    );
+    let message = refusal(&back).to_string();
+    assert!(
+        message.contains("no point has the material `middle`"),
+        "{message}"
+    );
+    let back = back.replace(
+        "set = \"centre\"\nmaterial = \"soft\"",
+        "set = \"end\"\nmaterial = \"soft\"",
+    );
+    assert_eq!(density(&back, 118), 1.0);
+}
+
+/// What all bonds share may stand in [material] alone, or be repeated; a deck may have named materials only.
+#[test]
+fn materials_without_a_material_of_all_other_points() {
+    let text = laminate("linear");
+    let all_named = text
+        .replace(
+            "[material]\nname = \"soft\"\n",
+            "[material]\nhorizon_ratio = 3\nmodel = \"linear\"\n[materials.default]\n",
+        )
+        .replacen("model = \"linear\"\ndensity", "density", 1)
+        .replacen(
+            "youngs_modulus = 10\nhorizon_ratio = 3",
+            "youngs_modulus = 10\nhorizon = 3",
+            1,
+        );
+    let (mut own, mut named) = (model(&text), model(&all_named));
+    for model in [&mut own, &mut named] {
+        model.body.solid_mut().unwrap().material.name = None;
+    }
+    assert_eq!(own, named);
+    // Without [material] the first table says what all bonds share.
+    let first = text.replace("[material]\nname = \"soft\"\n", "[materials.soft]\n");
+    let message = refusal(&first).to_string();
+    let words = "40 of 120 points have no material, such as that at (0.5) m";
+    assert!(message.contains(words), "{message}");
+    let assigned = first.replacen(
+        "[[assign]]",
+        "[[assign]]\nset = \"all\"\nmaterial = \"soft\"\n[[assign]]",
+        1,
+    );
+    let mut all = model(&assigned);
+    assert!(!all.body.solid().unwrap().material.is_default);
+    all.assignments.remove(0);
+    all.body.solid_mut().unwrap().material.is_default = true;
+    assert_eq!(all, model(&text));
+}
+
+#[test]
+fn materials_that_are_not_used_are_warned_of() {
+    let more = laminate("linear").replace(
+        "[sets]",
+        "[materials.spare]\ndensity = 1\nyoungs_modulus = 1\n[sets]",
+    );
+    let found = warnings(&more);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        found[0].contains("deck.toml:24:1: the material `spare` is not assigned"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn models_with_materials_survive_json() {
+    let state_based = laminate("state-based")
+        + "[[interface]]\nbetween = [\"soft\", \"hard\"]\nfracture_energy = 1\nfailure = \"bond-energy\"\n";
+    let modulus = laminate("linear") + "[[interface]]\nshear_modulus = 3\nfracture_energy = 1\n";
+    for text in [former(), present(), state_based, modulus] {
+        let model = model(&text);
+        let json = serde_json::to_string(&model).unwrap();
+        let read: Model = serde_json::from_str(&json).unwrap();
+        assert_eq!(read, model, "{json}");
+    }
+}
+
+/// A model that a program made is judged as a deck is.
+#[test]
+fn wrong_models_are_refused_at_their_keys() {
+    let lines = |change: &dyn Fn(&mut Model)| {
+        let mut model = model(&laminate("linear"));
+        change(&mut model);
+        model.check().unwrap_err().to_string()
+    };
+    let message = lines(&|model| model.assignments[1].material = Some("glue".into()));
+    assert!(message.contains("assign.1.material"), "{message}");
+    let message = lines(&|model| {
+        let pericles_deck::MaterialModel::Bonds(bonds) = &mut model.materials[1].model else {
+            panic!("bond-based");
+        };
+        bonds.horizon = 2.0;
+    });
+    assert!(message.contains("materials.middle.horizon"), "{message}");
+}
+
+/// Two halves of a bar fly apart at an interface with a fracture energy of its own; the materials never break.
+const GLUED: &str = r#"
+[body]
+shape = "bar"
+length = 80
+spacing = 1
+area = 2
+[material]
+model = "MODEL"
+name = "left"
+density = 1
+youngs_modulus = 10
+horizon_ratio = 3
+[materials.right]
+density = 2
+youngs_modulus = 40
+[[assign]]
+set = "right"
+material = "right"
+[[interface]]
+between = ["right", "left"]
+fracture_energy = 2e-5
+OTHER
+[sets.right]
+where = "x > 40"
+[[initial]]
+velocity = { expression = "8e-3*(x-40)/40" }
+[time]
+end = 16
+dt = 0.002
+"#;
+
+/// The bonds that cross the interface all break, no others do, and they dissipate the fracture energy of its area. Bonds break at the end of the step in which they exceed the critical stretch, 1.1e-3 or more. The
+/// gap opens by 8e-3 per unit of time at most, so that a bond of one cell is stretched by 1.6e-5 in a step: 3 % of the energy at the critical stretch.
+#[test]
+fn an_interface_tears_at_its_own_fracture_energy() {
+    for (model, other) in [
+        ("linear", ""),
+        ("bond-stretch", "rule = \"arithmetic\""),
+        ("linear", "youngs_modulus = 3"),
+        ("state-based", ""),
+        ("state-based", "failure = \"bond-energy\""),
+    ] {
+        let run = run_every_way(&GLUED.replace("MODEL", model).replace("OTHER", other));
+        // Three cells on each side see 3 + 2 + 1 bonds.
+        assert_eq!(run.broken, 6, "{model} {other}");
+        let expected = 2.0 * 2e-5;
+        let energies = run.energies;
+        let error = energies.dissipated / expected - 1.0;
+        assert!(error.abs() < 0.03, "{model} {other}: {error:e}");
+        let off = energies.balance() / energies.dissipated;
+        assert!(off.abs() < 1e-4, "{model} {other}: {off:e}");
+    }
+}
+
+/// Between cells of two sizes an interface dissipates its fracture energy on either grid.
+#[test]
+fn an_interface_through_two_grids_dissipates_its_fracture_energy() {
+    let text = r#"
+body = { shape = "plate", size = [20, 12], spacing = 1, plane = "stress", refine = [{ ratio = 2, box = { min = [10, "open"], max = ["open", "open"] } }] }
+material = { model = "linear", name = "below", density = 1, youngs_modulus = 10, horizon_ratio = 3 }
+materials.above = { density = 2, youngs_modulus = 20 }
+assign = [{ set = "above", material = "above" }]
+interface = [{ fracture_energy = 2e-5 }]
+sets.above = { where = "y > 6" }
+initial = [{ velocity = [0, { expression = "6e-3*(y-6)/6" }] }]
+time = { end = 12, dt = 0.002 }
+"#;
+    let run = run_every_way(text);
+    // The free ends of the interface lack bonds of a horizon's length, and a lattice's planes differ by some per cent.
+    let error = run.energies.dissipated / (20.0 * 2e-5) - 1.0;
+    assert!(error.abs() < 0.15, "{error:e}");
+}
