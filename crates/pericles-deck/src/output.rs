@@ -18,6 +18,12 @@ pub struct Output {
     /// Which fields.
     #[serde(with = "crate::form")]
     pub names: Vec<Field>,
+    /// In which formats fields are written.
+    #[serde(default = "FieldFormat::usual")]
+    pub formats: Vec<FieldFormat>,
+    /// Whether fields are also written on the cells of a mesh.
+    #[serde(default)]
+    pub cells: bool,
     /// When a row is added to the tables of energies, probes and reactions.
     #[serde(with = "crate::form")]
     pub history: Schedule,
@@ -45,6 +51,8 @@ impl Default for Output {
         Self {
             fields: Schedule::Count(20),
             names: Field::USUAL.to_vec(),
+            formats: FieldFormat::usual(),
+            cells: false,
             history: Schedule::Count(200),
             extremes: Vec::new(),
             cracks: None,
@@ -53,6 +61,25 @@ impl Default for Output {
             energy_bound: None,
             pictures: Vec::new(),
         }
+    }
+}
+
+/// A format of fields.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FieldFormat {
+    /// A VTU file for each output, and a PVD file that lists them.
+    Vtu,
+    /// One Exodus II file.
+    Exodus,
+    /// One VTKHDF file.
+    Vtkhdf,
+}
+
+impl FieldFormat {
+    /// The formats that are written unless others are asked for.
+    fn usual() -> Vec<Self> {
+        vec![Self::Vtu]
     }
 }
 
@@ -139,18 +166,20 @@ impl Default for Checkpoint {
     }
 }
 
-/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default.
+/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default;
+/// `mesh`: whether it is a mesh, which has cells.
 pub(crate) fn read(
     table: Table<'_>,
     dimension: Option<usize>,
     driven: bool,
     surface: bool,
+    mesh: bool,
 ) -> Option<Output> {
     let mut usual = Field::USUAL.to_vec();
     if surface {
         usual.push(Field::KineticEnergyDensity);
     }
-    let (fields, names) = fields(&table, dimension, usual);
+    let fields = fields(&table, dimension, usual, mesh);
     let (history, extremes) = history(&table, dimension);
     let cracks = cracks(&table, history);
     let fragments = fragments(&table);
@@ -174,9 +203,17 @@ pub(crate) fn read(
         .map(|table| picture(table, dimension))
         .collect();
     table.finish();
+    let Fields {
+        schedule,
+        names,
+        formats,
+        cells,
+    } = fields?;
     Some(Output {
-        fields: fields?,
-        names: names?,
+        fields: schedule,
+        names,
+        formats,
+        cells,
         history: history?,
         extremes: extremes?,
         cracks: cracks?,
@@ -231,26 +268,83 @@ fn history(
     (schedule, extremes)
 }
 
-/// When field files are written, and which fields.
+/// `[output] fields`.
+struct Fields {
+    schedule: Schedule,
+    names: Vec<Field>,
+    formats: Vec<FieldFormat>,
+    cells: bool,
+}
+
+/// When field files are written, which fields, and how.
 fn fields(
     table: &Table<'_>,
     dimension: Option<usize>,
     usual: Vec<Field>,
-) -> (Option<Schedule>, Option<Vec<Field>>) {
-    let usual = Some(usual);
+    mesh: bool,
+) -> Option<Fields> {
     if is_never(table, "fields") {
-        return (Some(Schedule::Never), usual);
+        return Some(Fields {
+            schedule: Schedule::Never,
+            names: usual,
+            formats: FieldFormat::usual(),
+            cells: false,
+        });
     }
-    let Some(table) = table.table_or_empty("fields") else {
-        return (None, None);
-    };
+    let table = table.table_or_empty("fields")?;
     let schedule = schedule(&table, Schedule::Count(20));
     let names = match table.optional("names") {
-        None => usual,
+        None => Some(usual),
         Some(item) => names(&item, dimension),
     };
+    let formats = formats(&table);
+    let cells = if mesh {
+        table.or("cells", false, |item| item.boolean())
+    } else {
+        table.forbid(
+            "cells",
+            "only a mesh (shape = \"mesh\") has cells of its own",
+        );
+        Some(false)
+    };
     table.finish();
-    (schedule, names)
+    Some(Fields {
+        schedule: schedule?,
+        names: names?,
+        formats: formats?,
+        cells: cells?,
+    })
+}
+
+/// A format, or a list of formats.
+fn formats(table: &Table<'_>) -> Option<Vec<FieldFormat>> {
+    const WORDS: [(&str, FieldFormat); 3] = [
+        ("vtu", FieldFormat::Vtu),
+        ("exodus", FieldFormat::Exodus),
+        ("vtkhdf", FieldFormat::Vtkhdf),
+    ];
+    let Some(item) = table.optional("format") else {
+        table.record("format", WORDS[0].0);
+        return Some(FieldFormat::usual());
+    };
+    if !item.is_list() {
+        return Some(vec![item.choice("format", &WORDS)?]);
+    }
+    let items = item.list("a list of formats")?;
+    if items.is_empty() {
+        item.wrong_length("at least one format; fields = \"never\" writes none");
+        return None;
+    }
+    let mut formats = Vec::new();
+    for item in &items {
+        let format = item.choice("format", &WORDS)?;
+        if formats.contains(&format) {
+            item.out_of_range("each format once");
+            return None;
+        }
+        formats.push(format);
+    }
+    Some(formats)
 }
 
 fn names(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Field>> {

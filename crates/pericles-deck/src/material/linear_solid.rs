@@ -29,7 +29,7 @@ pub(super) fn read(table: Table<'_>, body: &BodyRead, sets: &SetNames) -> Option
         &[("finite", Strains::Finite), ("small", Strains::Small)],
     );
     let density = density(&table);
-    let extent = horizon(&table, body.frame.spacing);
+    let extent = horizon(&table, body.frame);
     let volume_correction = volume_correction(&table);
     let surface_correction = solid_surface(&table);
     let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));

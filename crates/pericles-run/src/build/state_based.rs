@@ -70,7 +70,7 @@ impl Assembler<'_> {
             }
         };
         let no_fail = self.union_of(sets, &material.no_fail)?;
-        let surfaces = self.crack_surfaces()?;
+        let surfaces = self.cracks;
         let body = LinearSolidBody {
             cloud,
             constants: &constants,
@@ -82,12 +82,12 @@ impl Assembler<'_> {
                 // The volume method is refused with the model.
                 SurfaceCorrection::None | SurfaceCorrection::Volume => SolidSurface::None,
             },
-            cracks: &surfaces,
+            cracks: surfaces,
             no_fail: &no_fail,
             damage: material.damage.unwrap_or_default(),
         };
         let (operator, cuts) = body.operator().map_err(at_material)?;
-        let cracks = self.tracked_cracks(&surfaces, &cuts, cloud, warnings);
+        let cracks = self.tracked_cracks(surfaces, &cuts, cloud, warnings);
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();
         if let Some(constants) = &constants {

@@ -1,0 +1,242 @@
+//! Points and sets of a mesh.
+
+use std::path::Path;
+
+use pericles::space::{self, ListedPoints, PointCloud};
+use pericles_deck::{ALL, BuildError, Caution, Depth, Fault, MeshFile, Remark, Solid};
+use pericles_deck::{KeyPath, ModelWarning};
+use pericles_io::VtuCells;
+use pericles_io::observers::MeshCells;
+use pericles_mesh::{CellKind, MeshPoints, PointOptions, PointSet, Problem, RawMesh, SetKind};
+
+use super::assembler::Assembler;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+
+/// A mesh with the points made of it.
+#[derive(Debug, Clone)]
+pub struct MeshBody {
+    /// The mesh, in the file's unit of length.
+    pub mesh: RawMesh,
+    /// Its elements as points, in the file's order.
+    pub points: MeshPoints,
+    /// The file's unit of length, m.
+    pub unit: f64,
+}
+
+/// The name of a set of a mesh in decks: its own, unless that means all points.
+fn name_in_decks(name: &str) -> String {
+    match name {
+        ALL => format!("{ALL} (mesh)"),
+        name => name.to_owned(),
+    }
+}
+
+impl MeshBody {
+    /// The sets of the mesh in the numbering of a cloud of its points.
+    pub(super) fn sets<'a>(
+        &'a self,
+        cloud: &'a PointCloud,
+    ) -> impl Iterator<Item = (String, space::PointSet)> + 'a {
+        let place = places(cloud);
+        self.points.sets.iter().map(move |set| {
+            let points = renumbered(&set.points, &place);
+            (name_in_decks(&set.name), points)
+        })
+    }
+
+    /// The points of a cloud of the mesh near the faces of a set; none if the mesh has no such face set.
+    pub(super) fn near_faces(
+        &self,
+        cloud: &PointCloud,
+        faces: &str,
+        depth: Depth,
+    ) -> Option<space::PointSet> {
+        let distance = depth.length(self.points.mean_size());
+        let faces = &self.face_set(faces)?.name;
+        let near = self
+            .points
+            .near_faces(&self.mesh, self.unit, faces, distance)?;
+        Some(renumbered(&near, &places(cloud)))
+    }
+
+    /// The face set of this name in decks.
+    pub(super) fn face_set(&self, name: &str) -> Option<&PointSet> {
+        let mut sets = self.points.sets.iter();
+        sets.find(|set| set.kind == SetKind::Faces && name_in_decks(&set.name) == name)
+    }
+
+    /// For each of the points of a face set in a cloud of the mesh the area of its faces times their outward normals, m², and the area of all of them; none if there
+    /// is no such face set.
+    pub(super) fn face_vectors(
+        &self,
+        cloud: &PointCloud,
+        name: &str,
+        points: &[u32],
+    ) -> Option<(Vec<[f64; 3]>, f64)> {
+        let set = self.face_set(name)?;
+        let vectors =
+            self.points
+                .face_vectors(&self.mesh, self.unit, cloud.section(), &set.name)?;
+        // Elements of a set are ascending.
+        let of_point = |&i: &u32| {
+            let element = cloud.user_number(i as usize) as u32;
+            let place = set.points.binary_search(&element).ok()?;
+            Some(vectors[place])
+        };
+        let vectors: Option<Vec<[f64; 3]>> = points.iter().map(of_point).collect();
+        Some((vectors?, set.area?))
+    }
+
+    /// The names of its face sets.
+    pub(super) fn face_sets(&self) -> impl Iterator<Item = &str> {
+        let faces = |set: &&PointSet| set.kind == SetKind::Faces;
+        self.points.sets.iter().filter(faces).map(|set| &*set.name)
+    }
+
+    /// The name of the group that a number of a block stands for.
+    pub(crate) fn block_name(&self, block: u32) -> Option<&str> {
+        let mut groups = self.points.sets.iter();
+        let mut groups = groups.by_ref().filter(|set| set.kind == SetKind::Elements);
+        groups
+            .nth((block as usize).checked_sub(1)?)
+            .map(|set| &*set.name)
+    }
+
+    /// The elements as cells of files of results, in the order of the points.
+    pub(crate) fn cells(&self) -> MeshCells {
+        let mut cells = VtuCells::default();
+        for &cell in &self.points.cells {
+            let kind = match self.mesh.cells.kind(cell as usize) {
+                CellKind::Point => 1,
+                CellKind::Line => 3,
+                CellKind::Triangle => 5,
+                CellKind::Quadrilateral => 9,
+                CellKind::Tetrahedron => 10,
+                CellKind::Hexahedron => 12,
+                CellKind::Wedge => 13,
+                CellKind::Pyramid => 14,
+            };
+            cells.push(kind, self.mesh.cells.corners(cell as usize));
+        }
+        let nodes = &self.mesh.nodes;
+        let along = |c: usize| nodes.iter().map(move |x| x[c] * self.unit);
+        MeshCells {
+            nodes: (0..3).flat_map(along).collect(),
+            cells,
+        }
+    }
+
+    /// A number for each element: the place of the first of the groups that it is in, counted from 1; 0 in no group, 1 in a mesh without groups.
+    fn blocks(&self) -> Vec<u32> {
+        let groups = self.points.sets.iter();
+        let groups: Vec<_> = groups.filter(|set| set.kind == SetKind::Elements).collect();
+        let mut blocks = vec![u32::from(groups.is_empty()); self.points.len()];
+        for (place, group) in groups.iter().enumerate().rev() {
+            for &point in &group.points {
+                blocks[point as usize] = place as u32 + 1;
+            }
+        }
+        blocks
+    }
+}
+
+/// The point of a cloud that each element is.
+fn places(cloud: &PointCloud) -> Vec<u32> {
+    let mut place = vec![0; cloud.len()];
+    for i in 0..cloud.len() {
+        place[cloud.user_number(i)] = i as u32;
+    }
+    place
+}
+
+fn renumbered(elements: &[u32], place: &[u32]) -> space::PointSet {
+    let mut points: space::PointSet = elements.iter().map(|&k| place[k as usize]).collect();
+    points.sort_unstable();
+    points
+}
+
+impl Assembler<'_> {
+    /// The points of a mesh, one for each element.
+    pub(super) fn mesh_points(
+        &self,
+        solid: &Solid,
+        file: &MeshFile,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<(PointCloud, MeshBody), BuildError> {
+        let path = resources.beside(&file.path);
+        let mesh = self.read_mesh("body.file", &path, resources)?;
+        let options = PointOptions {
+            unit: file.unit,
+            thickness: file.section,
+            blocks: (!file.blocks.is_empty()).then(|| file.blocks.clone()),
+        };
+        let points = mesh.points(&options).map_err(|problem| {
+            let key = match problem {
+                Problem::UnknownBlock { .. } => "body.blocks",
+                _ => "body.file",
+            };
+            let reason = format!("{}: {problem}", path.display());
+            at_path(key, Fault::BadMesh { reason })
+        })?;
+        if points.dimension != file.dimension {
+            let (given, found) = (file.dimension, points.dimension);
+            let fault = Fault::OtherDimension { given, found };
+            return Err(at_path(
+                ["body.dimension", "body.file"].map(KeyPath::from),
+                fault,
+            ));
+        }
+        self.check_element_size(file, &points)?;
+        let body = MeshBody {
+            mesh,
+            points,
+            unit: file.unit,
+        };
+        let listed = ListedPoints {
+            positions: body.points.positions.clone(),
+            blocks: body.blocks(),
+            volumes: body.points.volumes.clone(),
+        };
+        let cloud = listed
+            .cloud(file.dimension, file.section)
+            .map_err(|error| at("body.file", error))?;
+        self.check_listed(solid, &cloud, resources)?;
+        let sizes = body.points.check_sizes(solid.material.horizon());
+        for problem in body.points.warnings.iter().chain(&sizes) {
+            let problem = problem.to_string();
+            warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
+        }
+        warnings.extend(self.judge_listed(&listed, &cloud));
+        Ok((cloud, body))
+    }
+
+    /// A mesh in a file that a key names.
+    pub(super) fn read_mesh(
+        &self,
+        key: impl Into<KeyPath>,
+        path: &Path,
+        resources: &Resources<'_>,
+    ) -> Result<RawMesh, BuildError> {
+        let mesh = (resources.read_mesh)(path, resources.memory);
+        mesh.map_err(|error| {
+            let fault = error.fault(|reason| Fault::BadMesh { reason });
+            at_path(key.into(), fault)
+        })
+    }
+
+    /// Refuses a given spacing that is far from the size of the elements.
+    fn check_element_size(&self, file: &MeshFile, points: &MeshPoints) -> Result<(), BuildError> {
+        /// Sizes disagree by this factor only if one of them has another unit.
+        const OFF: f64 = 2.0;
+        let found = points.mean_size();
+        match file.spacing {
+            Some(given) if !(1.0 / OFF..=OFF).contains(&(found / given)) => {
+                let fault = Fault::OtherElementSize { given, found };
+                Err(at_path("body.spacing", fault))
+            }
+            _ => Ok(()),
+        }
+    }
+}
