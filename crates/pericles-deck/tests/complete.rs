@@ -61,6 +61,7 @@ fn every_entry_arrives() {
         periodic: false,
         quadrature: Quadrature::Midpoint,
         rectangular: None,
+        positions: Positions::Lattice,
     };
     let solid = solid(&deck);
     assert_eq!(solid.shape, SolidShape::Lattice(lattice));

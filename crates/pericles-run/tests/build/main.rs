@@ -13,6 +13,7 @@ mod extremes;
 mod initial;
 mod material;
 mod memory;
+mod mesh;
 mod model;
 mod plate;
 mod plausible;
