@@ -1,34 +1,11 @@
 //! Bodies whose points are the elements of a mesh in a file.
 
-use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
-
 use super::plane::{section, state};
+use super::sources::MeshFile;
 use super::types::{BodyRead, SolidShape};
 use super::unit::unit;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-
-/// A mesh in a file: each element of the highest dimension is a point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshFile {
-    /// The file; a relative path starts at the folder of the deck.
-    #[serde(rename = "file")]
-    pub path: PathBuf,
-    /// The file's unit of length, m.
-    pub unit: f64,
-    /// Dimension of the body, 2 or 3.
-    pub dimension: usize,
-    /// The groups whose elements are the body; all elements of the highest dimension if there are none.
-    #[serde(default)]
-    pub blocks: Vec<String>,
-    /// The spacing of the points, m; the mean size of the elements if it is not given.
-    #[serde(default)]
-    pub spacing: Option<f64>,
-    /// Thickness of a body in two dimensions (m), 1 in three dimensions.
-    pub section: f64,
-}
 
 /// The word for the spacing that follows from the mesh.
 const AUTO: &str = "auto";

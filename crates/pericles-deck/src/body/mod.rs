@@ -7,13 +7,13 @@ mod outline;
 mod plane;
 mod points;
 mod positions;
+mod sources;
 mod surface;
 mod types;
 mod unit;
 
-pub use filled::{Boundary, FilledCells, FilledShape};
-pub use mesh::MeshFile;
 pub use positions::Positions;
+pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
 pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
 pub use types::{Lattice, PointsFile, Quadrature, SolidShape};
 pub use unit::length_unit;

@@ -6,9 +6,8 @@ use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
-use super::filled::FilledShape;
-use super::mesh::MeshFile;
 use super::positions::Positions;
+use super::sources::{FilledShape, MeshFile};
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::region::Frame;
 

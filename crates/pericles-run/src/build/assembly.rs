@@ -15,7 +15,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
-use super::mesh::MeshBody;
+use super::mesh_body::MeshBody;
 use super::step::damped_step;
 
 /// A body ready to be run.

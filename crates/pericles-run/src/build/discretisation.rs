@@ -7,7 +7,7 @@ use pericles::space::{PointCloud, PointSet};
 use pericles_deck::{Body, BuildError, Fault, KeyPath, ModelWarning};
 use pericles_manifold::surface::Surface;
 
-use super::mesh::MeshBody;
+use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 
 /// Sets of points by name, the points of each in rising order.

@@ -8,7 +8,7 @@ use pericles_manifold::surface::Surface;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
-use super::mesh::MeshBody;
+use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 use super::resources::Resources;
 

@@ -7,7 +7,7 @@ use pericles_deck::{BuildError, Component, Fault, KeyPath, Load, Members};
 use super::area;
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
-use super::mesh::MeshBody;
+use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 
 /// The amplitude of a pressure, and the area that it acts on, m².

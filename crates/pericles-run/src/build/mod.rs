@@ -23,6 +23,7 @@ mod graded;
 mod loads;
 mod memory;
 mod mesh;
+mod mesh_body;
 mod parts;
 mod plausible;
 mod points;
@@ -44,7 +45,7 @@ pub use discretisation::{Discretisation, Grids, Sets};
 pub use discretise::{body_points, discretise};
 pub use exact::ExactReference;
 pub use loads::LoadReport;
-pub use mesh::MeshBody;
+pub use mesh_body::MeshBody;
 pub use resources::{
     FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,
     TableReader,

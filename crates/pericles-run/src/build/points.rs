@@ -12,7 +12,7 @@ use pericles_deck::{
 };
 
 use super::assembler::Assembler;
-use super::mesh::MeshBody;
+use super::mesh_body::MeshBody;
 use super::random::{Space, nodes_of};
 use super::refusal::{at, at_path};
 use super::resources::Resources;
