@@ -48,7 +48,7 @@ fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
                     mesh.cells.push(CellKind::Hexahedron, &c);
                 }
                 halves[usize::from(2 * i >= nx)].extend(begin..mesh.cells.len() as u32);
-                let mut face = |set: &mut Cells, q: [usize; 4]| {
+                let face = |set: &mut Cells, q: [usize; 4]| {
                     if tetrahedra {
                         // The diagonals of the cut.
                         set.push(CellKind::Triangle, &[c[q[0]], c[q[1]], c[q[2]]]);
@@ -315,11 +315,13 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
             "left half, right half",
         ],
     );
+    let plane = with(
+        "unit = \"mm\"",
+        "unit = \"mm\"\ndimension = 2\nplane = \"stress\"",
+    );
+    let plane = plane.split("[sets]").next().unwrap().to_owned() + "[time]\nend = 1e-6\n";
     says(
-        &with(
-            "unit = \"mm\"",
-            "unit = \"mm\"\ndimension = 2\nplane = \"stress\"",
-        ),
+        &plane,
         &mesh,
         &[
             "deck.toml:6:13",
