@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use pericles_deck::Deck;
-use pericles_run::{Resources, build};
+use pericles_run::{build, readers};
 
 use crate::args::{Cli, Command};
 
@@ -119,10 +119,12 @@ fn decks_of_the_book_are_built() {
     {
         for block in blocks(page).iter().filter(|block| block.language == "toml") {
             let (place, text) = (&block.place, deck(block));
-            let deck = Deck::parse(&text, place, &[]);
+            // Files that a deck names are those of the examples.
+            let name = root().join("examples/geometry/page.toml");
+            let deck = Deck::parse(&text, &name.display().to_string(), &[]);
             let deck = deck.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
             assert!(deck.warnings().is_empty(), "{place}: {:?}", deck.warnings());
-            let built = build(&deck, &Resources::default());
+            let built = build(&deck, &readers());
             built.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
             count += 1;
         }

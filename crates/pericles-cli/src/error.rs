@@ -59,6 +59,21 @@ pub(crate) enum CliError {
         /// Why.
         source: SurfaceError,
     },
+    /// A mesh that gives no points.
+    #[error("{}: {problem}", file.display())]
+    Mesh {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A run without fields.
+    #[error("{} holds no field files", folder.display())]
+    #[diagnostic(help("the deck wrote none: see [output] fields"))]
+    NoFields {
+        /// The folder of the run.
+        folder: PathBuf,
+    },
     /// A spectrum of a lattice whose waves grow.
     #[error(
         "the spectrum cannot be measured: the kernel is unstable on this grid, some waves grow"
@@ -103,7 +118,11 @@ impl CliError {
     pub(crate) fn exit(&self) -> Exit {
         match self {
             Self::Run(OfRun(error)) => exit_of(error),
-            Self::NoDeck { .. } | Self::UnstableSpectrum | Self::Surface { .. } => Exit::Input,
+            Self::NoDeck { .. }
+            | Self::UnstableSpectrum
+            | Self::Surface { .. }
+            | Self::Mesh { .. }
+            | Self::NoFields { .. } => Exit::Input,
             Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
                 Exit::Usage
             }

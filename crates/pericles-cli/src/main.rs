@@ -1,7 +1,7 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
 //! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] and [`converge`] on one deck at several values, `info`, `plot`,
-//! `diff` and `report` ([`page`]) on results, `reproduce` on the studies inside the program, `geodesics` on surfaces, `bench` on fixed bodies. Each command
+//! `diff` and `report` ([`page`]) on results, `reproduce` on the studies inside the program, `geodesics` on surfaces, `mesh` on files of meshes, `export` on results, `bench` on fixed bodies. Each command
 //! is one module; it reads arguments, calls a library and prints. What they share are the console, what is shown of a run ([`screen`]), the signals,
 //! and errors, which end in one message and one exit status ([`exit`]).
 
@@ -19,12 +19,14 @@ mod dispersion;
 mod drawn;
 mod error;
 mod exit;
+mod export;
 mod folder;
 mod frames;
 mod geodesics;
 mod given;
 mod info;
 mod manual;
+mod mesh;
 mod new;
 mod page;
 mod plot;
@@ -82,6 +84,8 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::bench(&args),
         Command::Dispersion(args) => dispersion::dispersion(&args),
         Command::Geodesics(args) => geodesics::geodesics(&args),
+        Command::Mesh(args) => mesh::mesh(&args),
+        Command::Export(args) => export::export(&args),
         Command::Converge(args) => converge::converge(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::New(args) => new::new(&args),

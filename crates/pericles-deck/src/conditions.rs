@@ -114,6 +114,21 @@ pub enum LoadAmplitude {
         #[serde(default)]
         area: Option<f64>,
     },
+    /// Force per area against the outward normal of faces, Pa: of a face set of a mesh, or of the face of a layer.
+    Pressure(Component),
+}
+
+impl LoadAmplitude {
+    /// The numbers and expressions that it is given by: three of a vector, one of a pressure.
+    pub fn components(&self) -> &[Component] {
+        match self {
+            Self::BodyForce(field)
+            | Self::Traction {
+                traction: field, ..
+            } => field,
+            Self::Pressure(pressure) => std::slice::from_ref(pressure),
+        }
+    }
 }
 
 /// A place whose motion is written to the history.
@@ -252,6 +267,14 @@ fn amplitude(
 pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<Load> {
     let set = table.required("set").and_then(|item| sets.reference(&item));
     let force = table.exactly_one(LOADS).and_then(|(key, item)| {
+        if key == "pressure" {
+            let variables = Variables {
+                dimension,
+                time: false,
+            };
+            let pressure = component(&item, Quantity::Traction, variables)?;
+            return Some(LoadAmplitude::Pressure(pressure));
+        }
         let quantity = if key == "traction" {
             Quantity::Traction
         } else {
@@ -261,7 +284,14 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
             dimension,
             time: true,
         };
-        Some((key, vector_field(&item, quantity, variables)?))
+        let field = vector_field(&item, quantity, variables)?;
+        Some(match key {
+            "traction" => LoadAmplitude::Traction {
+                traction: field,
+                area: None,
+            },
+            _ => LoadAmplitude::BodyForce(field),
+        })
     });
     let area = if table.has("traction") {
         table.maybe("area", |item| item.positive(Quantity::Area))
@@ -273,11 +303,11 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
     let window = window(&table);
     table.finish();
     let amplitude = match force? {
-        ("traction", traction) => LoadAmplitude::Traction {
+        LoadAmplitude::Traction { traction, .. } => LoadAmplitude::Traction {
             traction,
             area: area?,
         },
-        (_, density) => LoadAmplitude::BodyForce(density),
+        other => other,
     };
     let [from, until] = window?;
     Some(Load {

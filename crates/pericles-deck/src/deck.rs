@@ -200,7 +200,13 @@ fn model(root: Table<'_>) -> Option<Model> {
         .and_then(|item| time::read(item.table()?, &names));
     let output = root.table_or_empty("output").and_then(|table| {
         let driven = prescribe.iter().flatten().any(Prescribe::moves);
-        output::read(table, frame.dimension, driven, body.surface.is_some())
+        output::read(
+            table,
+            frame.dimension,
+            driven,
+            body.surface.is_some(),
+            frame.mesh,
+        )
     });
     let checkpoint = root
         .table_or_empty("checkpoint")

@@ -5,6 +5,7 @@ use pericles::kernel::{ClassOffset, ClassTable, Influence, InfluenceFunction};
 use pericles::material::{StateInfluence, StressState};
 use pericles_dispersion::tuning::{ScalingModel, TunedTable, Tuning, Weights};
 
+use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
@@ -14,6 +15,8 @@ pub(crate) struct Setting {
     pub(crate) state: Option<StressState>,
     /// m
     pub(crate) spacing: Option<f64>,
+    /// Whether the spacing is not known before a mesh is read.
+    pub(crate) automatic: bool,
     /// Whether all cells are squares or cubes of one size.
     pub(crate) cells: bool,
     /// m
@@ -162,6 +165,7 @@ fn of_form(
 fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)> {
     const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
     let unit = table.choice_or_first("r", "unit of lengths", &UNITS)?;
+    refuse_spacing(table, setting, unit == 1);
     let quantity = if unit == 0 {
         Quantity::Length
     } else {
@@ -171,6 +175,16 @@ fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)>
         [Some(1.0), setting.spacing, setting.horizon][unit],
         quantity,
     ))
+}
+
+/// Refuses lengths that count spacings where the spacing is not known before a mesh is read.
+fn refuse_spacing(table: &Table<'_>, setting: &Setting, counts_spacings: bool) {
+    if setting.automatic && counts_spacings {
+        table.report(Fault::OutOfRange {
+            value: "spacing".into(),
+            allowed: "another unit `r`, or `spacing` in [body]: that of this mesh is not known before it is read".into(),
+        });
+    }
 }
 
 /// A table whose first column is a length, or counts spacings or horizons.
@@ -192,6 +206,7 @@ fn tabulated(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> 
 fn cosines(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
     const UNITS: [(&str, usize); 2] = [("spacing", 0), ("horizon", 1)];
     let unit = table.choice_or_first("r", "unit of lengths", &UNITS);
+    refuse_spacing(table, setting, unit == Some(0));
     let wavenumber = table
         .required("wavenumber")
         .and_then(|item| item.positive(Quantity::Number));

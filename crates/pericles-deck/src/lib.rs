@@ -124,14 +124,15 @@ mod words;
 
 pub use assign::Assignment;
 pub use body::{
-    Lattice, PointsFile, Quadrature, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas,
+    Boundary, FilledCells, FilledShape, Lattice, MeshFile, PointsFile, Positions, Quadrature,
+    SolidShape, SurfaceFormula, SurfaceShape, VertexAreas, length_unit,
 };
 pub use boundary::BoundaryCondition;
 pub use caution::{AreaDoubt, Caution};
 pub use component::{Component, VectorField};
 pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
 pub use course::{Course, TimeHistory};
-pub use crack::PreCrack;
+pub use crack::{CrackSurface, PreCrack};
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
@@ -142,12 +143,14 @@ pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
 pub use material::{Material, MaterialModel, NamedMaterial};
 pub use model::{Body, Model, Solid};
-pub use output::{Checkpoint, CrackOutput, FragmentOutput, Output, Picture, Precision};
+pub use output::{
+    Checkpoint, CrackOutput, FieldFormat, FragmentOutput, Output, Picture, Precision,
+};
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
-pub use set::{ALL, Members, NamedSet};
+pub use set::{ALL, Depth, Members, NamedSet};
 pub use source::Location;
 pub use state_based::StateBased;
 pub use stop::{StopCondition, StopWhen};

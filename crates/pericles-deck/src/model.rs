@@ -179,10 +179,7 @@ impl Body {
     /// Dimension of the space that the body is in.
     pub fn dimension(&self) -> usize {
         match self {
-            Self::Solid(solid) => match &solid.shape {
-                SolidShape::Lattice(lattice) => lattice.grid.dimension(),
-                SolidShape::Points(file) => file.dimension,
-            },
+            Self::Solid(solid) => solid.shape.dimension(),
             Self::Surface(_) => 3,
         }
     }
@@ -206,15 +203,12 @@ impl Body {
     /// The file that the points come from.
     fn file(&self) -> Option<&Path> {
         match self {
-            Self::Solid(Solid {
-                shape: SolidShape::Points(file),
-                ..
-            }) => Some(&file.path),
+            Self::Solid(solid) => solid.shape.file(),
             Self::Surface(SurfaceBody {
                 shape: SurfaceShape::File { path, .. },
                 ..
             }) => Some(path),
-            Self::Solid(_) | Self::Surface(_) => None,
+            Self::Surface(_) => None,
         }
     }
 }
@@ -246,6 +240,9 @@ impl Model {
     pub fn files(&self) -> Vec<&Path> {
         let initial = self.initial.iter();
         let initial = initial.filter_map(|initial| initial.file.as_deref());
-        self.body.file().into_iter().chain(initial).collect()
+        let cracks = self.cracks.iter();
+        let cracks = cracks.filter_map(|crack| crack.surface.file());
+        let body = self.body.file().into_iter();
+        body.chain(initial).chain(cracks).collect()
     }
 }

@@ -17,6 +17,15 @@ pub(crate) struct Frame {
     pub(crate) spacing: Option<f64>,
     /// Whether there are cells to count, all of one size.
     pub(crate) cells: bool,
+    /// Whether the body is a mesh, whose file has its sets and, unless it is given, its spacing.
+    pub(crate) mesh: bool,
+}
+
+impl Frame {
+    /// Whether the spacing is not known before a mesh is read.
+    pub(crate) fn is_automatic(&self) -> bool {
+        self.mesh && self.spacing.is_none()
+    }
 }
 
 /// A table with exactly one key, the kind of region.

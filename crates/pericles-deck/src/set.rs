@@ -8,7 +8,7 @@ use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
-use crate::vocabulary::SELECTIONS;
+use crate::vocabulary::{DEPTHS, SELECTIONS};
 
 /// The name of the set of all points, which is always there.
 pub const ALL: &str = "all";
@@ -33,20 +33,48 @@ pub enum Members {
     Where(Condition),
     /// Those of some blocks.
     Blocks(Vec<u32>),
+    /// Those near the faces of a face set of a mesh.
+    NearFaces {
+        /// The face set, by its name in the mesh.
+        faces: String,
+        /// How near.
+        depth: Depth,
+    },
+}
+
+/// A depth below the faces of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Depth {
+    /// A length, m.
+    Length(f64),
+    /// A number of spacings.
+    Cells(f64),
+}
+
+impl Depth {
+    /// The depth in metres, for points of a spacing (m).
+    pub fn length(self, spacing: f64) -> f64 {
+        match self {
+            Self::Length(length) => length,
+            Self::Cells(cells) => cells * spacing,
+        }
+    }
 }
 
 impl Members {
-    /// The points of a cloud.
-    pub fn of(&self, cloud: &PointCloud) -> PointSet {
+    /// The points of a cloud, except for those near the faces of a mesh, which a cloud does not know.
+    pub fn of(&self, cloud: &PointCloud) -> Option<PointSet> {
         let those = |belongs: &dyn Fn(usize) -> bool| {
             let all = 0..cloud.len() as u32;
             all.filter(|&i| belongs(i as usize)).collect()
         };
-        match self {
+        Some(match self {
             Self::Region(region) => cloud.select(region),
             Self::Where(condition) => those(&|i| condition.holds(cloud.point(i), cloud.block(i))),
             Self::Blocks(blocks) => those(&|i| blocks.contains(&cloud.block(i))),
-        }
+            Self::NearFaces { .. } => return None,
+        })
     }
 
     /// The region, if it is one.
@@ -59,16 +87,20 @@ impl Members {
 }
 
 /// The names that may be used, whether or not their regions could be read.
-pub(crate) struct SetNames(Vec<String>);
+pub(crate) struct SetNames {
+    names: Vec<String>,
+    /// Whether there are others, which are known once a mesh is read.
+    open: bool,
+}
 
 impl SetNames {
     /// A name that must be defined.
     pub(crate) fn reference(&self, item: &Item<'_>) -> Option<String> {
         let name = item.text()?;
-        if self.0.contains(&name) {
+        if self.open || self.names.contains(&name) {
             return Some(name);
         }
-        item.unknown_word("set", &name, self.0.iter().map(String::as_str));
+        item.unknown_word("set", &name, self.names.iter().map(String::as_str));
         None
     }
 
@@ -87,7 +119,10 @@ impl SetNames {
 }
 
 pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedSet>>, SetNames) {
-    let mut names = SetNames(vec![ALL.into()]);
+    let mut names = SetNames {
+        names: vec![ALL.into()],
+        open: frame.mesh,
+    };
     let mut sets = Some(Vec::new());
     for (name, place, item) in table.iter().flat_map(|table| table.named("set")) {
         if let Some(fault) = bad_name(name) {
@@ -96,7 +131,7 @@ pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedS
                 .for_each(|table| table.report_at(place, fault()));
             sets = None;
         }
-        names.0.push(name.into());
+        names.names.push(name.into());
         let members = item.table().and_then(|table| members(table, frame));
         match (members, &mut sets) {
             (Some(members), Some(sets)) => sets.push(NamedSet {
@@ -117,8 +152,32 @@ fn members(table: Table<'_>, frame: Frame) -> Option<Members> {
     match kind {
         "where" => condition(&item, frame.dimension).map(Members::Where),
         "block" => blocks(&item).map(Members::Blocks),
+        "near_faces" => near_faces(&item, frame),
         kind => region::of_kind(kind, &item, frame).map(Members::Region),
     }
+}
+
+/// A depth below the faces of a mesh.
+fn near_faces(item: &Item<'_>, frame: Frame) -> Option<Members> {
+    if frame.dimension.is_some() && !frame.mesh {
+        item.out_of_range(
+            "another kind of set, such as `layer`: only a mesh (shape = \"mesh\") has faces",
+        );
+        return None;
+    }
+    let table = item.table()?;
+    let faces = table.required("faces").and_then(|item| item.text());
+    let depth = table
+        .exactly_one(DEPTHS)
+        .and_then(|(kind, item)| match kind {
+            "depth" => item.positive(Quantity::Length).map(Depth::Length),
+            _ => item.positive(Quantity::Number).map(Depth::Cells),
+        });
+    table.finish();
+    Some(Members::NearFaces {
+        faces: faces?,
+        depth: depth?,
+    })
 }
 
 fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {

@@ -14,7 +14,7 @@ const SYNONYMS: [(&str, &[&str]); 10] = [
     ("critical_stretch", &["s0"]),
 ];
 
-/// What makes a set: a region, a condition, blocks.
+/// What makes a set: a region, a condition, blocks, faces of a mesh.
 pub(crate) const SELECTIONS: &[&str] = &[
     "all",
     "box",
@@ -28,9 +28,10 @@ pub(crate) const SELECTIONS: &[&str] = &[
     "complement",
     "where",
     "block",
+    "near_faces",
 ];
-/// The kinds of region: what makes a set, less conditions and blocks, which need the body's points.
-pub(crate) const REGIONS: &[&str] = SELECTIONS.split_at(SELECTIONS.len() - 2).0;
+/// The kinds of region: what makes a set, less conditions, blocks and faces, which need the body's points.
+pub(crate) const REGIONS: &[&str] = SELECTIONS.split_at(SELECTIONS.len() - 3).0;
 /// The elastic modulus.
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
 /// The horizon.
@@ -73,7 +74,7 @@ pub(crate) const CHECKPOINTS: &[&str] = &["wall", "every", "interval"];
 /// The depth of a layer.
 pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
 /// A load.
-pub(crate) const LOADS: &[&str] = &["body_force", "traction"];
+pub(crate) const LOADS: &[&str] = &["body_force", "traction", "pressure"];
 
 /// The points with the smaller time step.
 pub(crate) const FINE_REGIONS: &[&str] = &["fine", "adaptive"];

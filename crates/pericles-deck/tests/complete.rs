@@ -61,6 +61,7 @@ fn every_entry_arrives() {
         periodic: false,
         quadrature: Quadrature::Midpoint,
         rectangular: None,
+        positions: Positions::Lattice,
     };
     let solid = solid(&deck);
     assert_eq!(solid.shape, SolidShape::Lattice(lattice));
@@ -116,7 +117,7 @@ fn every_entry_arrives() {
         ]
     );
 
-    let segment = |from, to| Crack::Segment { from, to };
+    let segment = |from, to| CrackSurface::from(Crack::Segment { from, to });
     assert_eq!(
         deck.model.cracks[0].surface,
         segment([-0.05, 0.02], [0.0, 0.02])
@@ -241,6 +242,8 @@ fn conditions_time_and_output_arrive() {
         Output {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
+            formats: vec![FieldFormat::Vtu],
+            cells: false,
             history: Schedule::Every(20),
             extremes: Vec::new(),
             energy_bound: None,
@@ -295,7 +298,7 @@ fn defaults_are_filled_in_and_recorded() {
     assert_eq!(deck.model.checkpoint, Checkpoint::Wall(600.0));
     assert_eq!(deck.source(), LEAST);
     let expected = json!({
-        "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "periodic": false, "quadrature": "midpoint" },
+        "body": { "shape": "bar", "length": 1.0, "spacing": 0.01, "origin": [0.0], "area": 1.0, "positions": "lattice", "periodic": false, "quadrature": "midpoint" },
         "material": {
             "model": "bond-stretch", "density": 7850.0, "youngs_modulus": 210e9, "modulus": "continuum",
             "horizon": 0.03, "bonds": "fastest", "volume_correction": "extended", "surface_correction": "none",
@@ -304,7 +307,7 @@ fn defaults_are_filled_in_and_recorded() {
         },
         "time": { "end": 1e-3, "dt": "auto", "safety": 0.95, "scheme": "velocity-verlet", "allow_unstable": false },
         "output": {
-            "fields": { "count": 20 }, "history": { "count": 200 },
+            "fields": { "count": 20, "format": "vtu" }, "history": { "count": 200 },
             "cracks": { "count": 200, "threshold": 0.35 }, "precision": "double",
         },
         "checkpoint": { "wall": 600.0 },
@@ -402,7 +405,7 @@ fn cracks_of_each_dimension() {
     };
     assert_eq!(
         cracks("shape='bar'\nlength=1", "section='50 cm'"),
-        Crack::Section { x: 0.5 }
+        Crack::Section { x: 0.5 }.into()
     );
     let block = "shape='block'\nsize=[1,1,1]";
     assert_eq!(
@@ -415,11 +418,19 @@ fn cracks_of_each_dimension() {
             normal: [0.0, 0.0, 1.0],
             radius: 0.1
         }
+        .into()
     );
     let corners = vec![[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]];
     assert_eq!(
         cracks(block, "polygon=[[0,0,0.5],[1,0,0.5],[0,1,0.5]]"),
-        Crack::Polygon { corners }
+        Crack::Polygon { corners }.into()
+    );
+    assert_eq!(
+        cracks(block, "file='crack.stl'\nunit='mm'"),
+        CrackSurface::File {
+            path: "crack.stl".into(),
+            unit: 1e-3
+        }
     );
 }
 

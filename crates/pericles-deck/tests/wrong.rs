@@ -50,10 +50,14 @@ dt = "auto"
 fields = { interval = "0.5 us" }
 "#;
 
+/// The shape of the body.
+const BODY: &str =
+    "shape = \"plate\"\nsize = [\"100 mm\", \"40 mm\"]\nspacing = \"0.25 mm\"\nplane = \"strain\"";
+
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
     // Keys.
-    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine` and `periodic`"]),
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "also called `dx`"]),
@@ -66,6 +70,17 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "dt = 1e-9\nsafety = 0.5", (36, 1), "safety", &["`safety` has no place", "dt = \"auto\""]),
     wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "a section cuts a bar"]),
     wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` has no place in [load.0]", "`traction`"]),
+    // Meshes, random positions, formats.
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 14), "{ faces", &["only a mesh", "`layer`"]),
+    wrong("fields = { interval = \"0.5 us\" }", "fields = { cells = true }", (38, 12), "cells", &["`cells` has no place in [output.fields]", "only a mesh"]),
+    wrong("fields = { interval = \"0.5 us\" }", "fields = { format = \"vtk\" }", (38, 21), "\"vtk\"", &["unknown format `vtk`", "\"exodus\""]),
+    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\njitter = 0.1", (7, 1), "jitter", &["`jitter` has no place in [body]", "jittered"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"random\"", (7, 13), "\"random\"", &["unknown arrangement of points `random`", "\"blue-noise\""]),
+    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"jittered\"\njitter = 0.5", (8, 10), "0.5", &["out of range", "below 0.5"]),
+    wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\ndimension = 2\nplane = \"strain\"", (3, 1), "[body]", &["[body] lacks `unit`"]),
+    wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mmm\"\ndimension = 2\nplane = \"strain\"", (6, 8), "\"mmm\"", &["unknown unit `mmm`", "the unit of length of the file"]),
+    wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mm\"\ndimension = 1\nplane = \"strain\"", (7, 13), "1", &["out of range", "2 or 3"]),
+    wrong(BODY, "shape = \"outline\"\npolygons = []\nspacing = 1e-4\nplane = \"strain\"", (5, 12), "[]", &["at least one polygon"]),
     // Expressions and tables.
     wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (23, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),
     wrong("[0, \"12 MPa\"]", "[0, { expression = \"(x\" }]", (27, 31), "\"(x\"", &["a parenthesis is not closed", "SI units"]),
@@ -478,4 +493,20 @@ proptest! {
             prop_assert!(!error.problems().is_empty());
         }
     }
+}
+
+#[test]
+fn a_ratio_to_the_spacing_of_a_mesh_needs_the_spacing() {
+    let mesh =
+        "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mm\"\ndimension = 2\nplane = \"strain\"";
+    let deck = |more: &str| {
+        let text = RIGHT.replace(BODY, &format!("{mesh}{more}"));
+        let text = text.replace("horizon = \"0.75 mm\"", "horizon_ratio = 3");
+        Deck::parse(&text, "deck.toml", &[])
+    };
+    let error = deck("").unwrap_err().to_string();
+    assert!(error.contains("deck.toml:13:1"), "{error}");
+    assert!(error.contains("`horizon_ratio` has no place"), "{error}");
+    assert!(error.contains("give `horizon` as a length"), "{error}");
+    assert!(deck("\nspacing = \"0.25 mm\"").is_ok());
 }

@@ -4,11 +4,14 @@
 //! |---|---|---|
 //! | output folder | one run at a time, locked | [`OutputFolder`] |
 //! | `.vtu` and `.pvd` | ParaView and other viewers | [`VtuFile`], [`PvdSeries`]; read back by [`read_fields`] |
+//! | Exodus II and VTKHDF | ParaView, VisIt, scripts: all outputs in one file | [`observers::ResultFile`] |
+//! | `.npz` archives | NumPy | [`NpzWriter`] |
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
 //! | meshes: all of these, Abaqus `.inp`, Exodus II | points and sets from elements, bodies in closed surfaces | [`read_mesh`] |
 //! | text `x y z block volume` | bodies whose points are listed | [`read_points`] |
+//! | text with a line `x y` for each corner | bodies in outlines | [`read_outline`] |
 //! | text with a line of numbers for each point | initial states | [`read_rows`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
 //! | cached results | all runs of a user | [`DiskCache`] |
@@ -48,9 +51,13 @@ mod csv;
 mod error;
 mod folder;
 mod mesh;
+mod npz;
+mod numbering;
 pub mod observers;
+mod outline;
 mod picture;
 mod points;
+mod result_body;
 mod rows;
 mod vtk;
 mod whole;
@@ -66,10 +73,13 @@ pub use mesh::{
     FieldColumn, FieldData, MESH_ENDINGS, MeshError, Place, SURFACE_ENDINGS, parse_fields,
     parse_mesh, parse_surface, read_fields, read_mesh, read_surface,
 };
+pub use npz::NpzWriter;
+pub use outline::{OutlineError, parse_outline, read_outline};
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
 pub use points::{PointsError, parse_points, read_points};
+pub use result_body::{ResultBody, write_error};
 pub use rows::{RowsError, parse_rows, read_rows};
-pub use vtk::{PvdSeries, VtkField, VtuFile};
+pub use vtk::{PvdSeries, VtkField, VtuCells, VtuFile};
 pub use xml::escaped;

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use pericles::cache::{Cache, NoCache};
 use pericles_io::{
-    DiskCache, IoError, MeshError, PointsError, RowsError, read_points, read_rows, read_surface,
+    DiskCache, IoError, MeshError, OutlineError, PointsError, RowsError, read_mesh, read_outline,
+    read_points, read_rows, read_surface,
 };
 
 use crate::build::{Assembly, FileError, Resources, assemble, discretise};
@@ -117,6 +118,20 @@ pub fn readers() -> Resources<'static> {
         read_points: &|path, dimension, memory| {
             read_points(path, dimension, memory).map_err(|error| match &error {
                 PointsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_mesh: &|path, memory| {
+            read_mesh(path, memory).map_err(|error| match &error {
+                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+                _ => FileError::Wrong(error.to_string()),
+            })
+        },
+        read_outline: &|path, memory| {
+            read_outline(path, memory).map_err(|error| match &error {
+                OutlineError::Io(IoError::TooLarge { .. }) => {
+                    FileError::TooLarge(error.to_string())
+                }
                 _ => FileError::Wrong(error.to_string()),
             })
         },

@@ -52,6 +52,7 @@ mod deck_text;
 pub mod dispersion;
 mod error;
 mod event;
+mod export;
 mod facts;
 mod inputs;
 pub mod machine;
@@ -70,18 +71,20 @@ pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
     Assembly, Discretisation, ExactReference, FileError, Grids, Interior, KernelQuality,
-    LoadReport, MaterialConstants, PlaneWaves, PointsReader, Resources, Sets, SurfaceReader,
-    TableReader, assemble, body_points, build, discretise,
+    LoadReport, MaterialConstants, MeshBody, MeshReader, OutlineReader, PlaneWaves, PointsReader,
+    Polygons, Resources, Sets, SurfaceReader, TableReader, assemble, body_points, build,
+    discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;
 pub use deck_text::DeckText;
 pub use error::RunError;
 pub use event::{Event, Tell};
+pub use export::{ExportFormat, export};
 pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
 pub use inputs::Inputs;
 pub use mirror::MirrorError;
-pub use observers::picture_of;
+pub use observers::{picture_of, result_body};
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};

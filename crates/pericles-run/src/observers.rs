@@ -5,16 +5,17 @@ use std::sync::Arc;
 
 use pericles::Simulation;
 use pericles::observe::{CrackTracker, Schedule};
-use pericles_deck::{Model, Picture, Precision, Scheme};
-use pericles_io::OutputFolder;
+use pericles::space::PointCloud;
+use pericles_deck::{ALL, FieldFormat, Model, Picture, Precision, Scheme};
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, FragmentCourse, History,
-    InnerColumns, PictureOf, Pictures, Probes, Reactions, SurfaceCourse,
+    InnerColumns, PictureOf, Pictures, Probes, Reactions, ResultFile, ResultFormat, SurfaceCourse,
 };
+use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
-use crate::build::{Assembly, ExactReference};
+use crate::build::{Assembly, ExactReference, MeshBody, Sets};
 use crate::checkpoint;
 use crate::error::RunError;
 
@@ -35,6 +36,7 @@ pub fn simulation(
     let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
     let exact = assembly.exact.take();
     let surface = assembly.surface.clone();
+    let body = FieldBody::of(&assembly);
     let mut simulation = assembly.simulation()?;
     let mut names = [
         "run.json",
@@ -90,16 +92,7 @@ pub fn simulation(
         let course = SurfaceCourse::new(folder.file("surface.csv"), measure);
         simulation.observe(output.history, Box::new(course));
     }
-    if output.fields != Schedule::Never {
-        names.extend(["fields.pvd".into(), "fields/fields_*.vtu".into()]);
-        folder.subfolder("fields")?;
-        let single = output.precision == Precision::Single;
-        let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
-        if let Some(surface) = &surface {
-            fields = fields.of_surface(surface.clone());
-        }
-        simulation.observe(output.fields, Box::new(fields));
-    }
+    names.extend(add_fields(model, folder, &body, &mut simulation)?);
     names.extend(add_pictures(
         model,
         folder,
@@ -121,6 +114,97 @@ pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface
         surface: surface.cloned(),
         ..PictureOf::new(picture.field)
     }
+}
+
+/// What files of fields need of an assembly.
+struct FieldBody {
+    cloud: Arc<PointCloud>,
+    sets: Sets,
+    surface: Option<Arc<Surface>>,
+    mesh: Option<Arc<MeshBody>>,
+    dt: f64,
+    steps: u64,
+}
+
+impl FieldBody {
+    fn of(assembly: &Assembly) -> Self {
+        Self {
+            cloud: assembly.cloud.clone(),
+            sets: assembly.sets.clone(),
+            surface: assembly.surface.clone(),
+            mesh: assembly.mesh.clone(),
+            dt: assembly.dt,
+            steps: assembly.steps,
+        }
+    }
+}
+
+/// Adds the files of fields that a model asks for; their names, relative to the folder.
+fn add_fields(
+    model: &Model,
+    folder: &OutputFolder,
+    body: &FieldBody,
+    simulation: &mut Simulation,
+) -> Result<Vec<String>, RunError> {
+    let output = &model.output;
+    let mut names = Vec::new();
+    if output.fields == Schedule::Never {
+        return Ok(names);
+    }
+    let single = output.precision == Precision::Single;
+    let mut one_file = |name: &str, format: ResultFormat| {
+        let title = model.title.clone().unwrap_or_default();
+        let points = result_body(title, &body.cloud, &body.sets, body.mesh.as_deref());
+        let path = folder.file(name);
+        let file = ResultFile::new(path, format, Arc::new(points), &output.names, single);
+        simulation.observe(output.fields, Box::new(file));
+    };
+    for format in &output.formats {
+        match format {
+            FieldFormat::Vtu => {}
+            FieldFormat::Exodus => {
+                names.push("fields.exo".into());
+                one_file("fields.exo", ResultFormat::Exodus);
+            }
+            FieldFormat::Vtkhdf => {
+                names.extend(["fields.vtkhdf".into(), "fields.vtkhdf.part".into()]);
+                let outputs = output.fields.most(body.dt, body.steps) as usize;
+                one_file("fields.vtkhdf", ResultFormat::VtkHdf { outputs });
+            }
+        }
+    }
+    if output.formats.contains(&FieldFormat::Vtu) {
+        names.extend(["fields.pvd".into(), "fields/fields_*.vtu".into()]);
+        folder.subfolder("fields")?;
+        let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
+        if let Some(surface) = &body.surface {
+            fields = fields.of_surface(surface.clone());
+        }
+        simulation.observe(output.fields, Box::new(fields));
+    }
+    if let (true, Some(mesh)) = (output.cells, &body.mesh) {
+        names.extend(["cells.pvd".into(), "cells/cells_*.vtu".into()]);
+        folder.subfolder("cells")?;
+        let fields = FieldSeries::new(folder.path(), single).with(&output.names);
+        let fields = fields.on_cells(Arc::new(mesh.cells()));
+        simulation.observe(output.fields, Box::new(fields));
+    }
+    Ok(names)
+}
+
+/// A body as files of results describe it: blocks are the groups of a mesh, or the blocks of listed points.
+pub fn result_body(
+    title: String,
+    cloud: &PointCloud,
+    sets: &Sets,
+    mesh: Option<&MeshBody>,
+) -> ResultBody {
+    let named = sets.iter().filter(|(name, _)| name != ALL);
+    let named = named.map(|(name, points)| (name.as_str(), points.as_slice()));
+    ResultBody::new(title, cloud, named, |block| {
+        let group = mesh.and_then(|mesh| mesh.block_name(block));
+        group.map_or_else(|| format!("block_{block}"), String::from)
+    })
 }
 
 /// Adds the pictures that a model asks for; their files, relative to the folder.

@@ -221,3 +221,138 @@ fn a_model_whose_file_has_changed_is_not_resumed() {
         other => panic!("{other:?}"),
     }
 }
+
+/// A block of 4 × 3 × 2 cubes, as an Abaqus file in mm, with the sets "left" and "right" of nodes.
+fn cubes() -> String {
+    let [nx, ny, nz] = [4, 3, 2];
+    let node = |i: usize, j: usize, k: usize| (k * (ny + 1) + j) * (nx + 1) + i + 1;
+    let mut text = "*NODE\n".to_owned();
+    for k in 0..=nz {
+        for j in 0..=ny {
+            for i in 0..=nx {
+                text += &format!("{}, {i}, {j}, {k}\n", node(i, j, k));
+            }
+        }
+    }
+    text += "*ELEMENT, TYPE=C3D8, ELSET=steel\n";
+    for k in 0..nz {
+        for j in 0..ny {
+            for i in 0..nx {
+                let number = (k * ny + j) * nx + i + 1;
+                let bottom = [
+                    node(i, j, k),
+                    node(i + 1, j, k),
+                    node(i + 1, j + 1, k),
+                    node(i, j + 1, k),
+                ];
+                let level = (nx + 1) * (ny + 1);
+                let [a, b, c, d] = bottom;
+                let [e, f, g, h] = bottom.map(|n| n + level);
+                text += &format!("{number}, {a}, {b}, {c}, {d}, {e}, {f}, {g}, {h}\n");
+            }
+        }
+    }
+    for (name, i) in [("left", 0), ("right", nx)] {
+        text += &format!("*NSET, NSET={name}\n");
+        for k in 0..=nz {
+            for j in 0..=ny {
+                text += &format!("{},\n", node(i, j, k));
+            }
+        }
+    }
+    text
+}
+
+const CUBES: &str = r#"
+title = "Cubes"
+[body]
+shape = "mesh"
+file = "cubes.inp"
+unit = "mm"
+[material]
+youngs_modulus = "72 GPa"
+density = 2440
+horizon = "2.1 mm"
+[[prescribe]]
+set = "left"
+displacement = [0, 0, 0]
+[[prescribe]]
+set = "right"
+velocity = ["4 m/s", 0, 0]
+[time]
+end = "2 us"
+dt = "0.1 us"
+[output]
+fields = { every = 2, format = ["vtu", "exodus", "vtkhdf"], cells = true }
+"#;
+
+#[test]
+fn result_files_of_a_resumed_run_are_those_of_an_uninterrupted_one() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("cubes.inp"), cubes()).unwrap();
+    let name = place.path().join("cubes.toml").display().to_string();
+    let deck = Deck::parse(CUBES, &name, &[]).unwrap();
+    let source = Source::of_deck(deck, name);
+    let whole = place.path().join("whole");
+    let ending = begun_of(&source, &whole).drive(None, &Cancel::new(), &mut |_| {});
+    assert_eq!(ending.unwrap(), Ending::Finished);
+    let read = |folder: &Path, file: &str| {
+        fs::read(folder.join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
+    };
+    let files = [
+        "fields.exo",
+        "fields.vtkhdf",
+        "cells.pvd",
+        "cells/cells_000010.vtu",
+    ];
+    // Before the first output after the start, in the middle, and just behind an output.
+    for (stop, threads) in [(1, 1), (7, 2), (8, 3)] {
+        let parts = place.path().join(format!("parts-{stop}"));
+        let mut run = begun_of(&source, &parts);
+        let cancel = Cancel::new();
+        let token = cancel.clone();
+        let ending = run.drive(None, &cancel, &mut |event| {
+            if let Event::Step { step, .. } = event
+                && step == stop
+            {
+                token.cancel();
+            }
+        });
+        assert_eq!(ending.unwrap(), Ending::Cancelled);
+        drop(run);
+        // A part of an output that a kill left behind.
+        let mut torn = read(&parts, "fields.exo");
+        torn.extend([1; 100]);
+        fs::write(parts.join("fields.exo"), torn).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let ending = pool.unwrap().install(|| {
+            let mut run = Run::resume(&parts, &means(), &mut |_| {})?.expect("it has not finished");
+            run.drive(None, &Cancel::new(), &mut |_| {})
+        });
+        assert_eq!(ending.unwrap(), Ending::Finished);
+        for file in files {
+            assert!(
+                read(&whole, file) == read(&parts, file),
+                "{file} after step {stop}"
+            );
+        }
+    }
+    // The Exodus file is a mesh of points with the sets, and what is exported from VTU is the same file.
+    let memory = u64::MAX;
+    let mesh = pericles_io::read_mesh(whole.join("fields.exo"), memory).unwrap();
+    assert_eq!(mesh.cells.len(), 24);
+    let names: Vec<&str> = mesh.node_sets.iter().map(|set| &*set.name).collect();
+    assert_eq!(names, ["steel", "left", "right"]);
+    let results = Results::open(&whole).unwrap();
+    let exported = whole.join("exported.exo");
+    let outputs = pericles_run::export(&results, pericles_run::ExportFormat::Exodus, &exported);
+    assert_eq!(outputs.unwrap(), 11);
+    assert!(read(&whole, "fields.exo") == read(&whole, "exported.exo"));
+    let table = whole.join("tables");
+    pericles_run::export(&results, pericles_run::ExportFormat::Csv, &table).unwrap();
+    let table = pericles_io::read_csv(table.join("fields_000010.csv")).unwrap();
+    let state = results.fields().unwrap().last().unwrap().read().unwrap();
+    let ours = table.column("Displacement_x").unwrap();
+    let theirs = state.field("Displacement").unwrap();
+    assert!((0..24).all(|i| ours[i] == theirs.values[3 * i]));
+}

@@ -1,5 +1,6 @@
 //! The command line.
 
+mod geometry;
 mod shared;
 mod values;
 
@@ -13,6 +14,7 @@ use pericles_run::sweep::Axis;
 use crate::exit::Exit;
 use crate::frames::Frames;
 
+pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs};
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
 pub(crate) use values::{Direction, Format, Length, Pair, Range};
 
@@ -31,6 +33,7 @@ Examples:
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
   pericles geodesics 'icosphere(4)' --horizon 0.5     how far distances along edges are off
+  pericles mesh bracket.msh --unit mm                 what a mesh contains: sets, volume, cell size
   pericles bench block-46 --threads 1                 how fast the operators are here
   pericles reproduce --list                           studies of papers
   pericles reproduce fracture/branching";
@@ -113,6 +116,18 @@ A surface is a file (.obj, .ply, .stl, .off, .msh, .vtu, .vtp) or a shape:
 Errors are relative to exact distances on the triangles, over all pairs of vertices that are truly within the
 horizon; \"lost\" are those that a method places beyond it. Times are on the wall clock.")]
     Geodesics(GeodesicsArgs),
+    /// Report what a mesh or surface file contains: elements, volume, cell size, sets with areas, problems
+    #[command(after_help = "\
+  pericles mesh dogbone.msh --unit mm
+  pericles mesh bracket.stl --unit mm --json -
+Elements of the highest dimension are the points of a body (shape = \"mesh\"); a closed surface of triangles is filled
+with a lattice (shape = \"solid\"). Names of sets can be used in a deck as they are printed.")]
+    Mesh(MeshArgs),
+    /// Convert the fields of a run to another format
+    #[command(after_help = "\
+  pericles export branching --to exodus
+  pericles export branching --to npz --out branching.npz")]
+    Export(ExportArgs),
     /// Time whole steps on fixed bodies and set them against what the machine can do
     #[command(after_help = "\
 Times are medians over rounds, on the wall clock: quote ratios, not seconds, of a machine that others use too.

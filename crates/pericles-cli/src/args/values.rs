@@ -150,6 +150,19 @@ pub(super) fn length(text: &str) -> Result<Length, String> {
     Ok(Length { text, metres })
 }
 
+/// The unit of length of a file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LengthUnit {
+    pub(crate) metres: f64,
+}
+
+/// A unit of length, such as `mm`.
+pub(super) fn length_unit(text: &str) -> Result<LengthUnit, String> {
+    let metres = pericles_deck::length_unit(text);
+    let metres = metres.map_err(|_| "a unit of length such as mm, cm, m, um or \"25.4 mm\"")?;
+    Ok(LengthUnit { metres })
+}
+
 /// A number of at least one.
 pub(super) fn ratio(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok();

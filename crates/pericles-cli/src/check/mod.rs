@@ -2,6 +2,7 @@
 
 mod line;
 mod material;
+mod mesh;
 mod refinement;
 mod waves;
 
@@ -46,6 +47,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     }
     let model = source.model();
     let mut lines = body(model, &facts);
+    lines.extend(mesh::mesh(&assembly));
     lines.extend(neighbours(&assembly));
     match (&model.body, &assembly.constants) {
         (Body::Solid(solid), Some(constants)) => {

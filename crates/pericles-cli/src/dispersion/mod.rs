@@ -59,7 +59,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
             &["p", "s1", "s2"][..study.lattice.dimension()],
         )?;
     }
-    study.write_classes((solid, material), &folder)?;
+    study.write_classes(material, &folder)?;
     if !study.wavevectors.is_empty() {
         wavevectors::write(&folder.file("wavevectors.csv"), &study.wavevectors)?;
     }
@@ -155,16 +155,12 @@ impl Analysis {
     }
 
     /// α of each class as the deck has it, with its bonds' share κ.
-    fn write_classes(
-        &self,
-        (solid, material): (&Solid, &BondMaterial),
-        folder: &OutputFolder,
-    ) -> Result<(), IoError> {
+    fn write_classes(&self, material: &BondMaterial, folder: &OutputFolder) -> Result<(), IoError> {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
         }
         let classes = bond_classes(&self.lattice);
-        let spacing = solid.shape.spacing();
+        let spacing = self.lattice.spacing()[0];
         let alpha = classes
             .iter()
             .map(|class| {

@@ -12,11 +12,14 @@ pub(super) enum Kind {
     Cylinder,
     Ball,
     Points,
+    Mesh,
+    Solid,
+    Outline,
     Surface(SurfaceKind),
 }
 
 /// The words.
-pub(super) const KINDS: [(&str, Kind); 13] = [
+pub(super) const KINDS: [(&str, Kind); 16] = [
     ("bar", Kind::Bar),
     ("plate", Kind::Plate),
     ("disc", Kind::Disc),
@@ -30,16 +33,19 @@ pub(super) const KINDS: [(&str, Kind); 13] = [
     ("capsule", Kind::Surface(SurfaceKind::Capsule)),
     ("surface", Kind::Surface(SurfaceKind::File)),
     ("points", Kind::Points),
+    ("mesh", Kind::Mesh),
+    ("solid", Kind::Solid),
+    ("outline", Kind::Outline),
 ];
 
 impl Kind {
     pub(super) fn dimension(self) -> usize {
         match self {
             Self::Bar => 1,
-            Self::Plate | Self::Disc => 2,
-            Self::Block | Self::Cylinder | Self::Ball => 3,
-            // Points say it themselves.
-            Self::Points | Self::Surface(_) => 3,
+            Self::Plate | Self::Disc | Self::Outline => 2,
+            Self::Block | Self::Cylinder | Self::Ball | Self::Solid => 3,
+            // Points and meshes say it themselves.
+            Self::Points | Self::Mesh | Self::Surface(_) => 3,
         }
     }
 }

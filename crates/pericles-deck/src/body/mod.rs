@@ -1,16 +1,25 @@
 //! `[body]`: the shape, its grid and its state of stress.
 
+mod filled;
 mod kind;
+mod mesh;
 mod outline;
 mod plane;
 mod points;
+mod positions;
+mod sources;
 mod surface;
 mod types;
+mod unit;
 
+pub use positions::Positions;
+pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
 pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
 pub use types::{Lattice, PointsFile, Quadrature, SolidShape};
+pub use unit::length_unit;
 
 pub(crate) use types::{BodyRead, SurfaceRead};
+pub(crate) use unit::unit;
 
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
@@ -31,6 +40,7 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
             dimension: None,
             spacing: None,
             cells: true,
+            mesh: false,
         },
         state: None,
         surface: None,
@@ -42,8 +52,13 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     if let Some(Kind::Surface(kind)) = kind {
         return surface(table, kind, read);
     }
-    if kind == Some(Kind::Points) {
-        return points::read(table, read);
+    match kind {
+        Some(Kind::Points) => return points::read(table, read),
+        Some(Kind::Mesh) => return mesh::read(table, read),
+        Some(kind @ (Kind::Solid | Kind::Outline)) => {
+            return filled::read(table, kind.dimension(), read);
+        }
+        _ => {}
     }
     let spacings = table
         .required("spacing")
@@ -75,16 +90,36 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     if !plain && !finer.is_empty() {
         table.forbid("refine", "only cells of one size can be divided");
     }
-    let rules = rules(&table, kind, holes.is_empty() && finer.is_empty());
+    let positions = positions(&table, plain, &finer);
+    let random = positions.is_some_and(|positions| positions.are_random());
+    read.frame.cells &= !random;
+    let whole = !random && holes.is_empty() && finer.is_empty();
+    let rules = rules(&table, kind, whole);
     table.finish();
     let lattice = assemble(&read, outline, section, holes, finer, rules);
-    read.shape = lattice.map(|lattice| {
+    read.shape = lattice.zip(positions).map(|(lattice, positions)| {
         SolidShape::Lattice(Lattice {
             rectangular,
+            positions,
             ..lattice
         })
     });
     read
+}
+
+/// How points are arranged; only cells of one size can be left for random positions.
+fn positions(table: &Table<'_>, plain: bool, finer: &[Option<Finer>]) -> Option<Positions> {
+    let positions = positions::read(table)?;
+    if positions.are_random() && !plain {
+        table.forbid(
+            "positions",
+            "cells longer along one axis stay on their lattice",
+        );
+    }
+    if positions.are_random() && !finer.is_empty() {
+        table.forbid("refine", "random positions have no cells to divide");
+    }
+    Some(positions)
 }
 
 fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead {
@@ -96,6 +131,7 @@ fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead 
         dimension: Some(3),
         spacing: spacing.flatten(),
         cells: false,
+        mesh: false,
     };
     read.state = Some(StressState::Spatial);
     read.surface = Some(SurfaceRead { shape, areas });
@@ -163,6 +199,7 @@ fn assemble(
         periodic,
         quadrature,
         rectangular: None,
+        positions: Positions::Lattice,
     })
 }
 

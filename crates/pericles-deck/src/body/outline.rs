@@ -47,8 +47,8 @@ pub(super) fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
                 bore: inner?.map(|radius| Region::Ball { centre, radius }),
             })
         }
-        // Read by `surface`.
-        Kind::Points | Kind::Surface(_) => None,
+        // Read by modules of their own.
+        Kind::Points | Kind::Mesh | Kind::Solid | Kind::Outline | Kind::Surface(_) => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
             let axis = region::axis(table);

@@ -1,11 +1,13 @@
 //! What `[body]` describes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
+use super::positions::Positions;
+use super::sources::{FilledShape, MeshFile};
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::region::Frame;
 
@@ -17,6 +19,10 @@ pub enum SolidShape {
     Lattice(Lattice),
     /// As a file lists them.
     Points(PointsFile),
+    /// In the elements of a mesh.
+    Mesh(MeshFile),
+    /// In a closed surface or an outline.
+    Filled(FilledShape),
 }
 
 /// A body on a grid.
@@ -38,6 +44,9 @@ pub struct Lattice {
     /// Spacing along each axis, m, of a box whose cells are no squares or cubes; the grid's is then the largest.
     #[serde(default)]
     pub rectangular: Option<Vec<f64>>,
+    /// How points are arranged.
+    #[serde(default)]
+    pub positions: Positions,
 }
 
 impl From<Grid> for Lattice {
@@ -49,37 +58,54 @@ impl From<Grid> for Lattice {
             periodic: false,
             quadrature: Quadrature::Midpoint,
             rectangular: None,
+            positions: Positions::Lattice,
         }
     }
 }
 
 impl SolidShape {
-    /// The grid, if there is one.
+    /// The grid of an analytic shape, if it is one.
     pub fn lattice(&self) -> Option<&Lattice> {
         match self {
             Self::Lattice(lattice) => Some(lattice),
-            Self::Points(_) => None,
+            Self::Points(_) | Self::Mesh(_) | Self::Filled(_) => None,
         }
     }
 
-    /// The grid, if there is one, to change it.
+    /// The grid of an analytic shape, if it is one, to change it.
     pub fn lattice_mut(&mut self) -> Option<&mut Lattice> {
         match self {
             Self::Lattice(lattice) => Some(lattice),
-            Self::Points(_) => None,
+            Self::Points(_) | Self::Mesh(_) | Self::Filled(_) => None,
         }
     }
 
-    /// Whether a file lists the points.
+    /// Whether points are given one by one, by a file, a mesh or random numbers, instead of by the nodes of a lattice.
     pub fn is_listed(&self) -> bool {
-        self.lattice().is_none()
+        match self {
+            Self::Lattice(lattice) => lattice.positions.are_random(),
+            Self::Points(_) | Self::Mesh(_) => true,
+            Self::Filled(filled) => !filled.is_on_lattice(),
+        }
     }
 
-    /// Spacing of the points, m: the largest one of a grid.
-    pub fn spacing(&self) -> f64 {
+    /// Dimension of the body.
+    pub fn dimension(&self) -> usize {
         match self {
-            Self::Lattice(lattice) => lattice.grid.spacing,
-            Self::Points(file) => file.spacing,
+            Self::Lattice(lattice) => lattice.grid.dimension(),
+            Self::Points(file) => file.dimension,
+            Self::Mesh(mesh) => mesh.dimension,
+            Self::Filled(filled) => filled.boundary.dimension(),
+        }
+    }
+
+    /// Spacing of the points, m: the largest one of a grid; none of a mesh whose elements give it.
+    pub fn spacing(&self) -> Option<f64> {
+        match self {
+            Self::Lattice(lattice) => Some(lattice.grid.spacing),
+            Self::Points(file) => Some(file.spacing),
+            Self::Mesh(mesh) => mesh.spacing,
+            Self::Filled(filled) => Some(filled.spacing),
         }
     }
 
@@ -88,6 +114,18 @@ impl SolidShape {
         match self {
             Self::Lattice(lattice) => lattice.grid.section,
             Self::Points(file) => file.section,
+            Self::Mesh(mesh) => mesh.section,
+            Self::Filled(filled) => filled.section,
+        }
+    }
+
+    /// The file that the points come from.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Lattice(_) => None,
+            Self::Points(file) => Some(&file.path),
+            Self::Mesh(mesh) => Some(&mesh.path),
+            Self::Filled(filled) => filled.boundary.file(),
         }
     }
 
@@ -110,8 +148,11 @@ impl SolidShape {
 
     /// The regions without points.
     pub fn holes(&self) -> &[Region] {
-        let lattice = self.lattice();
-        lattice.map_or(&[], |lattice| lattice.grid.holes.as_slice())
+        match self {
+            Self::Lattice(lattice) => &lattice.grid.holes,
+            Self::Filled(filled) => &filled.holes,
+            Self::Points(_) | Self::Mesh(_) => &[],
+        }
     }
 
     /// Spacing along each axis, m, of a box whose cells are no squares or cubes.

@@ -34,6 +34,11 @@ impl Subject for Caution {
             Self::UnusedCoordinate { .. } => {
                 "set the coordinate to 0, or give `dimension` so that all coordinates are used"
             }
+            // Says itself what to do.
+            Self::Mesh { .. } => return None,
+            Self::FilledVolume { .. } => {
+                "a smaller spacing or cells = \"partial\" comes nearer; volumes where surfaces overlap are enclosed twice but filled once"
+            }
             Self::IdleHole => {
                 "check its place and its size, which must exceed the spacing; lengths without a unit are in m"
             }
@@ -121,6 +126,8 @@ impl Subject for Caution {
             Self::ClosePoints { .. } => "very close points",
             Self::UnusedCoordinate { .. } => "not used",
             Self::IdleHole | Self::NothingBreaks { .. } => "no effect",
+            Self::Mesh { .. } => "unusual mesh",
+            Self::FilledVolume { .. } => "another volume",
             Self::NothingActs => "at rest",
             Self::StiffnessError { .. } => "another stiffness",
             Self::ShearStiffness { .. } => "little shear stiffness",

@@ -133,6 +133,23 @@ pub enum Caution {
         /// Its value, m.
         value: f64,
     },
+    /// Something unusual in a mesh.
+    #[error("{problem}")]
+    Mesh {
+        /// What.
+        problem: String,
+    },
+    /// Cells that fill a surface or an outline poorly.
+    #[error(
+        "the cells fill {} of what the boundary encloses ({:.4e} of {:.4e} m³)",
+        percent(volume / enclosed), volume, enclosed
+    )]
+    FilledVolume {
+        /// The volume of the cells, m³.
+        volume: f64,
+        /// The volume that the boundary encloses, m³.
+        enclosed: f64,
+    },
     /// A hole that takes nothing from the body.
     #[error("this hole contains no cell centre of the body: nothing is cut out")]
     IdleHole,

@@ -9,7 +9,9 @@ use pericles::space::{Region, Shape};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use super::ranges::{Check, POSITIVE};
-use crate::body::{Lattice, Quadrature, SolidShape, VertexAreas};
+use crate::body::{
+    Boundary, FilledCells, FilledShape, Lattice, Positions, Quadrature, SolidShape, VertexAreas,
+};
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
@@ -21,15 +23,26 @@ use crate::surface::SurfaceBody;
 
 impl Check {
     pub(super) fn solid(&mut self, key: &KeyPath, solid: &Solid) {
-        self.positive(key.key("spacing"), solid.shape.spacing());
+        if let Some(spacing) = solid.shape.spacing() {
+            self.positive(key.key("spacing"), spacing);
+        }
         let section = ["body.area", "body.thickness", "body"];
-        let dimension = match &solid.shape {
-            SolidShape::Lattice(lattice) => {
-                self.lattice(key, lattice);
-                lattice.grid.dimension()
+        match &solid.shape {
+            SolidShape::Lattice(lattice) => self.lattice(key, lattice),
+            SolidShape::Points(_) => {}
+            SolidShape::Mesh(mesh) => {
+                self.positive(key.key("unit"), mesh.unit);
+                let right = mesh.dimension >= 2;
+                self.within(
+                    right,
+                    key.key("dimension"),
+                    mesh.dimension,
+                    "allowed: 2 or 3",
+                );
             }
-            SolidShape::Points(file) => file.dimension,
-        };
+            SolidShape::Filled(filled) => self.filled(key, filled),
+        }
+        let dimension = solid.shape.dimension();
         let right = (1..=3).contains(&dimension);
         self.within(right, key.key("dimension"), dimension, "allowed: 1, 2 or 3");
         if !right {
@@ -44,6 +57,38 @@ impl Check {
         let allowed = "allowed: uniaxial in one dimension, plane stress or plane strain in two, spatial in three";
         self.within(fits, key.key("plane"), solid.state.name(), allowed);
         self.material(&solid.material, solid.state, dimension);
+    }
+
+    fn filled(&mut self, key: &KeyPath, filled: &FilledShape) {
+        match &filled.boundary {
+            Boundary::Surface { unit, .. } | Boundary::PolygonFile { unit, .. } => {
+                self.positive(key.key("unit"), *unit);
+            }
+            Boundary::Polygons(polygons) => {
+                for (k, polygon) in polygons.iter().enumerate() {
+                    let (right, key) = (polygon.len() >= 3, key.key("polygons").index(k));
+                    self.within(right, key, polygon.len(), "allowed: at least 3 corners");
+                }
+            }
+        }
+        let closed = matches!(filled.boundary, Boundary::Surface { open: false, .. });
+        let right = filled.cells == FilledCells::Whole || closed && !filled.positions.are_random();
+        let allowed = "allowed: \"whole\", except for a lattice in a closed surface of triangles";
+        self.within(right, key.key("cells"), "partial", allowed);
+        self.holes(key, &filled.holes);
+        self.positions(key, filled.positions);
+    }
+
+    fn holes(&mut self, key: &KeyPath, holes: &[Region]) {
+        for (k, hole) in holes.iter().enumerate() {
+            self.region(&key.key("hole").index(k), hole);
+        }
+    }
+
+    fn positions(&mut self, key: &KeyPath, positions: Positions) {
+        if let Positions::Jittered { jitter, .. } = positions {
+            self.between(key.key("jitter"), jitter, [0.0, 0.5]);
+        }
     }
 
     fn lattice(&mut self, key: &KeyPath, lattice: &Lattice) {
@@ -87,9 +132,15 @@ impl Check {
             "gauss",
             allowed,
         );
-        for (k, hole) in lattice.grid.holes.iter().enumerate() {
-            self.region(&key.key("hole").index(k), hole);
-        }
+        self.holes(key, &lattice.grid.holes);
+        self.positions(key, lattice.positions);
+        let plain = lattice.rectangular.is_none()
+            && lattice.finer.is_empty()
+            && !lattice.periodic
+            && !gauss;
+        let right = plain || !lattice.positions.are_random();
+        let allowed = "allowed: \"lattice\" in periodic bodies, with Gauss nodes and with cells of several sizes";
+        self.within(right, key.key("positions"), "random", allowed);
         for (k, part) in lattice.finer.iter().enumerate() {
             let key = key.key("refine").index(k);
             let right = (2..=16).contains(&part.ratio);

@@ -86,6 +86,21 @@ impl Subject for Fault {
             Self::BadPoints { .. } => {
                 "a file of points has a line `x y z block volume` for each, in m and m³; a relative path starts at the deck's folder".into()
             }
+            Self::BadMesh { .. } => {
+                "`pericles mesh FILE --unit UNIT` lists what is in a file; a relative path starts at the deck's folder".into()
+            }
+            Self::OtherDimension { found, .. } => format!(
+                "allowed: dimension = {found}; surface elements of a solid mesh only define sets"
+            ),
+            Self::OtherElementSize { .. } => {
+                "leave `spacing` out to take the mean size, or correct `unit`".into()
+            }
+            Self::NoFaces { .. } => {
+                "allowed: a face set of a mesh or a `layer`; other sets take a `traction` with its `area`".into()
+            }
+            Self::BadCrackFile { .. } => {
+                "a pre-crack is a file of triangles (STL, OBJ, PLY, OFF, Gmsh, VTU or VTP); a relative path starts at the deck's folder".into()
+            }
             Self::LargeFile { .. } => {
                 "the limit is what the machine has free, or what was given as the most".into()
             }
@@ -135,11 +150,15 @@ impl Subject for Fault {
             Self::WrongUnit { .. } => "wrong unit",
             Self::OutOfRange { .. } => "out of range",
             Self::WrongLength { .. } => "wrong length",
-            Self::OtherSpacing { .. } => "another size",
+            Self::OtherSpacing { .. } | Self::OtherElementSize { .. } => "another size",
+            Self::OtherDimension { .. } => "another dimension",
+            Self::NoFaces { .. } => "no faces",
             Self::BadName { .. }
             | Self::BadExpression { .. }
             | Self::BadCondition { .. }
             | Self::BadPoints { .. }
+            | Self::BadMesh { .. }
+            | Self::BadCrackFile { .. }
             | Self::BadInitialFile { .. }
             | Self::BadSurfaceFile { .. } => "not usable",
             Self::NothingPrescribed => "all free",

@@ -141,6 +141,46 @@ pub enum Fault {
         /// What is wrong, with the file and the line in it.
         reason: String,
     },
+    /// A mesh, surface or outline that gives no points.
+    #[error("{reason}")]
+    BadMesh {
+        /// What is wrong, with the file and the place in it.
+        reason: String,
+    },
+    /// A mesh of another dimension.
+    #[error("the mesh has elements of dimension {found}, the body has dimension {given}")]
+    OtherDimension {
+        /// The dimension in the deck.
+        given: usize,
+        /// That of the elements.
+        found: usize,
+    },
+    /// A spacing that is not that of a mesh.
+    #[error(
+        "the mean size of the elements is {}, the spacing is given as {}",
+        quantity(*found, "m"), quantity(*given, "m")
+    )]
+    OtherElementSize {
+        /// The spacing in the deck, m.
+        given: f64,
+        /// The mean size of the elements, m.
+        found: f64,
+    },
+    /// A pressure without a face.
+    #[error(
+        "the set `{}` has no face that a pressure could act on",
+        shortened(set)
+    )]
+    NoFaces {
+        /// The set.
+        set: String,
+    },
+    /// A surface of triangles that is no pre-crack.
+    #[error("{reason}")]
+    BadCrackFile {
+        /// What is wrong, with the file and the place in it.
+        reason: String,
+    },
     /// A file whose content does not fit into the memory.
     #[error("{reason}")]
     LargeFile {

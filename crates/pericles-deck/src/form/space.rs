@@ -102,6 +102,9 @@ enum CrackForm {
         normal: Point,
         radius: f64,
     },
+    Triangles {
+        triangles: Vec<[Point; 3]>,
+    },
 }
 
 described!(Grid: GridForm, Shape: ShapeForm, Finer: FinerForm, Region: RegionForm, Crack: CrackForm);

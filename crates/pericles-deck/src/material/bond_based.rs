@@ -30,7 +30,7 @@ pub(super) fn read(
     let law = treated(&table, law);
     let density = density(&table);
     let modulus = modulus(&table, body.state);
-    let extent = horizon(&table, body.frame.spacing);
+    let extent = horizon(&table, body.frame);
     let volume_correction = volume_correction(&table);
     let surface_correction = table.worded("surface_correction", "surface correction");
     poisson_ratio(&table, body.state);

@@ -9,6 +9,7 @@ use crate::body::BodyRead;
 use crate::influence::Setting;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
+use crate::region::Frame;
 use crate::set::SetNames;
 use crate::vocabulary::HORIZONS;
 
@@ -50,6 +51,7 @@ pub(super) fn setting(
         state: body.state,
         spacing: body.frame.spacing,
         cells: body.frame.cells,
+        automatic: body.frame.is_automatic(),
         horizon: extent.and_then(Extent::length),
         correction,
     }
@@ -112,7 +114,14 @@ impl Extent<'_> {
 }
 
 /// The horizon, given as a length or as a multiple of the spacing.
-pub(super) fn horizon<'a>(table: &Table<'a>, spacing: Option<f64>) -> Option<Extent<'a>> {
+pub(super) fn horizon<'a>(table: &Table<'a>, frame: Frame) -> Option<Extent<'a>> {
+    if frame.is_automatic() {
+        table.forbid(
+            "horizon_ratio",
+            "the spacing of this mesh is not known before it is read: give `horizon` as a length (usual: 3 times the mean size that `pericles mesh` prints), or `spacing` in [body]",
+        );
+    }
+    let spacing = frame.spacing;
     let (kind, item) = table.exactly_one(HORIZONS)?;
     if kind == "horizon" && item.is_keyword("infinite") {
         return Some(Extent::Infinite(item));

@@ -28,7 +28,7 @@ pub(super) fn read(
     let name = table.maybe("name", |item| item.text());
     let strains = table.worded("strains", "strains");
     let density = density(&table);
-    let extent = horizon(&table, body.frame.spacing);
+    let extent = horizon(&table, body.frame);
     let volume_correction = volume_correction(&table);
     let surface_correction = solid_surface(&table);
     let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));

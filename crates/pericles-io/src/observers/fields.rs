@@ -1,6 +1,5 @@
 //! Fields on the points over time.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,9 +11,11 @@ use pericles_manifold::surface::Surface;
 use super::background::Background;
 use super::table::misfit;
 use crate::error::IoError;
-use crate::vtk::{PvdSeries, VtkField, VtuFile};
+use crate::numbering::Numbering;
+use crate::vtk::{PvdSeries, VtkField, VtuCells, VtuFile};
 
 const KEY: &str = "observer/fields";
+const CELLS_KEY: &str = "observer/cells";
 
 /// Fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's numbering of the points.
 ///
@@ -28,6 +29,7 @@ pub struct FieldSeries {
     /// Outputs so far, the one under way among them.
     outputs: usize,
     surface: Option<Arc<Surface>>,
+    cells: Option<Arc<MeshCells>>,
     wanted: Vec<Field>,
     /// Made at the first output.
     body: Option<Arc<FixedPart>>,
@@ -43,6 +45,7 @@ impl FieldSeries {
             series: None,
             outputs: 0,
             surface: None,
+            cells: None,
             wanted: Field::USUAL.to_vec(),
             body: None,
             background: Background::default(),
@@ -52,6 +55,12 @@ impl FieldSeries {
     /// The same with these fields; of tensors each component is a field of its own, `Stress_xx` …
     pub fn with(mut self, fields: &[Field]) -> Self {
         self.wanted = fields.to_vec();
+        self
+    }
+
+    /// The same on the cells of a mesh, one for each point: `cells.pvd` and `cells/cells_000000.vtu` …
+    pub fn on_cells(mut self, cells: Arc<MeshCells>) -> Self {
+        self.cells = Some(cells);
         self
     }
 
@@ -65,13 +74,16 @@ impl FieldSeries {
         let series = match &self.series {
             Some(series) => series,
             None => {
-                let series = PvdSeries::create(self.folder.join("fields.pvd"))?;
+                let series = PvdSeries::create(self.series_file())?;
                 self.series.insert(Arc::new(Mutex::new(series)))
             }
         };
         let series = Arc::clone(series);
         let output = self.output(snapshot);
-        let name = PvdSeries::field_file(self.outputs);
+        let name = match self.cells {
+            Some(_) => format!("cells/cells_{:06}.vtu", self.outputs),
+            None => PvdSeries::field_file(self.outputs),
+        };
         let path = self.folder.join(&name);
         self.background.start(move || {
             output.write(&path)?;
@@ -80,6 +92,22 @@ impl FieldSeries {
         })?;
         self.outputs += 1;
         Ok(())
+    }
+
+    fn series_file(&self) -> PathBuf {
+        let name = match self.cells {
+            Some(_) => "cells.pvd",
+            None => "fields.pvd",
+        };
+        self.folder.join(name)
+    }
+
+    /// The key of what a checkpoint holds.
+    fn key(&self) -> &'static str {
+        match self.cells {
+            Some(_) => CELLS_KEY,
+            None => KEY,
+        }
     }
 
     fn output(&mut self, snapshot: &Snapshot<'_>) -> Output {
@@ -101,11 +129,21 @@ impl FieldSeries {
             .collect();
         Output {
             body: Arc::clone(body),
+            cells: self.cells.clone(),
             time: state.t,
             columns,
             single_precision: self.single_precision,
         }
     }
+}
+
+/// The cells of a mesh, one for each point in the user's order.
+#[derive(Debug, Clone)]
+pub struct MeshCells {
+    /// Positions of the nodes, m: x of all, then y, then z.
+    pub nodes: Vec<f64>,
+    /// The cells.
+    pub cells: VtuCells,
 }
 
 /// A named field in the user's order of points.
@@ -143,6 +181,7 @@ impl FixedPart {
 /// What a file holds, taken from a snapshot that will not wait.
 struct Output {
     body: Arc<FixedPart>,
+    cells: Option<Arc<MeshCells>>,
     time: f64,
     columns: Vec<Column>,
     single_precision: bool,
@@ -151,7 +190,11 @@ struct Output {
 impl Output {
     fn write(&self, path: &Path) -> std::result::Result<(), IoError> {
         let body = &*self.body;
-        let mut file = VtuFile::new(body.dimension, &body.positions).time(self.time);
+        let mut file = match &self.cells {
+            Some(mesh) => VtuFile::new(3, &mesh.nodes).on_cells(&mesh.cells),
+            None => VtuFile::new(body.dimension, &body.positions),
+        };
+        file = file.time(self.time);
         if let Some(triangles) = &body.triangles {
             file = file.triangles(triangles);
         }
@@ -190,6 +233,7 @@ impl Observer for FieldSeries {
 
 impl Saved for FieldSeries {
     fn save(&self, archive: &mut Archive) {
+        let key = self.key();
         let Self {
             outputs,
             // Opened again.
@@ -197,19 +241,20 @@ impl Saved for FieldSeries {
             folder: _,
             single_precision: _,
             surface: _,
+            cells: _,
             wanted: _,
             body: _,
             background: _,
         } = self;
-        archive.put(KEY, Values::U64(vec![*outputs as u64]));
+        archive.put(key, Values::U64(vec![*outputs as u64]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut entries = 0;
-        archive.u64_into(KEY, std::slice::from_mut(&mut entries))?;
+        archive.u64_into(self.key(), std::slice::from_mut(&mut entries))?;
         self.outputs = entries as usize;
         self.series = (entries > 0)
-            .then(|| PvdSeries::reopen(self.folder.join("fields.pvd"), self.outputs))
+            .then(|| PvdSeries::reopen(self.series_file(), self.outputs))
             .transpose()
             .map_err(misfit)?
             .map(|series| Arc::new(Mutex::new(series)));
@@ -218,7 +263,10 @@ impl Saved for FieldSeries {
 }
 
 /// A field as columns of a file: name, whether it is a vector, numbers.
-fn columns<'a>(field: Field, snapshot: &'a Snapshot<'_>) -> Vec<(String, bool, &'a [f64])> {
+pub(super) fn columns<'a>(
+    field: Field,
+    snapshot: &'a Snapshot<'_>,
+) -> Vec<(String, bool, &'a [f64])> {
     let array = snapshot.field(field);
     if !field.is_tensor() {
         return vec![(field.name().to_owned(), field.is_vector(), array)];
@@ -229,42 +277,4 @@ fn columns<'a>(field: Field, snapshot: &'a Snapshot<'_>) -> Vec<(String, bool, &
         .zip(array.chunks(cloud.len()))
         .map(|(component, array)| (format!("{}_{component}", field.name()), false, array))
         .collect()
-}
-
-/// The way from the cloud's order of points to the user's; none if they are the same.
-struct Numbering(Option<Vec<usize>>);
-
-impl Numbering {
-    fn of(cloud: &PointCloud) -> Self {
-        let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.user_number(i)).collect();
-        let same = numbers.iter().enumerate().all(|(i, &number)| i == number);
-        Self((!same).then_some(numbers))
-    }
-
-    /// A component-major array in the user's order.
-    fn apply<'a>(&self, array: &'a [f64]) -> Cow<'a, [f64]> {
-        let Some(numbers) = &self.0 else {
-            return Cow::Borrowed(array);
-        };
-        let n = numbers.len();
-        let mut ordered = vec![0.0; array.len()];
-        for (from, to) in array.chunks(n).zip(ordered.chunks_mut(n)) {
-            for (&value, &number) in from.iter().zip(numbers) {
-                to[number] = value;
-            }
-        }
-        Cow::Owned(ordered)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_are_written_in_the_user_s_order() {
-        let numbering = Numbering(Some(vec![2, 0, 1]));
-        let ordered = numbering.apply(&[10.0, 20.0, 30.0, 1.0, 2.0, 3.0]);
-        assert_eq!(*ordered, [20.0, 30.0, 10.0, 2.0, 3.0, 1.0]);
-    }
 }

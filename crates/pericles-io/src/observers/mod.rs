@@ -3,6 +3,7 @@
 //! | observer | files | content |
 //! |---|---|---|
 //! | [`FieldSeries`] | `fields.pvd`, `fields/fields_000000.vtu` … | all fields on the points |
+//! | [`ResultFile`] | `fields.exo`, `fields.vtkhdf` | the same in one file |
 //! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; where there are such, the distance from a known solution, a bound of the energy, inner iterations |
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
@@ -58,17 +59,19 @@ mod history;
 mod pictures;
 mod probes;
 mod reactions;
+mod result_file;
 mod surface;
 mod table;
 
 pub use columns::{EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
-pub use fields::FieldSeries;
+pub use fields::{FieldSeries, MeshCells};
 pub use fragments::FragmentCourse;
 pub use history::History;
 pub use pictures::{DrawnState, PictureOf, Pictures};
 pub use probes::Probes;
 pub use reactions::Reactions;
+pub use result_file::{ResultFile, ResultFormat};
 pub use surface::SurfaceCourse;
 
 #[cfg(test)]

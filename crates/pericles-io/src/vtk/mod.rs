@@ -25,10 +25,12 @@
 //! ```
 
 mod blocks;
+mod cells;
 #[cfg(test)]
 pub(crate) mod decode;
 mod pvd;
 mod vtu;
 
+pub use cells::VtuCells;
 pub use pvd::PvdSeries;
 pub use vtu::{VtkField, VtuFile};

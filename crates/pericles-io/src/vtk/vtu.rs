@@ -4,13 +4,9 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::blocks::write_array;
+use super::cells::{Cells, VtuCells};
 use crate::xml::escaped;
 use crate::{IoError, write_atomically};
-
-/// The cell type of a single point in VTK.
-const VTK_VERTEX: u8 = 1;
-/// That of a triangle.
-const VTK_TRIANGLE: u8 = 5;
 
 /// Room for an offset: `offset="` + 20 digits of the largest u64 + `"`.
 const OFFSET_WIDTH: usize = 29;
@@ -149,6 +145,7 @@ pub struct VtuFile<'a> {
     time: f64,
     fields: Vec<VtkField<'a>>,
     triangles: &'a [[u32; 3]],
+    cells: Option<&'a VtuCells>,
 }
 
 /// The end of every file.
@@ -177,6 +174,7 @@ impl<'a> VtuFile<'a> {
             time: 0.0,
             fields: Vec::new(),
             triangles: &[],
+            cells: None,
         }
     }
 
@@ -189,6 +187,12 @@ impl<'a> VtuFile<'a> {
     /// Takes triangles between the points as cells, in place of the points themselves.
     pub fn triangles(mut self, triangles: &'a [[u32; 3]]) -> Self {
         self.triangles = triangles;
+        self
+    }
+
+    /// Takes cells between the points; fields are then those of the cells.
+    pub fn on_cells(mut self, cells: &'a VtuCells) -> Self {
+        self.cells = Some(cells);
         self
     }
 
@@ -229,18 +233,16 @@ impl<'a> VtuFile<'a> {
                 given: self.positions.len(),
             });
         }
-        if let Some(corner) = self
-            .triangles
-            .iter()
-            .flatten()
-            .find(|&&corner| corner as usize >= points)
-        {
+        let corners = self.triangles.iter().flatten();
+        let corners = corners.chain(self.cells.iter().flat_map(|cells| &cells.corners));
+        if let Some(corner) = corners.copied().find(|&corner| corner as usize >= points) {
             return Err(unsuitable(format!(
-                "a triangle has the corner {corner}, of {points} points"
+                "a cell has the corner {corner}, of {points} points"
             )));
         }
+        let places = self.cells.map_or(points, VtuCells::len);
         for (number, field) in self.fields.iter().enumerate() {
-            field.check(path, points)?;
+            field.check(path, places)?;
             let name = field.name;
             if name.is_empty() || name.chars().any(char::is_control) {
                 return Err(unsuitable(format!(
@@ -255,18 +257,15 @@ impl<'a> VtuFile<'a> {
     }
 
     fn write_into(&self, out: &mut (impl Write + Seek), points: usize) -> io::Result<()> {
-        let (corners, kind) = if self.triangles.is_empty() {
-            (1, VTK_VERTEX)
-        } else {
-            (3, VTK_TRIANGLE)
+        let shape = match (self.cells, self.triangles) {
+            (Some(cells), _) => Cells::Mixed(cells),
+            (None, []) => Cells::Vertices(points),
+            (None, triangles) => Cells::Triangles(triangles),
         };
-        let cells = match self.triangles.len() {
-            0 => points,
-            triangles => triangles,
-        };
-        let corner = |k: usize| match self.triangles.get(k / 3) {
-            Some(triangle) => i64::from(triangle[k % 3]),
-            None => k as i64,
+        let cells = shape.len();
+        let (places_of_fields, data) = match self.cells {
+            Some(_) => (cells, "CellData"),
+            None => (points, "PointData"),
         };
         // Places in the file where the offsets go, in the order of the appended arrays.
         let mut places = Vec::new();
@@ -276,7 +275,7 @@ impl<'a> VtuFile<'a> {
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
              compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n\
              <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:?}</DataArray>\n</FieldData>\n\
-             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<PointData>\n",
+             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<{data}>\n",
             self.time
         )?;
         for field in &self.fields {
@@ -284,7 +283,7 @@ impl<'a> VtuFile<'a> {
             let name = escaped(field.name);
             places.push(announce(out, field.data_type(), &name, components)?);
         }
-        write!(out, "</PointData>\n<Points>\n")?;
+        write!(out, "</{data}>\n<Points>\n")?;
         places.push(announce(out, "Float64", "Points", 3)?);
         write!(out, "</Points>\n<Cells>\n")?;
         for (data_type, name) in [
@@ -303,18 +302,18 @@ impl<'a> VtuFile<'a> {
         let mut offsets = Vec::with_capacity(places.len());
         for field in &self.fields {
             offsets.push(out.stream_position()? - start);
-            field.write(out, points)?;
+            field.write(out, places_of_fields)?;
         }
         offsets.push(out.stream_position()? - start);
         write_array(out, 3 * points, |k| {
             interleaved(self.positions, points, k).to_le_bytes()
         })?;
         offsets.push(out.stream_position()? - start);
-        write_array(out, corners * cells, |k| corner(k).to_le_bytes())?;
+        write_array(out, shape.end(cells), |k| shape.corner(k).to_le_bytes())?;
         offsets.push(out.stream_position()? - start);
-        write_array(out, cells, |i| ((corners * (i + 1)) as i64).to_le_bytes())?;
+        write_array(out, cells, |i| (shape.end(i + 1) as i64).to_le_bytes())?;
         offsets.push(out.stream_position()? - start);
-        write_array(out, cells, |_| [kind])?;
+        write_array(out, cells, |i| [shape.vtk_type(i)])?;
         writeln!(out)?;
         out.write_all(END)?;
 

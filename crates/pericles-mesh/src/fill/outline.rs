@@ -97,11 +97,8 @@ impl Outline {
         (0..self.polygons.len()).map(area).sum()
     }
 
-    /// The nodes of a lattice inside, with one node along z, at z = 0.
-    ///
-    /// # Errors
-    /// A spacing that is not positive, too many nodes.
-    pub fn fill(&self, spacing: [f64; 2]) -> Result<Filled, FillError> {
+    /// The corners of the smallest box that holds all polygons, at z = 0.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for corner in self.polygons.iter().flatten() {
             for (c, &x) in corner.iter().enumerate() {
@@ -110,7 +107,15 @@ impl Outline {
             }
         }
         (bounds[0][2], bounds[1][2]) = (0.0, 0.0);
-        let lattice = Lattice::around(bounds, [spacing[0], spacing[1], 1.0])?;
+        bounds
+    }
+
+    /// The nodes of a lattice inside, with one node along z, at z = 0.
+    ///
+    /// # Errors
+    /// A spacing that is not positive, too many nodes.
+    pub fn fill(&self, spacing: [f64; 2]) -> Result<Filled, FillError> {
+        let lattice = Lattice::around(self.bounds(), [spacing[0], spacing[1], 1.0])?;
         let [nx, ny, _] = lattice.counts;
         let columns: Vec<Vec<bool>> = (0..nx)
             .into_par_iter()

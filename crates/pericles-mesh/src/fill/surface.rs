@@ -1,5 +1,7 @@
 //! Surfaces made of triangles.
 
+use std::collections::HashMap;
+
 use super::FillError;
 use crate::element::{cross, dot};
 use crate::raw::RawMesh;
@@ -76,6 +78,26 @@ impl TriangleSurface {
             }
         }
         bounds
+    }
+
+    /// The number of edges of triangles that no triangle passes in the opposite direction, by the positions of their ends: zero of closed surfaces that are oriented.
+    pub fn unmatched_edges(&self) -> usize {
+        // Zeros of both signs are one place.
+        let key = |x: [f64; 3]| x.map(|x| (x + 0.0).to_bits());
+        let mut edges: HashMap<[[u64; 3]; 2], i64> = HashMap::new();
+        for triangle in 0..self.len() {
+            let corners = self.corners(triangle).map(key);
+            for k in 0..3 {
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                match a.cmp(&b) {
+                    std::cmp::Ordering::Less => *edges.entry([a, b]).or_default() += 1,
+                    std::cmp::Ordering::Greater => *edges.entry([b, a]).or_default() -= 1,
+                    std::cmp::Ordering::Equal => {}
+                }
+            }
+        }
+        let unmatched = edges.values().map(|count| count.unsigned_abs());
+        unmatched.sum::<u64>() as usize
     }
 
     /// The enclosed volume Σ a · (b × c) / 6, negative if the triangles look inwards. Positions are taken from the first vertex of the first triangle.

@@ -15,6 +15,7 @@ mod near;
 mod problem;
 mod sets;
 mod summary;
+mod vectors;
 
 pub use problem::{ElementSize, Problem};
 pub use sets::{PointSet, SetKind};

@@ -399,6 +399,14 @@ impl VtkHdfWriter {
         Ok(writer)
     }
 
+    /// Brings what was written to the disk.
+    ///
+    /// # Errors
+    /// The system's refusal.
+    pub fn sync(&self) -> std::io::Result<()> {
+        self.file.sync_data()
+    }
+
     /// The number of outputs.
     pub fn outputs(&self) -> usize {
         self.outputs

@@ -31,7 +31,11 @@ pub fn assemble(
 ) -> Result<Assembly, BuildError> {
     model.check()?;
     discretisation.check(&model.body)?;
-    let assembler = Assembler { model };
+    let cracks = discretisation.cracks.clone();
+    let assembler = Assembler {
+        model,
+        cracks: &cracks,
+    };
     let mut warnings = discretisation.warnings.clone();
     let Discretisation {
         cloud,
@@ -43,7 +47,7 @@ pub fn assemble(
         constants,
         others,
         bonds,
-        cracks,
+        cracks: tracked,
         density,
     } = match (&model.body, surface) {
         (Body::Surface(body), Some(surface)) => {
@@ -65,7 +69,7 @@ pub fn assemble(
             .solution
             .displacement_into(0.0, cloud.axis(0), &mut state.u);
     }
-    let areas = assembler.add_loads(&mut system, cloud, sets, &mut warnings)?;
+    let areas = assembler.add_loads(&mut system, &discretisation, &mut warnings)?;
     assembler.add_motions(&mut system, &state, sets)?;
     assembler.judge_conditions(&system, &mut warnings);
     warnings.extend(assembler.judge_idle_keys(&system));
@@ -96,18 +100,20 @@ pub fn assemble(
     let Discretisation {
         cloud,
         surface,
+        mesh,
         sets,
         ..
     } = discretisation;
     Ok(Assembly {
         cloud,
         surface,
+        mesh,
         sets,
         constants,
         other_materials: others,
         form: bonds.form,
         precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
-        cracks,
+        cracks: tracked,
         system,
         state,
         integrator,

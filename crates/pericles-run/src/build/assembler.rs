@@ -1,5 +1,6 @@
 //! What assembles a model.
 
+use pericles::family::{Crack, EndRule};
 use pericles::space::PointSet;
 use pericles_deck::{BuildError, Fault, Keys, Model};
 
@@ -10,9 +11,16 @@ use super::refusal::at_path;
 #[derive(Clone, Copy)]
 pub(super) struct Assembler<'a> {
     pub(super) model: &'a Model,
+    /// The pre-cracks; none before they are read.
+    pub(super) cracks: &'a [(Crack, EndRule)],
 }
 
-impl Assembler<'_> {
+impl<'a> Assembler<'a> {
+    /// For a model whose pre-cracks are not read yet.
+    pub(super) fn new(model: &'a Model) -> Self {
+        Self { model, cracks: &[] }
+    }
+
     /// The points of a set. A model read from a deck names only sets that it defines; one made by a program may not.
     pub(super) fn members<'s>(
         self,

@@ -15,6 +15,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
+use super::mesh_body::MeshBody;
 use super::step::damped_step;
 
 /// A body ready to be run.
@@ -25,6 +26,8 @@ pub struct Assembly {
     pub sets: Sets,
     /// The surface, if the body is one.
     pub surface: Option<Arc<Surface>>,
+    /// The mesh, if the points are its elements.
+    pub mesh: Option<Arc<MeshBody>>,
     /// The constants of the material; none for a surface, whose pair law has its own.
     pub constants: Option<MaterialConstants>,
     /// The constants of the materials beside the body's, in the order of [`Model::materials`](pericles_deck::Model::materials).

@@ -1,10 +1,9 @@
 //! Force and material of a body.
 
-use pericles::family::{Crack, Cut, EndRule};
 use pericles::material::BondMaterial;
 use pericles::observe::{Field, TrackedCrack};
 use pericles::operator::{BondBody, CompositeBody, Feature};
-use pericles::space::{PointCloud, PointSet};
+use pericles::space::PointSet;
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, MaterialModel, ModelWarning, Remark, Scheme, Solid,
@@ -186,10 +185,10 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
         let cloud = composite.body.cloud;
-        let surfaces = self.crack_surfaces()?;
+        let surfaces = self.cracks;
         let composite = CompositeBody {
             body: BondBody {
-                cracks: &surfaces,
+                cracks: surfaces,
                 ..composite.body
             },
             ..composite
@@ -216,46 +215,8 @@ impl Assembler<'_> {
             };
             pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
-        let tracked = self.tracked_cracks(&surfaces, &assembled.cuts, cloud, warnings);
+        let tracked = self.tracked_cracks(surfaces, &assembled.cuts, cloud, warnings);
         Ok((assembled, tracked))
-    }
-
-    /// The pre-cracks.
-    pub(super) fn crack_surfaces(&self) -> Result<Vec<(Crack, EndRule)>, BuildError> {
-        let crack = |k| KeyPath::from("crack").index(k);
-        for (k, pre_crack) in self.model.cracks.iter().enumerate() {
-            // The library tells what is wrong with a crack, not with which.
-            pre_crack
-                .surface
-                .cutter(pre_crack.ends, 0.0)
-                .map_err(|error| at_path(crack(k), error.into()))?;
-        }
-        let cracks = self.model.cracks.iter();
-        Ok(cracks
-            .map(|crack| (crack.surface.clone(), crack.ends))
-            .collect())
-    }
-
-    /// The pre-cracks with the points at which they cut bonds; warns of those that cut none.
-    pub(super) fn tracked_cracks(
-        &self,
-        surfaces: &[(Crack, EndRule)],
-        cuts: &[Cut],
-        cloud: &PointCloud,
-        warnings: &mut Vec<ModelWarning>,
-    ) -> Vec<TrackedCrack> {
-        let mut tracked = Vec::new();
-        for (k, ((surface, _), cut)) in surfaces.iter().zip(cuts).enumerate() {
-            if cut.bonds == 0 {
-                let caution = Self::useless_crack(surface, cloud);
-                warnings.push(Remark::new(KeyPath::from("crack").index(k), caution));
-            }
-            tracked.push(TrackedCrack {
-                crack: surface.clone(),
-                points: cut.points.clone(),
-            });
-        }
-        tracked
     }
 }
 

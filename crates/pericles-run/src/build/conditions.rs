@@ -29,7 +29,7 @@ impl Assembler<'_> {
         let mut state = State::at_rest(cloud.dimension() * n);
         for (k, initial) in self.model.initial.iter().enumerate() {
             let path = KeyPath::from("initial").index(k);
-            let points = self.members(sets, &initial.set, &path)?;
+            let points = self.members(sets, &initial.set, path.key("set"))?;
             if let Some(file) = &initial.file {
                 let rows = self.initial_rows(&path, file, cloud, resources)?;
                 let columns = 2 * cloud.dimension();
@@ -125,7 +125,7 @@ impl Assembler<'_> {
             }
             names.push(name.clone());
             let path = KeyPath::from("prescribe").index(k);
-            let points = self.members(sets, &motion.set, &path)?.clone();
+            let points = self.members(sets, &motion.set, path.key("set"))?.clone();
             let function = motion.function.smooth_function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             self.refuse_second_motion(k, &points, sets)?;
@@ -187,7 +187,7 @@ impl Assembler<'_> {
         for (k, probe) in self.model.probes.iter().enumerate() {
             let path = KeyPath::from("probe").index(k);
             let points = match &probe.place {
-                ProbePlace::Set(set) => self.members(sets, set, &path)?.clone(),
+                ProbePlace::Set(set) => self.members(sets, set, path.key("set"))?.clone(),
                 ProbePlace::At(place) => {
                     let (nearest, distance) = nearest(cloud, *place);
                     // Inside a cell no place is farther from its centre than half a diagonal.

@@ -4,8 +4,8 @@ use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles_deck::{
-    BuildError, Caution, Component, Fault, KeyPath, LoadAmplitude, Model, ModelWarning, Remark,
-    Scheme, Solid, TimeHistory,
+    BuildError, Caution, Component, Fault, KeyPath, Model, ModelWarning, Remark, Scheme, Solid,
+    TimeHistory,
 };
 use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
@@ -64,19 +64,19 @@ impl Assembly {
     /// # Errors
     /// A body whose points lie on no regular grid.
     pub fn interior<'a>(&'a self, model: &'a Model) -> Result<Interior<'a>, BuildError> {
-        Assembler { model }.interior(self)
+        Assembler::new(model).interior(self)
     }
 
     /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
     pub fn plane_waves(&self, model: &Model) -> Option<PlaneWaves> {
-        Assembler { model }.plane_waves(self)
+        Assembler::new(model).plane_waves(self)
     }
 
     /// Warns of kernels that do not keep what they are made for, and of loads, motions and initial values whose waves the grid distorts. What
     /// the nonlocal model itself does to short waves is no matter of the grid and not warned of. Bodies that lie on no grid, or are of several
     /// materials, are not judged.
     pub fn judge_waves(&self, model: &Model) -> Vec<ModelWarning> {
-        Assembler { model }.judge_waves(self)
+        Assembler::new(model).judge_waves(self)
     }
 }
 
@@ -208,10 +208,7 @@ impl<'a> Assembler<'a> {
             time_content(|t| g(start + t), end - start, carried.frequency)
         };
         for (k, load) in self.model.loads.iter().enumerate() {
-            let (LoadAmplitude::BodyForce(field)
-            | LoadAmplitude::Traction {
-                traction: field, ..
-            }) = &load.amplitude;
+            let field = load.amplitude.components();
             let ([from, until], Ok(function)) = (load.window(), load.function.function()) else {
                 continue;
             };
@@ -308,7 +305,7 @@ fn bonds_of<'a>(
 }
 
 /// How a field goes over time, at the origin; 1 where it does not change.
-fn course(field: &[Component; 3], t: f64) -> f64 {
+fn course(field: &[Component], t: f64) -> f64 {
     field
         .iter()
         .find(|entry| entry.depends_on_time())

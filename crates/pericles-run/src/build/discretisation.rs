@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use pericles::family::{Crack, EndRule};
 use pericles::space::{PointCloud, PointSet};
 use pericles_deck::{Body, BuildError, Fault, KeyPath, ModelWarning};
 use pericles_manifold::surface::Surface;
 
+use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 
 /// Sets of points by name, the points of each in rising order.
@@ -21,8 +23,12 @@ pub struct Discretisation {
     pub grids: Grids,
     /// The surface, if the body is one; its vertices are the points.
     pub surface: Option<Arc<Surface>>,
-    /// The sets of points by name, "all" first.
+    /// The mesh, if the points are its elements.
+    pub mesh: Option<Arc<MeshBody>>,
+    /// The sets of points by name, "all" first, then those of a mesh.
     pub sets: Sets,
+    /// The surfaces of the pre-cracks.
+    pub cracks: Vec<(Crack, EndRule)>,
     /// Warnings about the points.
     pub warnings: Vec<ModelWarning>,
 }

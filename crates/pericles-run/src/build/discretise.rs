@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use pericles::space::{GradedCloud, PointCloud};
-use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Model, Remark};
+use pericles::space::{GradedCloud, PointCloud, PointSet};
+use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark};
 use pericles_manifold::surface::Surface;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
+use super::mesh_body::MeshBody;
+use super::refusal::at_path;
 use super::resources::Resources;
 
 /// Makes the points of a model and selects its sets.
@@ -48,23 +50,30 @@ use super::resources::Resources;
 /// Numbers out of their ranges, points that the engine refuses or that do not fit into the memory, files that cannot be read, sets without points.
 pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisation, BuildError> {
     model.check()?;
-    let assembler = Assembler { model };
+    let assembler = Assembler::new(model);
     let mut warnings = Vec::new();
+    let mut mesh = None;
     let (points, surface) = match &model.body {
         Body::Surface(body) => {
             let (surface, cloud) = assembler.surface_points(body, resources)?;
             (GradedCloud::of_one_grid(cloud), Some(Arc::new(surface)))
         }
-        Body::Solid(solid) => (assembler.points(solid, resources, &mut warnings)?, None),
+        Body::Solid(solid) => {
+            let points = assembler.points(solid, resources, &mut warnings)?;
+            mesh = points.mesh.map(Arc::new);
+            (points.cloud, None)
+        }
     };
     Ok(Discretisation {
-        sets: assembler.select(&points.cloud)?,
+        sets: assembler.select(&points.cloud, mesh.as_deref())?,
+        cracks: assembler.read_cracks(resources)?,
         cloud: Arc::new(points.cloud),
         grids: Grids {
             ratios: points.ratios,
             of_point: points.grid_of_point,
         },
         surface,
+        mesh,
         warnings,
     })
 }
@@ -78,37 +87,74 @@ pub fn body_points(
     resources: &Resources<'_>,
 ) -> Result<(PointCloud, Option<Surface>), BuildError> {
     model.check()?;
-    let assembler = Assembler { model };
+    let assembler = Assembler::new(model);
     match &model.body {
         Body::Surface(body) => {
             let (surface, cloud) = assembler.surface_points(body, resources)?;
             Ok((cloud, Some(surface)))
         }
-        Body::Solid(solid) => Ok((
-            assembler.points(solid, resources, &mut Vec::new())?.cloud,
-            None,
-        )),
+        Body::Solid(solid) => {
+            let points = assembler.points(solid, resources, &mut Vec::new())?;
+            Ok((points.cloud.cloud, None))
+        }
     }
 }
 
 impl Assembler<'_> {
-    fn select(&self, cloud: &PointCloud) -> Result<Sets, BuildError> {
+    fn select(&self, cloud: &PointCloud, mesh: Option<&MeshBody>) -> Result<Sets, BuildError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
+        sets.extend(mesh.iter().flat_map(|mesh| mesh.sets(cloud)));
         let mut problems = Vec::new();
         for set in &self.model.sets {
-            let points = set.members.of(cloud);
-            if points.is_empty() {
-                let fault = Fault::EmptySet {
-                    set: set.name.clone(),
+            let path = KeyPath::from("sets").key(&set.name);
+            if sets.iter().any(|(name, _)| *name == set.name) {
+                let fault = Fault::BadName {
+                    name: set.name.clone(),
+                    reason: "the mesh has a set of this name",
+                    allowed: "allowed: another name; sets of the mesh are used by their own names",
                 };
-                problems.push(Remark::new(KeyPath::from("sets").key(&set.name), fault));
+                problems.push(Remark::new(path, fault));
+                continue;
             }
-            sets.push((set.name.clone(), points));
+            match self.points_of(&set.members, cloud, mesh, &path) {
+                Err(error) => problems.extend(error.into_problems()),
+                Ok(points) => {
+                    if points.is_empty() {
+                        let set = set.name.clone();
+                        problems.push(Remark::new(path, Fault::EmptySet { set }));
+                    }
+                    sets.push((set.name.clone(), points));
+                }
+            }
         }
         if problems.is_empty() {
             Ok(sets)
         } else {
             Err(BuildError::of(problems))
         }
+    }
+
+    fn points_of(
+        &self,
+        members: &Members,
+        cloud: &PointCloud,
+        mesh: Option<&MeshBody>,
+        path: &KeyPath,
+    ) -> Result<PointSet, BuildError> {
+        let (faces, depth) = match members {
+            Members::NearFaces { faces, depth } => (faces, *depth),
+            members => return Ok(members.of(cloud).unwrap_or_default()),
+        };
+        let near = mesh.and_then(|mesh| mesh.near_faces(cloud, faces, depth));
+        near.ok_or_else(|| {
+            let known = mesh.iter().flat_map(|mesh| mesh.face_sets());
+            let fault = Fault::UnknownWord {
+                what: "face set",
+                value: faces.clone(),
+                nearest: None,
+                allowed: known.map(String::from).collect(),
+            };
+            at_path(path.key("near_faces").key("faces"), fault)
+        })
     }
 }

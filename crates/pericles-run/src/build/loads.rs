@@ -4,12 +4,13 @@ use pericles::System;
 use pericles::boundary::Load as BodyLoad;
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, Load, LoadAmplitude, ModelWarning, Remark, VectorField,
+    BuildError, Caution, Fault, KeyPath, Load, LoadAmplitude, ModelWarning, Remark, SolidShape,
+    VectorField,
 };
 
 use super::area;
 use super::assembler::Assembler;
-use super::discretisation::Sets;
+use super::discretisation::Discretisation;
 use super::refusal::{at, at_path};
 use super::step::Steps;
 
@@ -33,36 +34,45 @@ impl Assembler<'_> {
     pub(super) fn add_loads(
         &self,
         system: &mut System,
-        cloud: &PointCloud,
-        sets: &Sets,
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<Option<f64>>, BuildError> {
+        let cloud = &*discretisation.cloud;
+        let mesh = discretisation.mesh.as_deref();
         let mut areas = Vec::new();
         for (k, load) in self.model.loads.iter().enumerate() {
             let path = KeyPath::from("load").index(k);
-            let points = self.members(sets, &load.set, &path)?.clone();
+            let sets = &discretisation.sets;
+            let points = self.members(sets, &load.set, path.key("set"))?.clone();
             let function = load.function.function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             let volume: f64 = points.iter().map(|&i| cloud.volumes()[i as usize]).sum();
-            let (field, factor, area) = match &load.amplitude {
-                LoadAmplitude::BodyForce(density) => (density, 1.0, None),
+            let spread = |field: &VectorField, factor: f64| {
+                self.load_density(&path, field, factor, cloud, &points)
+            };
+            let (density, area) = match &load.amplitude {
+                LoadAmplitude::BodyForce(density) => (spread(density, 1.0)?, None),
                 // On a surface a traction is the force per area itself.
                 LoadAmplitude::Traction { traction, .. } if self.model.body.surface().is_some() => {
-                    (traction, 1.0, Some(volume))
+                    (spread(traction, 1.0)?, Some(volume))
                 }
                 LoadAmplitude::Traction { traction, area } => {
-                    let area = match area {
-                        Some(area) => *area,
+                    let area = match area.or_else(|| self.face_area(mesh, &load.set)) {
+                        Some(area) => area,
                         None => {
                             let path = path.key("traction");
                             self.loaded_area(cloud, load, &points, traction, &path, warnings)?
                         }
                     };
-                    (traction, area / volume, Some(area))
+                    (spread(traction, area / volume)?, Some(area))
+                }
+                LoadAmplitude::Pressure(pressure) => {
+                    let made = self.pressure(&path, load, pressure, discretisation, &points);
+                    let (density, area) = made?;
+                    (density, Some(area))
                 }
             };
             areas.push(area);
-            let density = self.load_density(&path, field, factor, cloud, &points)?;
             let load = BodyLoad {
                 points,
                 density,
@@ -84,13 +94,18 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<f64, BuildError> {
         let refuse = |reason| at_path(path, Fault::UnknownArea { reason });
-        let listed = self
-            .model
-            .body
-            .solid()
-            .is_some_and(|solid| solid.shape.is_listed());
-        if listed && cloud.dimension() > 1 {
-            return Err(refuse("listed points have no faces"));
+        let shape = self.model.body.solid().map(|solid| &solid.shape);
+        match shape {
+            Some(SolidShape::Points(_)) if cloud.dimension() > 1 => {
+                return Err(refuse("listed points have no faces"));
+            }
+            Some(SolidShape::Mesh(_)) => {
+                return Err(refuse("the set is no face set of the mesh, nor near one"));
+            }
+            Some(shape) if shape.is_listed() && cloud.dimension() > 1 => {
+                return Err(refuse("points off a lattice have no faces"));
+            }
+            _ => {}
         }
         let named = self.model.sets.iter().find(|named| named.name == load.set);
         let region = named.and_then(|named| named.members.region());

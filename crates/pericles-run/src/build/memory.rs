@@ -39,6 +39,8 @@ const WORKED: f64 = 24.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
+/// A cell of the box of a surface that is filled: whether it is inside, and a node of it.
+const CELL: f64 = 30.0;
 const LAG: f64 = 22.0;
 /// Numbers for a site of the exterior: its initial fields, and the state and work arrays of their motion.
 const EXTERIOR: f64 = 8.0;
@@ -47,7 +49,7 @@ impl Assembly {
     /// The estimated peak of a run's memory, bytes: points with their state, bonds as they are found, transforms, histories of absorbing ends.
     /// Files and pictures are not counted.
     pub fn memory_estimate(&self, model: &Model) -> u64 {
-        Assembler { model }.memory_estimate(self)
+        Assembler::new(model).memory_estimate(self)
     }
 }
 
@@ -61,8 +63,10 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
         let dimension = grid.grid.dimension();
-        let each = points_per_cell
-            * self.bytes_of_point(solid, dimension, self.neighbours(solid, dimension));
+        let each = points_per_cell * {
+            let neighbours = self.neighbours(solid, dimension, solid.shape.spacing());
+            self.bytes_of_point(solid, dimension, neighbours)
+        };
         let cells = match (solid.shape.rectangular(), &grid.grid.shape) {
             (Some(spacing), Shape::Box { size, .. }) => {
                 let counts = size.iter().zip(spacing).map(|(side, dx)| side / dx);
@@ -90,9 +94,25 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
         let (points, dimension) = (cloud.len() as f64, cloud.dimension());
-        let neighbours = self.neighbours(solid, dimension).min(points);
+        let spacing = solid.shape.spacing().or(Some(cloud.spacing()));
+        let neighbours = self.neighbours(solid, dimension, spacing).min(points);
         let needed = points * self.bytes_of_point(solid, dimension, neighbours);
         self.refuse_if_more(HORIZON, points, needed, resources)
+    }
+
+    /// Refuses so many points in a closed surface or an outline, found among so many cells, that do not fit.
+    pub(super) fn check_filled(
+        &self,
+        solid: &Solid,
+        points: f64,
+        cells: f64,
+        resources: &Resources<'_>,
+    ) -> Result<(), BuildError> {
+        let dimension = solid.shape.dimension();
+        let neighbours = self.neighbours(solid, dimension, solid.shape.spacing());
+        let neighbours = neighbours.min(points);
+        let needed = points * self.bytes_of_point(solid, dimension, neighbours) + CELL * cells;
+        self.refuse_if_more("body.spacing", points, needed, resources)
     }
 
     /// Refuses a surface whose vertices alone do not fit.
@@ -169,12 +189,14 @@ impl Assembler<'_> {
     }
 
     /// Points within the horizon of a point inside.
-    fn neighbours(&self, solid: &Solid, dimension: usize) -> f64 {
+    fn neighbours(&self, solid: &Solid, dimension: usize, spacing: Option<f64>) -> f64 {
         let material = &solid.material;
-        let spacing = match solid.shape.rectangular() {
+        let spacing = match (solid.shape.rectangular(), spacing) {
             // The side of the square or cube of the same volume.
-            Some(sides) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
-            None => solid.shape.spacing(),
+            (Some(sides), _) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
+            (None, Some(spacing)) => spacing,
+            // Of a mesh that is not read yet: the usual three spacings in a horizon.
+            (None, None) => material.horizon() / 3.0,
         };
         let ratio = material
             .volume_correction()

@@ -11,17 +11,23 @@ mod breaking;
 mod conditions;
 mod constants;
 mod content;
+mod cracks;
 mod damping;
 mod discretisation;
 mod discretise;
 mod exact;
+mod faces;
 mod fields;
+mod filled;
 mod graded;
 mod loads;
 mod materials;
 mod memory;
+mod mesh;
+mod mesh_body;
 mod plausible;
 mod points;
+mod random;
 mod refusal;
 mod resources;
 mod scheme;
@@ -39,4 +45,8 @@ pub use discretisation::{Discretisation, Grids, Sets};
 pub use discretise::{body_points, discretise};
 pub use exact::ExactReference;
 pub use loads::LoadReport;
-pub use resources::{FileError, PointsReader, Resources, SurfaceReader, TableReader};
+pub use mesh_body::MeshBody;
+pub use resources::{
+    FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,
+    TableReader,
+};

@@ -4,7 +4,7 @@ use pericles::System;
 use pericles::boundary::MotionKind;
 use pericles::observe::Schedule;
 use pericles::time::State;
-use pericles_deck::{Caution, LoadAmplitude, Model, ModelWarning, Remark, Solid};
+use pericles_deck::{Caution, Model, ModelWarning, Remark, Solid};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -66,11 +66,8 @@ impl Assembler<'_> {
     pub(super) fn judge_rest(&self, state: &State) -> Option<ModelWarning> {
         let at_rest = state.u.iter().chain(&state.v).all(|x| *x == 0.0);
         let loaded = self.model.loads.iter().any(|load| {
-            let (LoadAmplitude::BodyForce(field)
-            | LoadAmplitude::Traction {
-                traction: field, ..
-            }) = &load.amplitude;
-            field.iter().any(|entry| entry.number() != Some(0.0))
+            let mut components = load.amplitude.components().iter();
+            components.any(|entry| entry.number() != Some(0.0))
         });
         let moved = self.model.prescribe.iter().any(|motion| {
             let fixed = motion

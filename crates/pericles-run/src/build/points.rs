@@ -3,17 +3,25 @@
 use pericles::PericlesError;
 use pericles::family::pairs_within;
 use pericles::space::{
-    GradedCloud, GradedGrid, ListedPoints, PointCloud, Shape, gauss_bar, idle_holes,
+    GradedCloud, GradedGrid, Grid, ListedPoints, PointCloud, Shape, gauss_bar, idle_holes,
     rectangular_cells,
 };
 use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Quadrature,
-    Remark, Solid, SolidShape,
+    BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Positions,
+    Quadrature, Remark, Solid, SolidShape,
 };
 
 use super::assembler::Assembler;
+use super::mesh_body::MeshBody;
+use super::random::{Space, nodes_of};
 use super::refusal::{at, at_path};
 use super::resources::Resources;
+
+/// The points of a body, and the mesh whose elements they are, if there is one.
+pub(super) struct BodyPoints {
+    pub(super) cloud: GradedCloud,
+    pub(super) mesh: Option<MeshBody>,
+}
 
 impl Assembler<'_> {
     pub(super) fn points(
@@ -21,23 +29,34 @@ impl Assembler<'_> {
         solid: &Solid,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
-    ) -> Result<GradedCloud, BuildError> {
-        let points = match &solid.shape {
+    ) -> Result<BodyPoints, BuildError> {
+        let mut mesh = None;
+        let cloud = match &solid.shape {
             SolidShape::Points(file) => self
                 .listed_points(solid, file, resources, warnings)
                 .map(GradedCloud::of_one_grid),
             SolidShape::Lattice(lattice) => self.grid_points(solid, lattice, resources, warnings),
+            SolidShape::Filled(shape) => self
+                .filled_points(solid, shape, resources, warnings)
+                .map(GradedCloud::of_one_grid),
+            SolidShape::Mesh(file) => {
+                let made = self.mesh_points(solid, file, resources, warnings);
+                made.map(|(cloud, body)| {
+                    mesh = Some(body);
+                    GradedCloud::of_one_grid(cloud)
+                })
+            }
         }?;
         /// The distance of atoms in a crystal, m.
         const ATOMS: f64 = 1e-10;
-        let spacing = points.cloud.spacing();
+        let spacing = cloud.cloud.spacing();
         if spacing < ATOMS {
             warnings.push(Remark::new(
                 "body.spacing",
                 Caution::TinySpacing { spacing },
             ));
         }
-        Ok(points)
+        Ok(BodyPoints { cloud, mesh })
     }
 
     fn listed_points(
@@ -58,7 +77,7 @@ impl Assembler<'_> {
         let cloud = listed
             .cloud(file.dimension, solid.shape.section())
             .map_err(|error| at("body.file", error))?;
-        let (given, found) = (solid.shape.spacing(), cloud.spacing());
+        let (given, found) = (file.spacing, cloud.spacing());
         if (1.0 / OFF..=OFF).contains(&(found / given)) {
             self.check_listed(solid, &cloud, resources)?;
             warnings.extend(self.judge_listed(&listed, &cloud));
@@ -74,7 +93,11 @@ impl Assembler<'_> {
     }
 
     /// Warns of coordinates that the body does not use, and of points that are much closer to each other than the others.
-    fn judge_listed(&self, listed: &ListedPoints, cloud: &PointCloud) -> Vec<ModelWarning> {
+    pub(super) fn judge_listed(
+        &self,
+        listed: &ListedPoints,
+        cloud: &PointCloud,
+    ) -> Vec<ModelWarning> {
         /// Share of the spacing.
         const CLOSE: f64 = 1e-3;
         let mut cautions = Vec::new();
@@ -154,22 +177,51 @@ impl Assembler<'_> {
                 .points()
                 .and_then(PointCloud::with_periodic_faces)
                 .map(GradedCloud::of_one_grid),
+            _ if lattice.positions.are_random() => {
+                return self
+                    .random_points(grid, lattice.positions)
+                    .map(GradedCloud::of_one_grid)
+                    .map_err(|error| self.no_grid(lattice, error));
+            }
             _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
             _ => graded.points(),
         };
-        points.map_err(|error| {
-            let place: Keys = match &error {
-                PericlesError::NotWholeCells { length, .. } => self.side(lattice, *length),
-                PericlesError::TooManyPoints { .. } => "body.spacing".into(),
-                PericlesError::Unresolved { .. } => self.corner(lattice).into(),
-                PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
-                    KeyPath::from("body.refine").index(*part).into()
-                }
-                PericlesError::FinerParts { .. } => "body.refine".into(),
-                _ => "body".into(),
-            };
-            at_path(place, error.into())
-        })
+        points.map_err(|error| self.no_grid(lattice, error))
+    }
+
+    /// Random points in the shape of a grid.
+    fn random_points(&self, grid: &Grid, positions: Positions) -> pericles::Result<PointCloud> {
+        let dimension = grid.dimension();
+        let inside = grid.inside()?;
+        let space = Space {
+            dimension,
+            bounds: grid.bounds()?,
+            spacing: grid.spacing,
+            section: grid.section,
+            inside: &inside,
+        };
+        let cloud = grid.points()?;
+        let Some(nodes) = nodes_of(grid, &cloud) else {
+            return Ok(cloud);
+        };
+        let listed = space.points(positions, || nodes);
+        let listed = listed.map_err(|error| PericlesError::Extension(Box::new(error)))?;
+        listed.cloud(dimension, grid.section)
+    }
+
+    /// The refusal of a grid, at the key that is to blame.
+    fn no_grid(&self, lattice: &Lattice, error: PericlesError) -> BuildError {
+        let place: Keys = match &error {
+            PericlesError::NotWholeCells { length, .. } => self.side(lattice, *length),
+            PericlesError::TooManyPoints { .. } => "body.spacing".into(),
+            PericlesError::Unresolved { .. } => self.corner(lattice).into(),
+            PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
+                KeyPath::from("body.refine").index(*part).into()
+            }
+            PericlesError::FinerParts { .. } => "body.refine".into(),
+            _ => "body".into(),
+        };
+        at_path(place, error.into())
     }
 
     /// The entry that says where the body is.

@@ -6,6 +6,7 @@ use pericles::cache::{Cache, NoCache};
 use pericles::space::ListedPoints;
 use pericles_deck::Fault;
 use pericles_manifold::surface::Surface;
+use pericles_mesh::RawMesh;
 
 /// Why a file beside a deck gives nothing, in words, with the file and the place in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,15 @@ pub type SurfaceReader<'a> = dyn Fn(&Path, u64) -> Result<Surface, FileError> + 
 pub type PointsReader<'a> =
     dyn Fn(&Path, usize, u64) -> Result<ListedPoints, FileError> + Sync + 'a;
 
+/// Reads a mesh or a surface of triangles with its sets, in the file's unit of length; its content may take so many bytes of memory.
+pub type MeshReader<'a> = dyn Fn(&Path, u64) -> Result<RawMesh, FileError> + Sync + 'a;
+
+/// The corners of polygons.
+pub type Polygons = Vec<Vec<[f64; 2]>>;
+
+/// Reads the polygons of an outline, in the file's unit of length; its content may take so many bytes of memory.
+pub type OutlineReader<'a> = dyn Fn(&Path, u64) -> Result<Polygons, FileError> + Sync + 'a;
+
 /// Reads a table of numbers from a file: so many rows of columns with these names, row by row; its content may take so many bytes of memory.
 pub type TableReader<'a> =
     dyn Fn(&Path, usize, &[&str], u64) -> Result<Vec<f64>, FileError> + Sync + 'a;
@@ -52,6 +62,10 @@ pub struct Resources<'a> {
     pub read_surface: &'a SurfaceReader<'a>,
     /// The reader of bodies with `shape = "points"`.
     pub read_points: &'a PointsReader<'a>,
+    /// The reader of bodies with `shape = "mesh"` and `"solid"`, and of pre-cracks from files.
+    pub read_mesh: &'a MeshReader<'a>,
+    /// The reader of bodies with `shape = "outline"`.
+    pub read_outline: &'a OutlineReader<'a>,
     /// The reader of files of `[[initial]]`.
     pub read_table: &'a TableReader<'a>,
     /// The folder where relative paths of the model start; empty for the present folder.
@@ -74,6 +88,8 @@ impl Default for Resources<'_> {
             cache: &NoCache,
             read_surface: &|_, _| Err(no_reader("surfaces")),
             read_points: &|_, _, _| Err(no_reader("points")),
+            read_mesh: &|_, _| Err(no_reader("meshes")),
+            read_outline: &|_, _| Err(no_reader("outlines")),
             read_table: &|_, _, _, _| Err(no_reader("tables")),
             folder: Path::new(""),
             memory: u64::MAX,

@@ -7,7 +7,7 @@ use pericles::family::{BondList, Crack};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::space::{Point, PointCloud};
-use pericles_deck::{Caution, KeyPath, LoadAmplitude, ModelWarning, Remark, Scheme, Solid};
+use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Scheme, Solid};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -123,11 +123,10 @@ impl Assembler<'_> {
             }
         }
         for (k, (given, load)) in self.model.loads.iter().zip(system.loads()).enumerate() {
-            let (LoadAmplitude::BodyForce(field)
-            | LoadAmplitude::Traction {
-                traction: field, ..
-            }) = &given.amplitude;
-            let acts = |c: usize| c < system.dimension() && field[c].number() != Some(0.0);
+            // A pressure acts along all axes.
+            let components = given.amplitude.components();
+            let component = |c: usize| &components[c.min(components.len() - 1)];
+            let acts = |c: usize| c < system.dimension() && component(c).number() != Some(0.0);
             if !(0..3).any(acts) {
                 continue;
             }
@@ -201,8 +200,8 @@ impl Assembler<'_> {
         // What is wrong with families and cracks has been refused when the operator was made.
         let mut bonds =
             BondList::new(cloud, material.horizon(), material.volume_correction()).ok()?;
-        for crack in &self.model.cracks {
-            bonds.cut(&crack.surface, crack.ends).ok()?;
+        for (surface, ends) in self.cracks {
+            bonds.cut(surface, *ends).ok()?;
         }
         Some(pieces(&bonds))
     }
@@ -230,6 +229,7 @@ fn extent(crack: &Crack) -> (Point, Point) {
             let moved = |sign: f64| std::array::from_fn(|c| centre[c] + sign * reach(c));
             vec![moved(-1.0), moved(1.0)]
         }
+        Crack::Triangles { triangles } => triangles.concat(),
     };
     let fold = |start: f64, pick: fn(f64, f64) -> f64| {
         std::array::from_fn(|c| corners.iter().map(|corner| corner[c]).fold(start, pick))

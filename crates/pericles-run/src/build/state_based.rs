@@ -64,7 +64,7 @@ impl Assembler<'_> {
             }
         };
         let no_fail = self.union_of(sets, &material.no_fail)?;
-        let surfaces = self.crack_surfaces()?;
+        let surfaces = self.cracks;
         let body = LinearSolidBody {
             cloud,
             constants: &constants,
@@ -76,14 +76,14 @@ impl Assembler<'_> {
                 // The volume method is refused with the model.
                 SurfaceCorrection::None | SurfaceCorrection::Volume => SolidSurface::None,
             },
-            cracks: &surfaces,
+            cracks: surfaces,
             no_fail: &no_fail,
             damage: material.damage.unwrap_or_default(),
         };
         // Forms that transform are refused above.
         let form = material.form.of_bonds().unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
-        let cracks = self.tracked_cracks(&surfaces, &bonds.cuts, cloud, warnings);
+        let cracks = self.tracked_cracks(surfaces, &bonds.cuts, cloud, warnings);
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();
         if let Some(constants) = &constants {

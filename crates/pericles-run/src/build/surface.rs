@@ -102,6 +102,7 @@ impl Assembler<'_> {
         for (k, load) in self.model.loads.iter().enumerate() {
             let key = match load.amplitude {
                 LoadAmplitude::BodyForce(_) => "body_force",
+                LoadAmplitude::Pressure(_) => "pressure",
                 LoadAmplitude::Traction { area: Some(_), .. } => "area",
                 LoadAmplitude::Traction { area: None, .. } => continue,
             };

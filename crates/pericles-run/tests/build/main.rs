@@ -14,6 +14,7 @@ mod initial;
 mod material;
 mod materials;
 mod memory;
+mod mesh;
 mod model;
 mod plate;
 mod plausible;

@@ -37,6 +37,19 @@ impl Schedule {
             }
         }
     }
+
+    /// A number of states that is not below that of the states due in a run of `steps` steps of length `dt`, and above it by two at most.
+    pub fn most(&self, dt: f64, steps: u64) -> u64 {
+        match *self {
+            Self::Never => 0,
+            Self::Every(every) => steps.checked_div(every).unwrap_or(0) + 2,
+            // A cast keeps what is too large within the numbers.
+            Self::Interval(interval) => {
+                ((steps as f64 * dt / interval + 1e-6) as u64).min(steps) + 2
+            }
+            Self::Count(count) => count.min(steps) + 2,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -57,5 +70,22 @@ mod tests {
         assert_eq!(due(Schedule::Count(3)), [0, 4, 7, 10]);
         assert_eq!(due(Schedule::Interval(0.01)).len(), 11);
         assert!(due(Schedule::Never).is_empty());
+        for schedule in [
+            Schedule::Never,
+            Schedule::Every(0),
+            Schedule::Every(3),
+            Schedule::Every(11),
+            Schedule::Interval(0.25),
+            Schedule::Interval(0.01),
+            Schedule::Count(0),
+            Schedule::Count(3),
+            Schedule::Count(100),
+        ] {
+            let (most, due) = (schedule.most(0.1, 10), due(schedule).len() as u64);
+            assert!(
+                (due..=due + 2).contains(&most),
+                "{schedule:?}: {due} {most}"
+            );
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The points of a body.
 
-use super::set::check_resolution;
+use super::set::{check_resolution, check_set};
 use super::{Point, Region};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
@@ -186,13 +186,30 @@ impl PointCloud {
         Ok(cloud)
     }
 
-    /// A cloud on a lattice whose node (0, 0, 0) has its centre at `origin`.
-    pub(super) fn on_lattice(
+    /// Points at nodes of a lattice whose node (0, 0, 0) is at `origin`, m, each with the volume of a cell; `section` as in [`PointCloud::new`].
+    ///
+    /// ```
+    /// use pericles::space::{Lattice, PointCloud};
+    /// // Three cells of a square of 2 × 2.
+    /// let lattice = Lattice { spacing: [0.5; 3], shape: [2, 2, 1], node: vec![0, 1, 3] };
+    /// let corner = PointCloud::on_lattice(2, [0.25, 0.25, 0.0], lattice, 2.0)?;
+    /// assert_eq!((corner.point(2), corner.volumes()[2]), ([0.75, 0.75, 0.0], 0.5));
+    /// # Ok::<(), pericles::PericlesError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No points, a spacing or section that is not positive, nodes that are not ascending or beyond the lattice's shape.
+    pub fn on_lattice(
         dimension: usize,
         origin: Point,
         lattice: Lattice,
         section: f64,
     ) -> Result<Self> {
+        for dx in lattice.spacing {
+            positive("the spacing", dx)?;
+        }
+        let nodes = lattice.shape.iter().product();
+        check_set("the nodes of a lattice", &lattice.node, nodes)?;
         let n = lattice.node.len();
         let mut positions = vec![0.0; dimension * n];
         for (i, &node) in lattice.node.iter().enumerate() {

@@ -202,6 +202,27 @@ impl Grid {
         }
     }
 
+    /// The box that holds the body: lower and upper corner, m.
+    ///
+    /// # Errors
+    /// As [`Grid::points`], but for a body without points.
+    pub fn bounds(&self) -> Result<[Point; 2]> {
+        Ok(self.cells()?.bounds)
+    }
+
+    /// A test whether a place (m) belongs to the body: lies in the shape and in none of its holes.
+    ///
+    /// # Errors
+    /// As [`Grid::points`], but for a body without points.
+    pub fn inside(&self) -> Result<impl Fn(Point) -> bool + Sync + '_> {
+        let cells = self.cells()?;
+        Ok(move |place: Point| {
+            let [low, high] = cells.bounds;
+            let in_box = (0..cells.dimension).all(|c| (low[c]..=high[c]).contains(&place[c]));
+            in_box && cells.holds(place)
+        })
+    }
+
     /// Makes the cloud, x fastest.
     ///
     /// # Errors
@@ -438,6 +459,29 @@ mod tests {
         // No common divisor within a factor of two.
         assert_eq!(near(&[1.0, std::f64::consts::SQRT_2], 0.3), [0.0; 0]);
         assert_eq!(near(&[1e300], 1e-300), [0.0; 0]);
+    }
+
+    #[test]
+    fn places_belong_to_a_body_where_its_cells_do() {
+        let ring = Grid {
+            shape: Shape::Disc {
+                centre: [1.0, 2.0, 0.0],
+                radius: 1.0,
+            },
+            spacing: 0.1,
+            section: 1.0,
+            holes: vec![Region::Ball {
+                centre: [1.0, 2.0, 0.0],
+                radius: 0.5,
+            }],
+        };
+        assert_eq!(ring.bounds().unwrap(), [[0.0, 1.0, 0.0], [2.0, 3.0, 0.0]]);
+        let points = ring.points().unwrap();
+        let inside = ring.inside().unwrap();
+        assert!((0..points.len()).all(|i| inside(points.point(i))) && !inside([1.0, 2.0, 0.0]));
+        let plate = Grid::plate([1.0, 0.5], 0.1, 1.0);
+        let inside = plate.inside().unwrap();
+        assert!(inside([0.99, 0.01, 0.0]) && !inside([0.5, 0.51, 0.0]));
     }
 
     #[test]

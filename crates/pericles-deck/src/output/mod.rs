@@ -1,9 +1,14 @@
 //! `[output]` and `[checkpoint]`: what is written, and when.
 
+mod fields;
+
+pub use fields::FieldFormat;
+
 use pericles::observe::{Field, Schedule};
 use pericles::space::Point;
 use serde::{Deserialize, Serialize};
 
+use self::fields::{Fields, fields};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
@@ -18,6 +23,12 @@ pub struct Output {
     /// Which fields.
     #[serde(with = "crate::form")]
     pub names: Vec<Field>,
+    /// In which formats fields are written.
+    #[serde(default = "FieldFormat::usual")]
+    pub formats: Vec<FieldFormat>,
+    /// Whether fields are also written on the cells of a mesh.
+    #[serde(default)]
+    pub cells: bool,
     /// When a row is added to the tables of energies, probes and reactions.
     #[serde(with = "crate::form")]
     pub history: Schedule,
@@ -45,6 +56,8 @@ impl Default for Output {
         Self {
             fields: Schedule::Count(20),
             names: Field::USUAL.to_vec(),
+            formats: FieldFormat::usual(),
+            cells: false,
             history: Schedule::Count(200),
             extremes: Vec::new(),
             cracks: None,
@@ -139,18 +152,20 @@ impl Default for Checkpoint {
     }
 }
 
-/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default.
+/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default;
+/// `mesh`: whether it is a mesh, which has cells.
 pub(crate) fn read(
     table: Table<'_>,
     dimension: Option<usize>,
     driven: bool,
     surface: bool,
+    mesh: bool,
 ) -> Option<Output> {
     let mut usual = Field::USUAL.to_vec();
     if surface {
         usual.push(Field::KineticEnergyDensity);
     }
-    let (fields, names) = fields(&table, dimension, usual);
+    let fields = fields(&table, dimension, usual, mesh);
     let (history, extremes) = history(&table, dimension);
     let cracks = cracks(&table, history);
     let fragments = fragments(&table);
@@ -174,9 +189,17 @@ pub(crate) fn read(
         .map(|table| picture(table, dimension))
         .collect();
     table.finish();
+    let Fields {
+        schedule,
+        names,
+        formats,
+        cells,
+    } = fields?;
     Some(Output {
-        fields: fields?,
-        names: names?,
+        fields: schedule,
+        names,
+        formats,
+        cells,
         history: history?,
         extremes: extremes?,
         cracks: cracks?,
@@ -229,28 +252,6 @@ fn history(
     };
     table.finish();
     (schedule, extremes)
-}
-
-/// When field files are written, and which fields.
-fn fields(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-    usual: Vec<Field>,
-) -> (Option<Schedule>, Option<Vec<Field>>) {
-    let usual = Some(usual);
-    if is_never(table, "fields") {
-        return (Some(Schedule::Never), usual);
-    }
-    let Some(table) = table.table_or_empty("fields") else {
-        return (None, None);
-    };
-    let schedule = schedule(&table, Schedule::Count(20));
-    let names = match table.optional("names") {
-        None => usual,
-        Some(item) => names(&item, dimension),
-    };
-    table.finish();
-    (schedule, names)
 }
 
 fn names(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Field>> {

@@ -1,7 +1,13 @@
 //! Pre-cracks: surfaces that cut bonds before the run starts.
 
+mod facet;
+mod grid;
+
 use crate::error::{PericlesError, Result};
 use crate::space::{Point, Sites};
+
+use facet::{Facet, Frame, Outline, norm, scaled, sub};
+use grid::FacetGrid;
 
 /// A surface no bond may cross.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +38,11 @@ pub enum Crack {
         /// Radius, m.
         radius: f64,
     },
+    /// A surface of triangles in space (3D). Its border belongs to it.
+    Triangles {
+        /// Corners of the triangles, m; triangles without area are left out.
+        triangles: Vec<[Point; 3]>,
+    },
 }
 
 /// What happens to bonds that pass exactly through the border of a crack.
@@ -50,7 +61,7 @@ impl Crack {
         match self {
             Self::Section { .. } => 1,
             Self::Segment { .. } => 2,
-            Self::Polygon { .. } | Self::Disc { .. } => 3,
+            Self::Polygon { .. } | Self::Disc { .. } | Self::Triangles { .. } => 3,
         }
     }
 
@@ -70,6 +81,29 @@ impl Crack {
     /// # Errors
     /// A crack without extent, or a polygon that is not plane.
     pub fn cutter(&self, rule: EndRule, tolerance: f64) -> Result<Cutter> {
+        let Self::Triangles { triangles } = self else {
+            return Ok(Cutter(Facets::One(self.facet(rule, tolerance)?)));
+        };
+        let facet = |corners: &[Point; 3]| {
+            let triangle = Self::Polygon {
+                corners: corners.to_vec(),
+            };
+            // Neighbouring triangles share their edges: all of them belong to the surface.
+            let facet = triangle.facet(EndRule::Closed, tolerance).ok()?;
+            Some((*corners, facet))
+        };
+        let (corners, facets): (Vec<[Point; 3]>, Vec<Facet>) =
+            triangles.iter().filter_map(facet).unzip();
+        if facets.is_empty() {
+            return Err(PericlesError::BadCrack {
+                reason: "none of its triangles spans an area",
+            });
+        }
+        let grid = FacetGrid::new(&corners, tolerance);
+        Ok(Cutter(Facets::Many { facets, grid }))
+    }
+
+    fn facet(&self, rule: EndRule, tolerance: f64) -> Result<Facet> {
         let plane = match self {
             Self::Section { x } => {
                 if !x.is_finite() {
@@ -77,7 +111,7 @@ impl Crack {
                         reason: "its position must be finite",
                     });
                 }
-                return Ok(Cutter {
+                return Ok(Facet {
                     frame: Frame {
                         origin: [*x, 0.0, 0.0],
                         normal: [1.0, 0.0, 0.0],
@@ -98,7 +132,7 @@ impl Crack {
                     });
                 }
                 let along = scaled(along, 1.0 / length);
-                return Ok(Cutter {
+                return Ok(Facet {
                     frame: Frame {
                         origin: [from[0], from[1], 0.0],
                         normal: [-along[1], along[0], 0.0],
@@ -136,8 +170,13 @@ impl Crack {
                 }
                 (Frame::normal_to(*centre, *normal)?, Outline::Disc(*radius))
             }
+            Self::Triangles { .. } => {
+                return Err(PericlesError::BadCrack {
+                    reason: "a surface of triangles is not plane",
+                });
+            }
         };
-        Ok(Cutter {
+        Ok(Facet {
             frame: plane.0,
             outline: plane.1,
             rule,
@@ -146,120 +185,24 @@ impl Crack {
     }
 }
 
-/// Orthonormal axes on a crack.
-#[derive(Debug, Clone)]
-struct Frame {
-    origin: Point,
-    normal: Point,
-    along: Point,
-    across: Point,
-}
-
-impl Frame {
-    fn normal_to(origin: Point, normal: Point) -> Result<Self> {
-        let length = norm(normal);
-        if !(length.is_finite() && length > 0.0 && norm(origin).is_finite()) {
-            return Err(PericlesError::BadCrack {
-                reason: "its normal must be a finite vector other than zero",
-            });
-        }
-        let normal = scaled(normal, 1.0 / length);
-        let least = (0..3).fold(0, |best, c| {
-            if normal[c].abs() < normal[best].abs() {
-                c
-            } else {
-                best
-            }
-        });
-        let mut axis = [0.0; 3];
-        axis[least] = 1.0;
-        let along = cross(normal, axis);
-        let along = scaled(along, 1.0 / norm(along));
-        Ok(Self {
-            origin,
-            normal,
-            along,
-            across: cross(normal, along),
-        })
-    }
-
-    /// The plane of a polygon, its normal by Newell's sum, which does not depend on a lucky choice of three corners.
-    fn through(corners: &[Point]) -> Result<Self> {
-        let Some(&first) = corners.first() else {
-            return Err(PericlesError::BadCrack {
-                reason: "a polygon needs at least three corners",
-            });
-        };
-        let mut normal = [0.0; 3];
-        for k in 0..corners.len() {
-            let (a, b) = (
-                sub(corners[k], first),
-                sub(corners[(k + 1) % corners.len()], first),
-            );
-            let part = cross(a, b);
-            for c in 0..3 {
-                normal[c] += part[c];
-            }
-        }
-        let size = corners
-            .iter()
-            .map(|&p| norm(sub(p, first)))
-            .fold(0.0, f64::max);
-        let spans_area = norm(normal) > 1e-12 * size * size;
-        if corners.len() < 3 || !spans_area {
-            return Err(PericlesError::BadCrack {
-                reason: "a polygon needs at least three corners that span an area",
-            });
-        }
-        Self::normal_to(first, normal)
-    }
-
-    fn height(&self, p: Point) -> f64 {
-        dot(sub(p, self.origin), self.normal)
-    }
-
-    fn place(&self, p: Point) -> [f64; 2] {
-        let from = sub(p, self.origin);
-        [dot(from, self.along), dot(from, self.across)]
-    }
-}
-
-#[derive(Debug, Clone)]
-enum Outline {
-    Everything,
-    Interval(f64),
-    Polygon(Vec<[f64; 2]>),
-    Disc(f64),
-}
-
 /// Decides which bonds a crack cuts; made by [`Crack::cutter`].
 #[derive(Debug, Clone)]
-pub struct Cutter {
-    frame: Frame,
-    outline: Outline,
-    rule: EndRule,
-    tolerance: f64,
+pub struct Cutter(Facets);
+
+#[derive(Debug, Clone)]
+enum Facets {
+    One(Facet),
+    Many { facets: Vec<Facet>, grid: FacetGrid },
 }
 
 impl Cutter {
     /// Whether the bond between two points meets the crack.
     pub fn cuts(&self, p: Point, q: Point) -> bool {
-        let (a, b) = (self.frame.height(p), self.frame.height(q));
-        let on = |height: f64| height.abs() <= self.tolerance;
-        match (on(a), on(b)) {
-            (true, true) => self.meets_in_plane(self.frame.place(p), self.frame.place(q)),
-            (true, false) => self.covers(self.frame.place(p)),
-            (false, true) => self.covers(self.frame.place(q)),
-            (false, false) => {
-                if (a > 0.0) == (b > 0.0) {
-                    return false;
-                }
-                let (p, q) = (self.frame.place(p), self.frame.place(q));
-                let fraction = a / (a - b);
-                self.covers([
-                    p[0] + fraction * (q[0] - p[0]),
-                    p[1] + fraction * (q[1] - p[1]),
-                ])
+        match &self.0 {
+            Facets::One(facet) => facet.cuts(p, q),
+            Facets::Many { facets, grid } => {
+                let mut near = grid.near(p, q);
+                near.any(|facet| facets[facet as usize].cuts(p, q))
             }
         }
     }
@@ -294,106 +237,14 @@ impl Cutter {
 
     /// Distance of a point from the surface.
     fn distance(&self, point: Point) -> f64 {
-        let beside = (-self.depth(self.frame.place(point))).max(0.0);
-        self.frame.height(point).hypot(beside)
-    }
-
-    /// Distance of a place of the crack's plane from the border, positive on the crack.
-    fn depth(&self, place: [f64; 2]) -> f64 {
-        match &self.outline {
-            Outline::Everything => f64::INFINITY,
-            Outline::Interval(length) => place[0].min(length - place[0]),
-            Outline::Disc(radius) => radius - place[0].hypot(place[1]),
-            Outline::Polygon(corners) => polygon_depth(place, corners),
-        }
-    }
-
-    /// Whether a place of the crack's plane belongs to the crack.
-    fn covers(&self, place: [f64; 2]) -> bool {
-        let depth = self.depth(place);
-        match self.rule {
-            EndRule::Closed => depth >= -self.tolerance,
-            EndRule::Open => depth > self.tolerance,
-        }
-    }
-
-    /// A bond that lies in the crack's plane: whether any of it is covered.
-    fn meets_in_plane(&self, p: [f64; 2], q: [f64; 2]) -> bool {
-        if self.covers(p) || self.covers(q) {
-            return true;
-        }
-        let at = |t: f64| [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])];
-        match &self.outline {
-            Outline::Everything => true,
-            // Neither end is on the crack: it is covered only if the crack lies between them.
-            Outline::Interval(length) => (p[0] < 0.5 * length) != (q[0] < 0.5 * length),
-            Outline::Disc(_) => {
-                let d = [q[0] - p[0], q[1] - p[1]];
-                let square = d[0] * d[0] + d[1] * d[1];
-                let t = -(p[0] * d[0] + p[1] * d[1]) / square;
-                (0.0..=1.0).contains(&t) && self.covers(at(t))
+        match &self.0 {
+            Facets::One(facet) => facet.distance(point),
+            Facets::Many { facets, .. } => {
+                let distances = facets.iter().map(|facet| facet.distance(point));
+                distances.fold(f64::INFINITY, f64::min)
             }
-            Outline::Polygon(corners) => (0..corners.len()).any(|k| {
-                let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-                segments_cross(p, q, a, b)
-            }),
         }
     }
-}
-
-/// Distance to the polygon's border, positive inside.
-fn polygon_depth(place: [f64; 2], corners: &[[f64; 2]]) -> f64 {
-    let mut inside = false;
-    let mut distance = f64::INFINITY;
-    for k in 0..corners.len() {
-        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-        let edge = [b[0] - a[0], b[1] - a[1]];
-        let from = [place[0] - a[0], place[1] - a[1]];
-        let square = edge[0] * edge[0] + edge[1] * edge[1];
-        let t = if square > 0.0 {
-            ((from[0] * edge[0] + from[1] * edge[1]) / square).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        distance = distance.min((from[0] - t * edge[0]).hypot(from[1] - t * edge[1]));
-        if (a[1] > place[1]) != (b[1] > place[1])
-            && place[0] < a[0] + (place[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-        {
-            inside = !inside;
-        }
-    }
-    if inside { distance } else { -distance }
-}
-
-fn segments_cross(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
-    let side = |o: [f64; 2], s: [f64; 2], t: [f64; 2]| {
-        (s[0] - o[0]) * (t[1] - o[1]) - (s[1] - o[1]) * (t[0] - o[0])
-    };
-    side(p, q, a) * side(p, q, b) < 0.0 && side(a, b, p) * side(a, b, q) < 0.0
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
-}
-
-fn scaled(a: Point, factor: f64) -> Point {
-    [a[0] * factor, a[1] * factor, a[2] * factor]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 #[cfg(test)]
@@ -492,5 +343,44 @@ mod tests {
             corners: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 0.0]],
         };
         assert!(bent.cutter(EndRule::Closed, TOLERANCE).is_err());
+    }
+
+    #[test]
+    fn triangles_cut_what_their_plane_cuts() {
+        // A square of 2 × n × n triangles in a tilted plane, against the polygon with its border.
+        let n = 7;
+        let at = |i: usize, j: usize| -> Point {
+            let (x, y) = (i as f64 / n as f64, j as f64 / n as f64);
+            [x, y, 0.3 + 0.2 * x - 0.1 * y]
+        };
+        let mut triangles = Vec::new();
+        for i in 0..n {
+            for j in 0..n {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        // Without area: left out.
+        triangles.push([at(0, 0); 3]);
+        let triangles = Crack::Triangles { triangles };
+        let polygon = Crack::Polygon {
+            corners: vec![at(0, 0), at(n, 0), at(n, n), at(0, n)],
+        };
+        let mut seen = [0; 2];
+        for k in 0..4000u32 {
+            let x = |salt: u32| f64::from((k * 7919 + salt * 104_729) % 4001) / 4001.0 * 1.4 - 0.2;
+            let (p, q) = ([x(1), x(2), x(3)], [x(4), x(5), x(6)]);
+            let cut = cuts(&polygon, EndRule::Closed, p, q);
+            assert_eq!(cuts(&triangles, EndRule::Open, p, q), cut, "{p:?} {q:?}");
+            seen[usize::from(cut)] += 1;
+        }
+        assert!(seen.iter().all(|count| *count > 500), "{seen:?}");
+        let place = [0.4, 0.4, 0.9];
+        let (one, many) = (polygon.distance(place), triangles.distance(place));
+        assert!((one - many).abs() < 1e-12, "{one} {many}");
+        let none = Crack::Triangles {
+            triangles: vec![[[0.0; 3]; 3]],
+        };
+        assert!(none.cutter(EndRule::Closed, TOLERANCE).is_err());
     }
 }

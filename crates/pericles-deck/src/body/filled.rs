@@ -1,0 +1,110 @@
+//! Bodies that fill a closed surface or an outline with the cells of a lattice.
+
+use pericles::space::Region;
+
+use super::plane::{section, state};
+use super::positions;
+use super::sources::{Boundary, FilledCells, FilledShape};
+use super::types::{BodyRead, SolidShape};
+use super::unit::unit;
+use crate::fault::Fault;
+use crate::quantity::Quantity;
+use crate::reader::{Item, Table};
+use crate::region;
+
+/// What `[body]` says besides the shape, where that is "solid" or "outline".
+pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> BodyRead {
+    let boundary = match dimension {
+        2 => polygons(&table),
+        _ => surface(&table),
+    };
+    read.frame.spacing = table
+        .required("spacing")
+        .and_then(|item| item.positive(Quantity::Length));
+    read.frame.dimension = Some(dimension);
+    let section = section(&table, dimension);
+    read.state = state(&table, dimension);
+    let holes: Vec<Option<Region>> = table
+        .tables("hole")
+        .into_iter()
+        .map(|hole| region::read(hole, read.frame))
+        .collect();
+    let positions = positions::read(&table);
+    let random = positions.is_some_and(|positions| positions.are_random());
+    let cells = cells(&table, boundary.as_ref(), random);
+    table.finish();
+    read.frame.cells = !random && cells == Some(FilledCells::Whole);
+    read.shape = (|| {
+        Some(SolidShape::Filled(FilledShape {
+            boundary: boundary?,
+            spacing: read.frame.spacing?,
+            section: section?,
+            holes: holes.into_iter().collect::<Option<_>>()?,
+            cells: cells?,
+            positions: positions?,
+        }))
+    })();
+    read
+}
+
+fn surface(table: &Table<'_>) -> Option<Boundary> {
+    let path = table.required("file").and_then(|item| item.text());
+    let unit = unit(table);
+    let open = table.or("open", false, |item| item.boolean());
+    Some(Boundary::Surface {
+        path: path?.into(),
+        unit: unit?,
+        open: open?,
+    })
+}
+
+fn polygons(table: &Table<'_>) -> Option<Boundary> {
+    let (key, item) = table.exactly_one(&["polygons", "file"])?;
+    if key == "file" {
+        let (path, unit) = (item.text(), unit(table));
+        return Some(Boundary::PolygonFile {
+            path: path?.into(),
+            unit: unit?,
+        });
+    }
+    table.forbid(
+        "unit",
+        "lengths in a deck carry their units: only a file needs one",
+    );
+    let polygons = item.list("a list of polygons, each a list of corners [x, y]")?;
+    if polygons.is_empty() {
+        item.report(Fault::WrongLength {
+            value: "[]".into(),
+            found: 0,
+            allowed: "allowed: at least one polygon".into(),
+        });
+        return None;
+    }
+    let corners = |polygon: &Item<'_>| -> Option<Vec<[f64; 2]>> {
+        let corners = region::corners(polygon, Some(2))?;
+        Some(corners.iter().map(|&[x, y, _]| [x, y]).collect())
+    };
+    let read: Vec<Option<Vec<[f64; 2]>>> = polygons.iter().map(corners).collect();
+    read.into_iter()
+        .collect::<Option<_>>()
+        .map(Boundary::Polygons)
+}
+
+fn cells(table: &Table<'_>, boundary: Option<&Boundary>, random: bool) -> Option<FilledCells> {
+    let closed = matches!(boundary, Some(Boundary::Surface { open: false, .. }));
+    if boundary.is_some() && (random || !closed) {
+        table.forbid(
+            "cells",
+            "only a lattice in a closed surface of triangles has partial cells",
+        );
+        return Some(FilledCells::Whole);
+    }
+    table.choice_or_first(
+        "cells",
+        "choice of cells",
+        &[
+            ("whole", FilledCells::Whole),
+            ("partial", FilledCells::Partial),
+        ],
+    )
+}

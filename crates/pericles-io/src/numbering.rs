@@ -1,0 +1,53 @@
+//! Numbers of points in files.
+
+use std::borrow::Cow;
+
+use pericles::space::PointCloud;
+
+/// The way from the cloud's order of points to the user's; none if they are the same.
+#[derive(Debug, Clone)]
+pub(crate) struct Numbering(Option<Vec<usize>>);
+
+impl Numbering {
+    /// That of a cloud.
+    pub(crate) fn of(cloud: &PointCloud) -> Self {
+        let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.user_number(i)).collect();
+        let same = numbers.iter().enumerate().all(|(i, &number)| i == number);
+        Self((!same).then_some(numbers))
+    }
+
+    /// The user's number of a point.
+    pub(crate) fn number(&self, point: u32) -> u32 {
+        match &self.0 {
+            None => point,
+            Some(numbers) => numbers[point as usize] as u32,
+        }
+    }
+
+    /// A component-major array in the user's order.
+    pub(crate) fn apply<'a>(&self, array: &'a [f64]) -> Cow<'a, [f64]> {
+        let Some(numbers) = &self.0 else {
+            return Cow::Borrowed(array);
+        };
+        let n = numbers.len();
+        let mut ordered = vec![0.0; array.len()];
+        for (from, to) in array.chunks(n).zip(ordered.chunks_mut(n)) {
+            for (&value, &number) in from.iter().zip(numbers) {
+                to[number] = value;
+            }
+        }
+        Cow::Owned(ordered)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_written_in_the_user_s_order() {
+        let numbering = Numbering(Some(vec![2, 0, 1]));
+        let ordered = numbering.apply(&[10.0, 20.0, 30.0, 1.0, 2.0, 3.0]);
+        assert_eq!(*ordered, [20.0, 30.0, 10.0, 2.0, 3.0, 1.0]);
+    }
+}

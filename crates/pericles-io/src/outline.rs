@@ -1,0 +1,129 @@
+//! Outlines from text: a line `x y` for each corner, a blank line or `#` between polygons.
+
+use std::path::{Path, PathBuf};
+
+use crate::IoError;
+use crate::points::words;
+use crate::whole::read_whole;
+
+/// Why a file gives no outline.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutlineError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// A line that is no corner.
+    #[error("{}:{line}: {reason}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// No corner at all.
+    #[error("{}: no corners; an outline has a line `x y` for each, and blank lines between polygons", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Reads the polygons of an outline, in the file's unit of length.
+///
+/// # Errors
+/// A file that cannot be read or needs more than `memory` bytes; the first line that is not two finite numbers; a file without corners.
+pub fn read_outline(
+    path: impl AsRef<Path>,
+    memory: u64,
+) -> Result<Vec<Vec<[f64; 2]>>, OutlineError> {
+    /// A corner takes sixteen bytes and has at least four characters; a list that grows has room for twice its length.
+    const EXPANSION: u64 = 9;
+    let path = path.as_ref();
+    parse_outline(path, &read_whole(path, EXPANSION, memory)?)
+}
+
+/// The outline in the content of a file, which messages call by this name. A last corner equal to the first one is left out.
+///
+/// # Errors
+/// As [`read_outline`], but for a file that cannot be read.
+pub fn parse_outline(
+    name: impl AsRef<Path>,
+    content: &[u8],
+) -> Result<Vec<Vec<[f64; 2]>>, OutlineError> {
+    let path = || name.as_ref().to_path_buf();
+    let content = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
+    let mut polygons: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut is_open = false;
+    for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
+        let refused = |reason: String| OutlineError::Line {
+            path: path(),
+            line: k + 1,
+            reason,
+        };
+        let line = std::str::from_utf8(line)
+            .map_err(|_| refused("the line is not text in UTF-8".into()))?;
+        let words = words(line);
+        if words.is_empty() {
+            is_open = false;
+            continue;
+        }
+        let numbers: Vec<f64> = words
+            .iter()
+            .filter_map(|word| word.parse().ok())
+            .filter(|number: &f64| number.is_finite())
+            .collect();
+        let corner: [f64; 2] = match numbers[..] {
+            [x, y] if words.len() == 2 => [x, y],
+            _ => {
+                let line = line.trim();
+                return Err(refused(format!(
+                    "`{line}` is not a corner; allowed: two finite numbers `x y`"
+                )));
+            }
+        };
+        match polygons.last_mut() {
+            Some(polygon) if is_open => polygon.push(corner),
+            _ => polygons.push(vec![corner]),
+        }
+        is_open = true;
+    }
+    for polygon in &mut polygons {
+        if polygon.len() > 1 && polygon.first() == polygon.last() {
+            polygon.pop();
+        }
+    }
+    match polygons.is_empty() {
+        true => Err(OutlineError::Empty { path: path() }),
+        false => Ok(polygons),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blank_lines_divide_polygons() {
+        let text = b"# a frame\n0 0\n4, 0\n4 3\n0 3 # last\n0 0\n\n1 1\n2 1\n2 2\n";
+        let polygons = parse_outline("frame.txt", text).unwrap();
+        assert_eq!(polygons.len(), 2);
+        assert_eq!(polygons[0].len(), 4);
+        assert_eq!(polygons[1], [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]);
+    }
+
+    #[test]
+    fn lines_that_are_no_corners_are_refused_with_their_place() {
+        for (text, place) in [
+            ("0 0\n1 2 3\n", "frame.txt:2: `1 2 3` is not a corner"),
+            ("0 0\n\n1 x\n", "frame.txt:3:"),
+            ("0 nan\n", "frame.txt:1:"),
+            ("# nothing\n", "no corners"),
+        ] {
+            let error = parse_outline("frame.txt", text.as_bytes()).unwrap_err();
+            assert!(error.to_string().contains(place), "{error}");
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! What files of results say of a body besides its fields.
+
+use std::path::Path;
+
+use pericles::space::PointCloud;
+use pericles_mesh::results::{PointList, WriteError};
+
+use crate::IoError;
+use crate::numbering::Numbering;
+
+/// The points of a body in the user's order, with their blocks and sets.
+#[derive(Debug, Clone)]
+pub struct ResultBody {
+    /// A title.
+    pub title: String,
+    /// Number of coordinates of a point.
+    pub dimension: usize,
+    /// Positions, component-major, m.
+    pub positions: Vec<f64>,
+    /// Volumes, m³.
+    pub volumes: Vec<f64>,
+    /// Blocks: every point is in one.
+    pub blocks: Vec<PointList>,
+    /// Sets of points.
+    pub sets: Vec<PointList>,
+    pub(crate) numbering: Numbering,
+}
+
+impl ResultBody {
+    /// The body of a cloud with sets by name; `block` gives the name of a block by its number.
+    pub fn new<'a>(
+        title: impl Into<String>,
+        cloud: &PointCloud,
+        sets: impl IntoIterator<Item = (&'a str, &'a [u32])>,
+        block: impl Fn(u32) -> String,
+    ) -> Self {
+        let numbering = Numbering::of(cloud);
+        let in_files = |points: &mut dyn Iterator<Item = u32>| {
+            let mut numbers: Vec<u32> = points.map(|i| numbering.number(i)).collect();
+            numbers.sort_unstable();
+            numbers
+        };
+        let all = 0..cloud.len() as u32;
+        let mut kinds: Vec<u32> = (0..cloud.len()).map(|i| cloud.block(i)).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let blocks = kinds.into_iter().map(|kind| {
+            let mut members = all.clone().filter(|&i| cloud.block(i as usize) == kind);
+            PointList {
+                name: block(kind),
+                points: in_files(&mut members),
+            }
+        });
+        let blocks = blocks.collect();
+        let sets = sets.into_iter().map(|(name, points)| PointList {
+            name: name.to_owned(),
+            points: in_files(&mut points.iter().copied()),
+        });
+        let sets = sets.collect();
+        Self {
+            title: title.into(),
+            dimension: cloud.dimension(),
+            positions: numbering.apply(cloud.positions()).into_owned(),
+            volumes: numbering.apply(cloud.volumes()).into_owned(),
+            blocks,
+            sets,
+            numbering,
+        }
+    }
+}
+
+/// The error of a file of results that is written.
+pub fn write_error(path: &Path, error: WriteError) -> IoError {
+    match error {
+        WriteError::Io(source) => IoError::writing(path, source),
+        WriteError::NotContinued(reason) => IoError::damaged(path, reason),
+        other => IoError::Unsuitable {
+            path: path.to_path_buf(),
+            reason: other.to_string(),
+        },
+    }
+}

@@ -1,0 +1,72 @@
+//! Pre-cracks: their surfaces, and what they cut.
+
+use pericles::family::{Crack, Cut, EndRule};
+use pericles::observe::TrackedCrack;
+use pericles::space::PointCloud;
+use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Remark};
+
+use super::assembler::Assembler;
+use super::refusal::at_path;
+use super::resources::Resources;
+
+impl Assembler<'_> {
+    /// The surfaces of the pre-cracks; triangles are read from their files.
+    pub(super) fn read_cracks(
+        &self,
+        resources: &Resources<'_>,
+    ) -> Result<Vec<(Crack, EndRule)>, BuildError> {
+        let cracks = self.model.cracks.iter().enumerate();
+        let read = cracks.map(|(k, crack)| {
+            let path = KeyPath::from("crack").index(k);
+            let surface = match &crack.surface {
+                CrackSurface::Plane(surface) => surface.clone(),
+                CrackSurface::File { path: file, unit } => {
+                    let key = path.key("file");
+                    let file = resources.beside(file);
+                    let mesh = (resources.read_mesh)(&file, resources.memory);
+                    let mesh = mesh.map_err(|error| {
+                        let fault = error.fault(|reason| Fault::BadCrackFile { reason });
+                        at_path(key.clone(), fault)
+                    })?;
+                    mesh.check().map_err(|error| {
+                        let reason = format!("{}: {error}", file.display());
+                        at_path(key, Fault::BadCrackFile { reason })
+                    })?;
+                    let corner = |node: u32| mesh.nodes[node as usize].map(|x| x * unit);
+                    let triangles = mesh.triangles().into_iter();
+                    Crack::Triangles {
+                        triangles: triangles.map(|corners| corners.map(corner)).collect(),
+                    }
+                }
+            };
+            // The library tells what is wrong with a crack, not with which.
+            surface
+                .cutter(crack.ends, 0.0)
+                .map_err(|error| at_path(path, error.into()))?;
+            Ok((surface, crack.ends))
+        });
+        read.collect()
+    }
+
+    /// The pre-cracks with the points at which they cut bonds; warns of those that cut none.
+    pub(super) fn tracked_cracks(
+        &self,
+        surfaces: &[(Crack, EndRule)],
+        cuts: &[Cut],
+        cloud: &PointCloud,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Vec<TrackedCrack> {
+        let mut tracked = Vec::new();
+        for (k, ((surface, _), cut)) in surfaces.iter().zip(cuts).enumerate() {
+            if cut.bonds == 0 {
+                let caution = Self::useless_crack(surface, cloud);
+                warnings.push(Remark::new(KeyPath::from("crack").index(k), caution));
+            }
+            tracked.push(TrackedCrack {
+                crack: surface.clone(),
+                points: cut.points.clone(),
+            });
+        }
+        tracked
+    }
+}

@@ -1,0 +1,85 @@
+//! Faces that tractions and pressures act on.
+
+use pericles::boundary::LoadDensity;
+use pericles::space::{PointCloud, Region};
+use pericles_deck::{BuildError, Component, Fault, KeyPath, Load, Members};
+
+use super::area;
+use super::assembler::Assembler;
+use super::discretisation::Discretisation;
+use super::mesh_body::MeshBody;
+use super::refusal::at_path;
+
+/// The amplitude of a pressure, and the area that it acts on, m².
+pub(super) type PressureLoad = (LoadDensity, f64);
+
+impl Assembler<'_> {
+    /// The area of the faces of a mesh that belong to a set, m²: of a face set, or of that near which the points of a set are.
+    pub(super) fn face_area(&self, mesh: Option<&MeshBody>, set: &str) -> Option<f64> {
+        let mesh = mesh?;
+        let named = self.model.sets.iter().find(|named| named.name == set);
+        let faces = match named.map(|named| &named.members) {
+            None => set,
+            Some(Members::NearFaces { faces, .. }) => faces,
+            Some(_) => return None,
+        };
+        mesh.face_set(faces)?.area
+    }
+
+    /// A pressure on a face set of a mesh or on a layer, as a force density on the points that have the faces.
+    pub(super) fn pressure(
+        &self,
+        path: &KeyPath,
+        load: &Load,
+        pressure: &Component,
+        discretisation: &Discretisation,
+        points: &[u32],
+    ) -> Result<PressureLoad, BuildError> {
+        let (cloud, mesh) = (&*discretisation.cloud, discretisation.mesh.as_deref());
+        let forces = match mesh.and_then(|mesh| mesh.face_vectors(cloud, &load.set, points)) {
+            Some(found) => found,
+            None => self.layer_vectors(path, load, cloud, points)?,
+        };
+        let (vectors, area) = forces;
+        let mut densities = vec![0.0; 3 * points.len()];
+        for (k, (&i, vector)) in points.iter().zip(&vectors).enumerate() {
+            let value = pressure.value(cloud.point(i as usize), 0.0);
+            if !value.is_finite() {
+                let field = [0, 1, 2].map(|_| pressure.clone());
+                return Err(self.no_value(path, &field, 0, cloud, i));
+            }
+            let volume = cloud.volumes()[i as usize];
+            for (c, along) in vector.iter().enumerate() {
+                densities[c * points.len() + k] = -value * along / volume;
+            }
+        }
+        Ok((LoadDensity::PerPoint(densities), area))
+    }
+
+    /// The share of each point of a layer in the area of its face, along the outward normal; shares are as volumes are.
+    fn layer_vectors(
+        &self,
+        path: &KeyPath,
+        load: &Load,
+        cloud: &PointCloud,
+        points: &[u32],
+    ) -> Result<(Vec<[f64; 3]>, f64), BuildError> {
+        let named = self.model.sets.iter().find(|named| named.name == load.set);
+        let solid = self.model.body.solid();
+        let has_cells = cloud.dimension() == 1 || solid.is_some_and(|s| !s.shape.is_listed());
+        let region = named.and_then(|named| named.members.region());
+        let Some(Region::Layer { face, .. }) = region.filter(|_| has_cells) else {
+            let set = load.set.clone();
+            return Err(at_path(path.key("pressure"), Fault::NoFaces { set }));
+        };
+        let area = area::seen_along(cloud, points, face.axis);
+        let volume: f64 = points.iter().map(|&i| cloud.volumes()[i as usize]).sum();
+        let sign = if face.upper { 1.0 } else { -1.0 };
+        let vector = |&i: &u32| {
+            let mut vector = [0.0; 3];
+            vector[face.axis] = sign * area * cloud.volumes()[i as usize] / volume;
+            vector
+        };
+        Ok((points.iter().map(vector).collect(), area))
+    }
+}

@@ -1,0 +1,256 @@
+//! Lattices and random points in closed surfaces and outlines.
+
+use pericles::space::{Lattice as Nodes, ListedPoints, PointCloud, Region};
+use pericles_deck::{
+    Boundary, BuildError, Caution, Fault, FilledCells, FilledShape, ModelWarning, Positions,
+    Remark, Solid,
+};
+use pericles_mesh::fill::{
+    FillError, Filled, Lattice, Outline, PartialCells, TriangleSurface, WindingTree, fill,
+    fill_open, fill_partially,
+};
+
+use super::assembler::Assembler;
+use super::random::Space;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+
+/// What is filled, read and checked.
+enum Enclosure {
+    Surface(TriangleSurface),
+    Open(TriangleSurface),
+    Outline(Outline),
+}
+
+impl Enclosure {
+    fn bounds(&self) -> [[f64; 3]; 2] {
+        match self {
+            Self::Surface(surface) | Self::Open(surface) => surface.bounds(),
+            Self::Outline(outline) => outline.bounds(),
+        }
+    }
+
+    /// The volume inside, or area of an outline; none of an open surface.
+    fn enclosed(&self) -> Option<f64> {
+        match self {
+            Self::Surface(surface) => Some(surface.signed_volume().abs()),
+            Self::Open(_) => None,
+            Self::Outline(outline) => Some(outline.area()),
+        }
+    }
+
+    fn fill(&self, spacing: f64) -> Result<Filled, FillError> {
+        match self {
+            Self::Surface(surface) => fill(surface, [spacing; 3]),
+            Self::Open(surface) => fill_open(surface, [spacing; 3]),
+            Self::Outline(outline) => outline.fill([spacing; 2]),
+        }
+    }
+
+    /// A test whether a place is inside.
+    fn inside(&self) -> Box<dyn Fn([f64; 3]) -> bool + Sync + '_> {
+        match self {
+            Self::Surface(surface) | Self::Open(surface) => {
+                let sign = surface.signed_volume().signum();
+                let tree = WindingTree::new(surface);
+                Box::new(move |x| sign * tree.winding_number(x) > 0.5)
+            }
+            Self::Outline(outline) => Box::new(|[x, y, _]| outline.contains([x, y])),
+        }
+    }
+}
+
+/// The holes of a body within its box.
+struct Holes<'a> {
+    regions: &'a [Region],
+    bounds: [[f64; 3]; 2],
+    tolerance: f64,
+}
+
+impl Holes<'_> {
+    fn contain(&self, place: [f64; 3]) -> bool {
+        let within = |hole: &Region| hole.contains(place, &self.bounds, self.tolerance);
+        self.regions.iter().any(within)
+    }
+}
+
+impl Assembler<'_> {
+    /// The points in a closed surface or an outline.
+    pub(super) fn filled_points(
+        &self,
+        solid: &Solid,
+        shape: &FilledShape,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<PointCloud, BuildError> {
+        let enclosure = self.enclosure(shape, resources)?;
+        let bounds = enclosure.bounds();
+        let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
+        let cells: f64 = (0..dimension)
+            .map(|c| ((bounds[1][c] - bounds[0][c]) / spacing).ceil().max(1.0))
+            .product();
+        let enclosed = enclosure.enclosed();
+        let points = enclosed.map_or(cells, |volume| volume / spacing.powi(dimension as i32));
+        self.check_filled(solid, points, cells, resources)?;
+        let holes = Holes {
+            regions: &shape.holes,
+            bounds,
+            tolerance: 1e-9 * spacing,
+        };
+        let refused = |error| self.no_fill(shape, error);
+        if let (FilledCells::Partial, Enclosure::Surface(surface)) = (shape.cells, &enclosure) {
+            let cells = fill_partially(surface, [spacing; 3]).map_err(refused)?;
+            return partial_points(&cells, &holes)
+                .cloud(dimension, shape.section)
+                .map_err(|error| at("body.spacing", error));
+        }
+        let filled = match shape.positions {
+            Positions::BlueNoise { .. } => None,
+            _ => Some(enclosure.fill(spacing).map_err(refused)?),
+        };
+        if let Some(filled) = &filled {
+            warnings.extend(judge(shape, filled, enclosed));
+        }
+        let nodes: Vec<[usize; 3]> = filled.iter().flat_map(Filled::nodes).collect();
+        let lattice = filled.as_ref().map(|filled| *filled.lattice());
+        let nodes: Vec<[usize; 3]> = match &lattice {
+            Some(lattice) => {
+                let solid = |node: &[usize; 3]| !holes.contain(lattice.position(*node));
+                nodes.into_iter().filter(solid).collect()
+            }
+            None => nodes,
+        };
+        if let (Some(lattice), Positions::Lattice) = (&lattice, shape.positions) {
+            return on_lattice(lattice, &nodes, dimension, shape)
+                .map_err(|error| at("body.spacing", error));
+        }
+        let within = enclosure.inside();
+        let space = Space {
+            dimension,
+            bounds,
+            spacing,
+            section: shape.section,
+            inside: &|x| within(x) && !holes.contain(x),
+        };
+        // Without a lattice blue noise asks for none.
+        let empty = Lattice {
+            centre: [0.0; 3],
+            spacing: [spacing; 3],
+            counts: [0; 3],
+        };
+        let listed = space.points(shape.positions, || (lattice.unwrap_or(empty), nodes));
+        listed
+            .map_err(refused)?
+            .cloud(dimension, shape.section)
+            .map_err(|error| at("body.spacing", error))
+    }
+
+    /// Reads what is filled.
+    fn enclosure(
+        &self,
+        shape: &FilledShape,
+        resources: &Resources<'_>,
+    ) -> Result<Enclosure, BuildError> {
+        let refused = |error| self.no_fill(shape, error);
+        match &shape.boundary {
+            Boundary::Surface { path, unit, open } => {
+                let mesh = self.read_mesh("body.file", &resources.beside(path), resources)?;
+                let surface = TriangleSurface::of_mesh(&mesh, *unit).map_err(refused)?;
+                Ok(match open {
+                    true => Enclosure::Open(surface),
+                    false => Enclosure::Surface(surface),
+                })
+            }
+            Boundary::Polygons(polygons) => {
+                let outline = Outline::new(polygons.clone()).map_err(refused)?;
+                Ok(Enclosure::Outline(outline))
+            }
+            Boundary::PolygonFile { path, unit } => {
+                let path = resources.beside(path);
+                let polygons = (resources.read_outline)(&path, resources.memory);
+                let polygons = polygons.map_err(|error| {
+                    let fault = error.fault(|reason| Fault::BadMesh { reason });
+                    at_path("body.file", fault)
+                })?;
+                let in_metres = |polygon: Vec<[f64; 2]>| {
+                    let corners = polygon.iter().map(|corner| corner.map(|x| x * unit));
+                    corners.collect()
+                };
+                let polygons = polygons.into_iter().map(in_metres).collect();
+                let outline = Outline::new(polygons).map_err(refused)?;
+                Ok(Enclosure::Outline(outline))
+            }
+        }
+    }
+
+    /// The refusal of a boundary, at the key that gives it.
+    fn no_fill(&self, shape: &FilledShape, error: FillError) -> BuildError {
+        let key = match (&error, &shape.boundary) {
+            (FillError::Spacing { .. } | FillError::TooMany { .. }, _) => "body.spacing",
+            (FillError::Amplitude { .. }, _) => "body.jitter",
+            (_, Boundary::Polygons(_)) => "body.polygons",
+            _ => "body.file",
+        };
+        let reason = match (&error, shape.boundary.file()) {
+            (FillError::Open { .. }, Some(file)) => {
+                format!("{}: {error} (open = true)", file.display())
+            }
+            (_, Some(file)) => format!("{}: {error}", file.display()),
+            (_, None) => error.to_string(),
+        };
+        at_path(key, Fault::BadMesh { reason })
+    }
+}
+
+/// Warns of surfaces that were turned inside out, and of cells whose volume is off.
+fn judge(shape: &FilledShape, filled: &Filled, enclosed: Option<f64>) -> Vec<ModelWarning> {
+    /// Share of the volume.
+    const OFF: f64 = 0.02;
+    let mut warnings = Vec::new();
+    if filled.was_turned() {
+        let problem = "all triangles look inwards: the surface is used as if they looked outwards";
+        let problem = problem.to_owned();
+        warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
+    }
+    let volume = filled.volume();
+    if let Some(enclosed) = enclosed
+        && (volume / enclosed - 1.0).abs() > OFF
+    {
+        let [volume, enclosed] = [volume, enclosed].map(|volume| volume * shape.section);
+        let caution = Caution::FilledVolume { volume, enclosed };
+        warnings.push(Remark::new("body.spacing", caution));
+    }
+    warnings
+}
+
+fn on_lattice(
+    lattice: &Lattice,
+    nodes: &[[usize; 3]],
+    dimension: usize,
+    shape: &FilledShape,
+) -> pericles::Result<PointCloud> {
+    let [nx, ny, _] = lattice.counts;
+    let mut origin = lattice.position([0; 3]);
+    origin[dimension..].fill(0.0);
+    let node = |&[i, j, k]: &[usize; 3]| (i + nx * (j + ny * k)) as u32;
+    let nodes = Nodes {
+        spacing: [shape.spacing; 3],
+        shape: lattice.counts,
+        node: nodes.iter().map(node).collect(),
+    };
+    PointCloud::on_lattice(dimension, origin, nodes, shape.section)
+}
+
+/// Cells as points with the volumes of their parts.
+fn partial_points(cells: &PartialCells, holes: &Holes<'_>) -> ListedPoints {
+    let mut listed = ListedPoints::default();
+    for (&cell, &part) in cells.cells.iter().zip(&cells.parts) {
+        let place = cells.lattice.position(cell);
+        if !holes.contain(place) {
+            listed.positions.push(place);
+            listed.volumes.push(part * cells.lattice.cell_volume());
+            listed.blocks.push(1);
+        }
+    }
+    listed
+}

@@ -1,0 +1,97 @@
+//! Points of a mesh.
+
+use std::path::Path;
+
+use pericles::space::{ListedPoints, PointCloud};
+use pericles_deck::{BuildError, Caution, Fault, KeyPath, MeshFile, ModelWarning, Remark, Solid};
+use pericles_mesh::{MeshPoints, PointOptions, Problem, RawMesh};
+
+use super::assembler::Assembler;
+use super::mesh_body::MeshBody;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+
+impl Assembler<'_> {
+    /// The points of a mesh, one for each element.
+    pub(super) fn mesh_points(
+        &self,
+        solid: &Solid,
+        file: &MeshFile,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<(PointCloud, MeshBody), BuildError> {
+        let path = resources.beside(&file.path);
+        let mesh = self.read_mesh("body.file", &path, resources)?;
+        let options = PointOptions {
+            unit: file.unit,
+            thickness: file.section,
+            blocks: (!file.blocks.is_empty()).then(|| file.blocks.clone()),
+        };
+        let points = mesh.points(&options).map_err(|problem| {
+            let key = match problem {
+                Problem::UnknownBlock { .. } => "body.blocks",
+                _ => "body.file",
+            };
+            let reason = format!("{}: {problem}", path.display());
+            at_path(key, Fault::BadMesh { reason })
+        })?;
+        if points.dimension != file.dimension {
+            let (given, found) = (file.dimension, points.dimension);
+            let fault = Fault::OtherDimension { given, found };
+            return Err(at_path(
+                ["body.dimension", "body.file"].map(KeyPath::from),
+                fault,
+            ));
+        }
+        self.check_element_size(file, &points)?;
+        let body = MeshBody {
+            mesh,
+            points,
+            unit: file.unit,
+        };
+        let listed = ListedPoints {
+            positions: body.points.positions.clone(),
+            blocks: body.blocks(),
+            volumes: body.points.volumes.clone(),
+        };
+        let cloud = listed
+            .cloud(file.dimension, file.section)
+            .map_err(|error| at("body.file", error))?;
+        self.check_listed(solid, &cloud, resources)?;
+        let sizes = body.points.check_sizes(solid.material.horizon());
+        for problem in body.points.warnings.iter().chain(&sizes) {
+            let problem = problem.to_string();
+            warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
+        }
+        warnings.extend(self.judge_listed(&listed, &cloud));
+        Ok((cloud, body))
+    }
+
+    /// A mesh in a file that a key names.
+    pub(super) fn read_mesh(
+        &self,
+        key: impl Into<KeyPath>,
+        path: &Path,
+        resources: &Resources<'_>,
+    ) -> Result<RawMesh, BuildError> {
+        let mesh = (resources.read_mesh)(path, resources.memory);
+        mesh.map_err(|error| {
+            let fault = error.fault(|reason| Fault::BadMesh { reason });
+            at_path(key.into(), fault)
+        })
+    }
+
+    /// Refuses a given spacing that is far from the size of the elements.
+    fn check_element_size(&self, file: &MeshFile, points: &MeshPoints) -> Result<(), BuildError> {
+        /// Sizes disagree by this factor only if one of them has another unit.
+        const OFF: f64 = 2.0;
+        let found = points.mean_size();
+        match file.spacing {
+            Some(given) if !(1.0 / OFF..=OFF).contains(&(found / given)) => {
+                let fault = Fault::OtherElementSize { given, found };
+                Err(at_path("body.spacing", fault))
+            }
+            _ => Ok(()),
+        }
+    }
+}

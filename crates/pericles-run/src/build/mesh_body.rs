@@ -1,0 +1,150 @@
+//! A mesh with its points: sets, faces and cells in the numbering of a cloud.
+
+use pericles::space::{self, PointCloud};
+use pericles_deck::{ALL, Depth};
+use pericles_io::VtuCells;
+use pericles_io::observers::MeshCells;
+use pericles_mesh::{CellKind, MeshPoints, PointSet, RawMesh, SetKind};
+
+/// A mesh with the points made of it.
+#[derive(Debug, Clone)]
+pub struct MeshBody {
+    /// The mesh, in the file's unit of length.
+    pub mesh: RawMesh,
+    /// Its elements as points, in the file's order.
+    pub points: MeshPoints,
+    /// The file's unit of length, m.
+    pub unit: f64,
+}
+
+/// The name of a set of a mesh in decks: its own, unless that means all points.
+fn name_in_decks(name: &str) -> String {
+    match name {
+        ALL => format!("{ALL} (mesh)"),
+        name => name.to_owned(),
+    }
+}
+
+impl MeshBody {
+    /// The sets of the mesh in the numbering of a cloud of its points.
+    pub(super) fn sets<'a>(
+        &'a self,
+        cloud: &'a PointCloud,
+    ) -> impl Iterator<Item = (String, space::PointSet)> + 'a {
+        let place = places(cloud);
+        self.points.sets.iter().map(move |set| {
+            let points = renumbered(&set.points, &place);
+            (name_in_decks(&set.name), points)
+        })
+    }
+
+    /// The points of a cloud of the mesh near the faces of a set; none if the mesh has no such face set.
+    pub(super) fn near_faces(
+        &self,
+        cloud: &PointCloud,
+        faces: &str,
+        depth: Depth,
+    ) -> Option<space::PointSet> {
+        let distance = depth.length(self.points.mean_size());
+        let faces = &self.face_set(faces)?.name;
+        let near = self
+            .points
+            .near_faces(&self.mesh, self.unit, faces, distance)?;
+        Some(renumbered(&near, &places(cloud)))
+    }
+
+    /// The face set of this name in decks.
+    pub(super) fn face_set(&self, name: &str) -> Option<&PointSet> {
+        let mut sets = self.points.sets.iter();
+        sets.find(|set| set.kind == SetKind::Faces && name_in_decks(&set.name) == name)
+    }
+
+    /// For each of the points of a face set in a cloud of the mesh the area of its faces times their outward normals, m², and the area of all of them; none if there
+    /// is no such face set.
+    pub(super) fn face_vectors(
+        &self,
+        cloud: &PointCloud,
+        name: &str,
+        points: &[u32],
+    ) -> Option<(Vec<[f64; 3]>, f64)> {
+        let set = self.face_set(name)?;
+        let vectors =
+            self.points
+                .face_vectors(&self.mesh, self.unit, cloud.section(), &set.name)?;
+        // Elements of a set are ascending.
+        let of_point = |&i: &u32| {
+            let element = cloud.user_number(i as usize) as u32;
+            let place = set.points.binary_search(&element).ok()?;
+            Some(vectors[place])
+        };
+        let vectors: Option<Vec<[f64; 3]>> = points.iter().map(of_point).collect();
+        Some((vectors?, set.area?))
+    }
+
+    /// The names of its face sets.
+    pub(super) fn face_sets(&self) -> impl Iterator<Item = &str> {
+        let faces = |set: &&PointSet| set.kind == SetKind::Faces;
+        self.points.sets.iter().filter(faces).map(|set| &*set.name)
+    }
+
+    /// The name of the group that a number of a block stands for.
+    pub(crate) fn block_name(&self, block: u32) -> Option<&str> {
+        let mut groups = self.points.sets.iter();
+        let mut groups = groups.by_ref().filter(|set| set.kind == SetKind::Elements);
+        groups
+            .nth((block as usize).checked_sub(1)?)
+            .map(|set| &*set.name)
+    }
+
+    /// The elements as cells of files of results, in the order of the points.
+    pub(crate) fn cells(&self) -> MeshCells {
+        let mut cells = VtuCells::default();
+        for &cell in &self.points.cells {
+            let kind = match self.mesh.cells.kind(cell as usize) {
+                CellKind::Point => 1,
+                CellKind::Line => 3,
+                CellKind::Triangle => 5,
+                CellKind::Quadrilateral => 9,
+                CellKind::Tetrahedron => 10,
+                CellKind::Hexahedron => 12,
+                CellKind::Wedge => 13,
+                CellKind::Pyramid => 14,
+            };
+            cells.push(kind, self.mesh.cells.corners(cell as usize));
+        }
+        let nodes = &self.mesh.nodes;
+        let along = |c: usize| nodes.iter().map(move |x| x[c] * self.unit);
+        MeshCells {
+            nodes: (0..3).flat_map(along).collect(),
+            cells,
+        }
+    }
+
+    /// A number for each element: the place of the first of the groups that it is in, counted from 1; 0 in no group, 1 in a mesh without groups.
+    pub(super) fn blocks(&self) -> Vec<u32> {
+        let groups = self.points.sets.iter();
+        let groups: Vec<_> = groups.filter(|set| set.kind == SetKind::Elements).collect();
+        let mut blocks = vec![u32::from(groups.is_empty()); self.points.len()];
+        for (place, group) in groups.iter().enumerate().rev() {
+            for &point in &group.points {
+                blocks[point as usize] = place as u32 + 1;
+            }
+        }
+        blocks
+    }
+}
+
+/// The point of a cloud that each element is.
+fn places(cloud: &PointCloud) -> Vec<u32> {
+    let mut place = vec![0; cloud.len()];
+    for i in 0..cloud.len() {
+        place[cloud.user_number(i)] = i as u32;
+    }
+    place
+}
+
+fn renumbered(elements: &[u32], place: &[u32]) -> space::PointSet {
+    let mut points: space::PointSet = elements.iter().map(|&k| place[k as usize]).collect();
+    points.sort_unstable();
+    points
+}
