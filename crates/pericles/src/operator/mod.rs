@@ -8,8 +8,10 @@
 //! | [`BondForce`] | any | listed, 3 bytes each | 3 |
 //! | `SurfaceForce` (`pericles-manifold`) | surfaces | listed, 12 bytes each | 1.1 (p = 2), 1.2 (p = 3) |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline); in floats half of that |
+//! | [`LinearSolidForce`] | state-based, any | listed, 3 bytes each; two passes | twice to two and a half times [`BondForce`] |
+//! | [`LinearSolidGrid`] | state-based, on a lattice | one stencil, one bit each; two passes | twice [`GridForce`] |
 //!
-//! [`BondBody::operator`] chooses. (Times: one core of an AMD EPYC 9004.)
+//! [`BondBody::operator`] and [`LinearSolidBody::operator`] choose. (Times: one core of an AMD EPYC 9004.)
 
 mod assemble;
 mod breakable;
