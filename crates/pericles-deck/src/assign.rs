@@ -14,7 +14,7 @@ pub struct Assignment {
     /// The sets, at least one.
     pub sets: Vec<String>,
     /// The name of their material, if it is assigned: that of an entry of [`Model::materials`](crate::Model::materials), or
-    /// [`Material::name`](crate::Material::name) of the body's.
+    /// [`Material::name`](method@crate::Material::name) of the body's.
     #[serde(default)]
     pub material: Option<String>,
     /// Stiffness over that of the points' material, if it is assigned; a bond has the mean of its ends. Density and critical stretch are the material's.

@@ -67,7 +67,8 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
         }
     };
     let mut names = vec![name];
-    let others: Option<Vec<NamedMaterial>> = named
+    // All are read before one that is wrong ends it.
+    let others: Vec<Option<NamedMaterial>> = named
         .into_iter()
         .map(|(name, item)| {
             if names.iter().any(|known| known == name) {
@@ -84,14 +85,9 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
                 model,
             })
         })
-        .fold(Some(Vec::new()), |all, one| {
-            // Not `collect`, which would leave the materials after a wrong one unread.
-            let (mut all, one) = (all?, one?);
-            all.push(one);
-            Some(all)
-        });
+        .collect();
     Materials {
-        others,
+        others: others.into_iter().collect(),
         names,
         own,
         place,

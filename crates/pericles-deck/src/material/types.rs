@@ -13,7 +13,7 @@ use crate::state_based::StateBased;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Its name, for people, assignments and interfaces; "default" if it is left out ([`Material::name`]).
+    /// Its name, for people, assignments and interfaces; "default" if it is left out ([`Material::name`](method@Material::name)).
     #[serde(default)]
     pub name: Option<String>,
     /// Whether points without an assignment have this material. If not, every point needs an assignment.

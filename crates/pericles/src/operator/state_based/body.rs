@@ -41,7 +41,7 @@ pub struct LinearSolidBody<'a> {
 const LIMITS: &[Limit] = &[
     Limit::new(
         Feature::Inclusions,
-        "inclusions scale the stiffness of bonds, which state-based materials do not have; give a [[material.part]] with elastic constants of its own",
+        "inclusions scale the stiffness of bonds, which state-based materials do not have; assign a material with elastic constants of its own",
     ),
     Limit::new(
         Feature::SeveralSpacings,
