@@ -503,3 +503,21 @@ fn transforms_and_the_stencil_move_a_plate_alike() {
         assert!(apart < 1e-9 * size, "{column}: {apart:e} of {size:e}");
     }
 }
+
+#[test]
+fn bodies_from_meshes_and_surfaces_break_where_they_are_thin() {
+    let (_place, out) = check("geometry", "dogbone");
+    for file in ["fields.exo", "cells.pvd"] {
+        assert!(out.join(file).exists(), "{file}");
+    }
+    for name in ["bracket", "fibres"] {
+        let (_place, out) = check("geometry", name);
+        // Energy given by the supports is in the body or was dissipated.
+        let history = read_csv(out.join("history.csv")).unwrap();
+        let last = |name: &str| history.column(name).unwrap().last().copied().unwrap();
+        assert!(
+            last("balance").abs() < 0.02 * last("external_work"),
+            "{name}"
+        );
+    }
+}
