@@ -103,8 +103,12 @@ impl<N: GridNumber> Factors<N> {
     #[inline(always)]
     pub fn places(&self, first: usize, count: usize) -> Option<[usize; 2]> {
         let length = self.largest.len() * LANES;
-        let rows = [self.rows[first], self.rows[first + count - 1]];
-        (rows != [0; 2]).then(|| rows.map(|row| row as usize * length))
+        let (low, high) = (self.rows[first], self.rows[first + count - 1]);
+        // Written out: an adapter that is not inlined would pass all registers through memory.
+        match low | high {
+            0 => None,
+            _ => Some([low as usize * length, high as usize * length]),
+        }
     }
 
     /// Factors, eight for each offset of a row.
