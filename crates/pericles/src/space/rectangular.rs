@@ -168,7 +168,11 @@ mod tests {
     fn every_axis_has_its_own_spacing() {
         let cloud = rectangular_cells([0.0; 3], &[1.0, 1.0], &[0.25, 0.1], 2.0, &[]).unwrap();
         assert_eq!(cloud.len(), 40);
-        assert!(cloud.lattice().is_none());
+        let lattice = cloud.lattice().unwrap();
+        assert_eq!(
+            (lattice.spacing[..2].to_vec(), lattice.is_cubic(2)),
+            (vec![0.25, 0.1], false)
+        );
         assert!((cloud.volumes()[0] - 0.05).abs() < 1e-16);
         assert!((cloud.spacing() - 0.025f64.sqrt()).abs() < 1e-15);
         assert_eq!(cloud.cell_sides(), Some(&[0.25, 0.1][..]));
