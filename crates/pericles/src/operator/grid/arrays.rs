@@ -42,13 +42,8 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         first_chunk: usize,
         count: usize,
     ) -> Option<T::Places> {
-        match self.factors {
-            None => None,
-            Some(factors) => match factors.places(first_chunk, count) {
-                None => None,
-                Some([first, last]) => Some(T::places(first, last)),
-            },
-        }
+        let [first, last] = self.factors?.places(first_chunk, count)?;
+        Some(T::places(first, last))
     }
 
     /// The bonds of an offset, with the factors that begin there.
