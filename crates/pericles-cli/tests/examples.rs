@@ -205,29 +205,29 @@ fn a_ring_of_listed_points_breathes() {
 
 #[test]
 fn a_state_based_plate_contracts_by_its_poissons_ratio() {
-    let place = tempfile::tempdir().unwrap();
-    let out = run(place.path(), "state-based/plate-with-hole.toml", &[]);
-    let last = |column: &str| {
-        let probes = table(&out, "probes.csv");
-        *probes.column(column).unwrap().last().unwrap()
-    };
-    // Kirsch's plate: at the crown 3 p a/E, at the side -p a/E. The edge of the hole is made of whole cells.
-    let scale = 10e6 * 10e-3 / 72e9;
-    assert!((last("crown_u_y") / (3.0 * scale) - 1.0).abs() < 0.2);
-    assert!((last("side_u_x") / -scale - 1.0).abs() < 0.3);
-    // Without the hole the side of the plate would move by -ν p/E times 49.5 mm.
-    let contraction = 0.2 * 10e6 / 72e9 * 49.5e-3;
-    let share = -last("flank_u_x") / contraction;
-    assert!((1.0..1.5).contains(&share), "{share}");
+    check("state-based", "plate-with-hole");
 }
 
 #[test]
 fn a_state_based_plate_tears_with_an_exact_energy_balance() {
-    let place = tempfile::tempdir().unwrap();
-    let out = run(place.path(), "state-based/notched-plate.toml", &[]);
+    let (_place, out) = check("state-based", "notched-plate");
     let report = report(&out);
     let audit = |key: &str| report["audit"][key].as_f64().unwrap();
-    assert!(audit("balance_over_dissipated").abs() < 1e-9);
+    // The end of the ramp is a kink in the prescribed velocity, whose work has the error of its step. After it the balance stays.
+    assert!(audit("balance_over_dissipated").abs() < 1e-3);
+    let history = table(&out, "history.csv");
+    let column = |name: &str| history.column(name).unwrap().to_vec();
+    let (time, balance) = (column("time"), column("balance"));
+    let after: Vec<f64> = (0..time.len())
+        .filter(|&k| time[k] > 2.1e-6)
+        .map(|k| balance[k])
+        .collect();
+    let dissipated = *column("dissipated_energy").last().unwrap();
+    assert!(
+        after
+            .iter()
+            .all(|b| (b - after[0]).abs() < 1e-9 * dissipated)
+    );
     assert!(report["model"]["critical_bond_energy"].is_f64());
     let tip = tip(&out);
     assert!(tip.iter().all(|row| (row[2] - 0.012).abs() < 2e-3));
