@@ -39,7 +39,7 @@ pub struct ResultFile {
 
 enum Writer {
     Exodus(ExodusWriter),
-    VtkHdf(VtkHdfWriter),
+    VtkHdf(Box<VtkHdfWriter>),
 }
 
 impl Writer {
@@ -123,7 +123,7 @@ impl ResultFile {
                     0 => VtkHdfWriter::create(&self.path, &layout),
                     outputs => VtkHdfWriter::resume(&self.path, &layout, outputs),
                 };
-                writer.map(Writer::VtkHdf)
+                writer.map(|writer| Writer::VtkHdf(Box::new(writer)))
             }
         }
     }
