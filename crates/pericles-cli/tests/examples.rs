@@ -230,7 +230,14 @@ fn a_state_based_plate_tears_with_an_exact_energy_balance() {
     );
     assert!(report["model"]["critical_bond_energy"].is_f64());
     let tip = tip(&out);
-    assert!(tip.iter().all(|row| (row[2] - 0.012).abs() < 2e-3));
+    // It runs straight on before it branches.
+    let straight = tip.iter().filter(|row| row[0] < 9e-6);
+    assert!(straight.clone().count() > 10);
+    assert!(
+        straight
+            .into_iter()
+            .all(|row| (row[2] - 0.012).abs() < 2e-3)
+    );
     assert!(tip[tip.len() - 1][3] > 5e-3);
 }
 
