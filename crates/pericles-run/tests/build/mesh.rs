@@ -330,7 +330,8 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         ],
     );
     says(
-        &with("unit = \"mm\"", "unit = \"mm\"\nspacing = \"1 m\""),
+        &with("unit = \"mm\"", "unit = \"mm\"\nspacing = \"1 m\"")
+            .replace("horizon = \"3 mm\"", "horizon = \"3 m\""),
         &mesh,
         &[
             "deck.toml:6:11",

@@ -216,7 +216,7 @@ fn a_model_without_a_deck_names_keys() {
         .unwrap()
         .to_string();
     assert!(
-        message.starts_with("initial.0: unknown set `right`"),
+        message.starts_with("initial.0.set: unknown set `right`"),
         "{message}"
     );
     let solid = model.body.solid_mut().unwrap();

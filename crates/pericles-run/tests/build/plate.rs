@@ -199,7 +199,7 @@ fn parts_have_their_own_density_and_strength() {
     let model = build(STATIC);
     assert_eq!(
         (model.steps, model.dt, model.form),
-        (4, 0.25, ForceForm::List)
+        (4, 0.25, ForceForm::Grid)
     );
     let density = |x: f64| {
         model
