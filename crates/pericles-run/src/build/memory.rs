@@ -224,20 +224,31 @@ impl Assembler<'_> {
                 false => listed * neighbours,
             },
             ForceForm::Convolution | ForceForm::Spectral => transform,
-            ForceForm::Grid | ForceForm::FloatGrid if self.has_one_stiffness(solid) => {
-                neighbours / 8.0
-            }
-            // A factor a bond, at most.
-            ForceForm::Grid | ForceForm::FloatGrid => neighbours * (0.125 + 8.0),
+            ForceForm::Grid | ForceForm::FloatGrid => self.bytes_on_stencil(solid, neighbours),
+            _ if solid.shape.is_refined() || solid.shape.is_listed() => listed * neighbours,
+            _ if !self.has_one_stiffness(solid) => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_periodic() => transform,
-            _ if self.is_on_one_grid(solid) => (neighbours / 8.0).max(transform),
-            _ => listed * neighbours,
+            _ => (neighbours / 8.0).max(transform),
         };
         let own = match solid.material.state_based() {
             Some(_) => SOLID,
             None => 0.0,
         };
         self.bytes_of_state(dimension) + own + bonds
+    }
+
+    /// Bytes of a point's bonds on a stencil.
+    fn bytes_on_stencil(&self, solid: &Solid, neighbours: f64) -> f64 {
+        let bits = neighbours / 8.0;
+        if self.has_one_stiffness(solid) {
+            bits
+        } else if solid.material.surface_correction != Default::default() {
+            // The correction takes the families from a list.
+            bits + LISTED * neighbours
+        } else {
+            // A factor a bond, at most.
+            bits + NUMBER * neighbours
+        }
     }
 
     fn memory_estimate(self, assembly: &Assembly) -> u64 {
