@@ -335,7 +335,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &mesh,
         &[
             "deck.toml:6:11",
-            "mean size of the elements is 1 mm",
+            "mean size of the elements is 1.00 mm",
             "correct `unit`",
         ],
     );
