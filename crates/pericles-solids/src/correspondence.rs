@@ -1,0 +1,1 @@
+//! Correspondence materials: forces from the stress of a deformation gradient.

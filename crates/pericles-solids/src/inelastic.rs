@@ -1,0 +1,1 @@
+//! Viscoelastic and elastoplastic state-based solids.

@@ -1,0 +1,3 @@
+//! Static equilibrium, quasi-static fracture and natural modes of peridynamic bodies.
+//!
+//! The crate uses only what the engine, [`pericles`], exports.
