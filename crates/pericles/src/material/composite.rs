@@ -182,7 +182,7 @@ impl PairClasses {
 }
 
 /// Refuses more than 256 materials, and points of a material that is not one of so many.
-pub(super) fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
+pub(crate) fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
     if count > 256 {
         return Err(PericlesError::OutOfRange {
             quantity: "the number of materials",

@@ -12,7 +12,7 @@ use crate::material::{
 };
 use crate::space::{PointCloud, check_length};
 
-/// Several materials of a body, which share law, horizon, influence function and partial volumes.
+/// Several materials of a body, which share law, influence function and partial volumes. Each has the horizon that it says.
 #[derive(Debug, Clone, Copy)]
 pub struct Materials<'a> {
     /// All materials, the body's own first.
@@ -23,7 +23,7 @@ pub struct Materials<'a> {
     pub interfaces: &'a [([u8; 2], MaterialInterface)],
 }
 
-/// A body on grids of different spacing, each with a horizon of the same number of spacings.
+/// A body on grids of different spacing, each with a horizon of the same number of spacings, or of materials of different horizons.
 ///
 /// Points i and j are bonded if |ξ| < max(δ_i, δ_j). The force of the bond is the mean of the laws of its ends, each nothing beyond its own horizon:
 ///
@@ -33,7 +33,7 @@ pub struct Materials<'a> {
 /// there is a spurious force, for a point sees different grids on its two sides. It falls with the spacing over the length of what is of interest,
 /// as the missing bonds at a free surface do.
 ///
-/// With several materials c_i is the constant that bonds between the materials of i and j have on the grid of i.
+/// δ_i is the horizon of the material of i over the ratio of its grid. With several materials c_i is the constant that bonds between the materials of i and j have with the horizon of i on the grid of i.
 ///
 /// **Breaking.** A fracture energy belongs to another critical stretch on each grid, s_g. Bonds between two grids g and h break at the stretch at which they store, all together, the mean energy of both
 /// laws: s² = (w_g s_g² + w_h s_h²)/(w_g + w_h), with the sums w of c α κ |ξ| V_i V_j over these bonds by the law of each grid. A crack along an interface then takes the mean of what both grids take.
@@ -61,23 +61,29 @@ pub struct GradedBody<'a> {
     pub damage: DamageMeasure,
 }
 
-/// The laws of the grids.
+/// Points of one grid and one horizon.
+struct Kind {
+    grid: usize,
+    /// The horizon on this grid, m.
+    horizon: f64,
+}
+
+/// The laws of the kinds of points.
 struct Laws {
-    /// Horizon of each grid, m.
-    horizons: Vec<f64>,
-    /// Classes of points by grid and material, materials fastest.
+    kinds: Vec<Kind>,
+    /// Classes of points by kind and material, materials fastest.
     classes: PairClasses,
     /// The number of materials.
     materials: u8,
 }
 
 impl Laws {
-    fn grid_of(&self, class: u8) -> usize {
+    fn kind_of(&self, class: u8) -> usize {
         usize::from(class / self.materials)
     }
 
-    /// The pair of classes of two points where both are on the grid of the first.
-    fn on_grid_of(&self, [a, b]: [u8; 2]) -> [u8; 2] {
+    /// The pair of classes of two points where both are of the kind of the first.
+    fn as_kind_of(&self, [a, b]: [u8; 2]) -> [u8; 2] {
         [a, a - a % self.materials + b % self.materials]
     }
 }
@@ -104,16 +110,16 @@ impl GradedBody<'_> {
         }
     }
 
-    /// The constants of a material on a grid.
-    fn constants(&self, material: &BondMaterial, ratio: u32) -> Result<(f64, BondConstants)> {
-        let (cloud, ratio) = (self.cloud, f64::from(ratio));
+    /// The constants of a material with the horizon of a kind of points on its grid.
+    fn constants(&self, material: &BondMaterial, kind: &Kind) -> Result<BondConstants> {
+        let cloud = self.cloud;
         let own = BondMaterial {
-            horizon: self.material.horizon / ratio,
+            horizon: kind.horizon,
             ..material.clone()
         };
+        let ratio = f64::from(self.ratios[kind.grid]);
         let sides = vec![cloud.spacing() / ratio; cloud.dimension()];
-        let constants = own.constants_on(&sides, cloud.section(), self.state)?;
-        Ok((own.horizon, constants))
+        own.constants_on(&sides, cloud.section(), self.state)
     }
 
     fn laws(&self) -> Result<Laws> {
@@ -122,29 +128,49 @@ impl GradedBody<'_> {
             Some(materials) => (materials.all, materials.interfaces),
             None => (&own[..], &[][..]),
         };
+        if let Some(materials) = &self.materials {
+            check_materials(materials.of_point, all.len())?;
+        }
         // A table per class of bonds names those of one lattice, which this body is not.
         self.material.constants(self.cloud, self.state)?;
-        let count = self.ratios.len() * all.len();
+        let mut horizons: Vec<f64> = Vec::new();
+        for material in all {
+            if !horizons.contains(&material.horizon) {
+                horizons.push(material.horizon);
+            }
+        }
+        let count = self.ratios.len() * horizons.len() * all.len();
         if count > 255 {
             return Err(PericlesError::OutOfRange {
-                quantity: "the number of materials times that of cell sizes",
+                quantity: "the number of materials times those of cell sizes and horizons",
                 value: count as f64,
                 allowed: "at most 255",
             });
         }
-        let (mut horizons, mut constants) = (Vec::new(), Vec::new());
-        for &ratio in self.ratios {
-            for material in all {
-                let (horizon, own) = self.constants(material, ratio)?;
-                horizons.push(horizon);
-                constants.push(own);
-            }
-        }
-        let horizons = horizons.into_iter().step_by(all.len()).collect();
-        let materials = all.len() as u8;
+        let kind = |grid: usize, horizon: f64| Kind {
+            grid,
+            horizon: horizon / f64::from(self.ratios[grid]),
+        };
+        let grids = 0..self.ratios.len();
+        let kinds: Vec<Kind> = grids
+            .flat_map(|grid| horizons.iter().map(move |&horizon| kind(grid, horizon)))
+            .collect();
+        let of_kinds = kinds
+            .iter()
+            .flat_map(|kind| all.iter().map(move |material| (material, kind)));
+        let constants = of_kinds
+            .map(|(material, kind)| self.constants(material, kind))
+            .collect::<Result<Vec<_>>>()?;
+        let (materials, lengths) = (all.len() as u8, horizons.len() as u8);
+        let horizon_of = |material: &BondMaterial| {
+            let place = horizons.iter().position(|&one| one == material.horizon);
+            place.unwrap_or(0) as u8
+        };
+        let horizon_of: Vec<u8> = all.iter().map(horizon_of).collect();
         let class = |i: usize| {
             let material = self.materials.map_or(0, |materials| materials.of_point[i]);
-            self.grid_of_point[i] * materials + material
+            let kind = self.grid_of_point[i] * lengths + horizon_of[usize::from(material)];
+            kind * materials + material
         };
         let of_point = (0..self.cloud.len()).map(class).collect();
         let mut classes = PairClasses::new(of_point, &constants, InterfaceRule::default())?;
@@ -158,16 +184,16 @@ impl GradedBody<'_> {
                 });
             }
             let material = &all[usize::from(pair[0])];
-            // Critical stretches between grids follow from those on each of them.
-            for (grid, &ratio) in self.ratios.iter().enumerate() {
-                let pair = pair.map(|number| grid as u8 * materials + number);
+            // Critical stretches between two kinds of points follow from those of each of them.
+            for (number, kind) in kinds.iter().enumerate() {
+                let pair = pair.map(|material| number as u8 * materials + material);
                 classes.set_interface(pair, interface, material, |across| {
-                    Ok(self.constants(across, ratio)?.1)
+                    self.constants(across, kind)
                 })?;
             }
         }
         Ok(Laws {
-            horizons,
+            kinds,
             classes,
             materials,
         })
@@ -191,7 +217,7 @@ impl GradedBody<'_> {
         let laws = self.laws()?;
         let mut classes = laws.classes.clone();
         let (cloud, material) = (self.cloud, self.material);
-        let horizon = |&class: &u8| laws.horizons[laws.grid_of(class)];
+        let horizon = |&class: &u8| laws.kinds[laws.kind_of(class)].horizon;
         let horizons: Vec<f64> = laws.classes.of_point().iter().map(horizon).collect();
         let mut bonds = BondList::with_horizons(cloud, horizons, material.volume_correction)?;
         let sites = bonds.shared_sites();
@@ -206,7 +232,7 @@ impl GradedBody<'_> {
         let end = |bonds: &BondList, i: usize, j: usize| match bonds.end_factor(i, j) {
             0.0 => 0.0,
             kappa => {
-                let pair = laws.on_grid_of([class[i], class[j]]);
+                let pair = laws.as_kind_of([class[i], class[j]]);
                 let micromodulus = laws.classes.pair_micromodulus(pair);
                 let alpha = material
                     .influence
@@ -268,11 +294,11 @@ impl GradedBody<'_> {
                 each.sum()
             })
         };
-        let all = pairs((laws.horizons.len() as u8) * laws.materials);
-        let between = all.filter(|[a, b]| laws.grid_of(*a) != laws.grid_of(*b));
+        let all = pairs((laws.kinds.len() as u8) * laws.materials);
+        let between = all.filter(|[a, b]| laws.kind_of(*a) != laws.kind_of(*b));
         let found = between.filter_map(|[a, b]| {
             let own =
-                [[a, b], [b, a]].map(|pair| classes.pair_critical_stretch(laws.on_grid_of(pair)));
+                [[a, b], [b, a]].map(|pair| classes.pair_critical_stretch(laws.as_kind_of(pair)));
             if own[0] == own[1] {
                 return Some(([a, b], own[0]));
             }
