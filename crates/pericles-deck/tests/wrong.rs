@@ -115,7 +115,7 @@ const WRONG: &[Wrong] = &[
     // Several materials, relaxation.
     wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = -1\nyoungs_modulus = 1\n[sets.top]", (18, 11), "-1", &["a positive number"]),
     wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\nblock = 2\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (15, 12), "part", &["no place", "[materials.NAME]", "[[assign]]"]),
-    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nhorizon = 1\n[sets.top]", (20, 11), "1", &["`horizon` in [materials.a] differs", "once, in [material]"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nvolume_correction = \"linear\"\n[sets.top]", (20, 21), "\"linear\"", &["`volume_correction` in [materials.a] differs", "once, in [material]"]),
     wrong("[sets.top]", "[material.interface]\nrule = \"weaker\"\n[sets.top]", (16, 8), "\"weaker\"", &["`interface` has no place", "only a body of several materials"]),
     wrong("[sets.top]", "[material.interface]\npair = [{ between = [\"b\", \"a\"], critical_stretch = 1 }]\n[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 22), "\"b\"", &["unknown material `b`", "\"a\""]),
     wrong("fracture_energy", "fracture_calibration = \"grid\"\nfracture_energy", (13, 24), "\"grid\"", &["unknown fracture calibration `grid`", "\"lattice\" and \"continuum\""]),

@@ -38,6 +38,7 @@ const TENSORS: Limit = Limit::new(
 const OF_CONVOLUTION: &[Limit] = &[
     Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
+    Limit::SEVERAL_HORIZONS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,
     Limit::listed_law(Feature::GreenStrainBar),
@@ -67,6 +68,7 @@ const FULL_BOX: &str =
 const OF_SPECTRAL: &[Limit] = &[
     Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
+    Limit::SEVERAL_HORIZONS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,
     Limit::listed_law(Feature::GreenStrain),

@@ -122,16 +122,18 @@ fn other_material(other: &NamedMaterial, own: &MaterialConstants) -> Line {
         format!(", ν = {}", significant(ratio, 4))
     });
     let text = format!(
-        "{}: Young's modulus {}{ratio}, {} kg/m³; breaking {}",
+        "{}: Young's modulus {}{ratio}, {} kg/m³, horizon {}; breaking {}",
         other.name,
         quantity(own.young(), "Pa"),
         significant(other.model.density(), 4),
+        quantity(other.model.horizon(), "m"),
         breaking(own)
     );
     let mut entry = json!({
         "name": other.name,
         "youngs_modulus": own.young(),
         "density": other.model.density(),
+        "horizon": other.model.horizon(),
         "critical_stretch": finite(own.critical_stretch()),
         "fracture_energy": finite(own.fracture_energy()),
     });

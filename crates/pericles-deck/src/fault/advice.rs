@@ -60,7 +60,7 @@ impl Subject for Fault {
                 "assign one to them with [[assign]], or call the material of all points without an assignment [materials.default]".into()
             }
             Self::NotShared { .. } => {
-                "the materials of a body differ in density, elastic constants and failure; give all else once, in [material]".into()
+                "the materials of a body differ in density, elastic constants, failure and, if they are bond-based, horizon; give all else once, in [material]".into()
             }
             Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
             Self::TwoCourses { .. } => "leave `function` out".into(),

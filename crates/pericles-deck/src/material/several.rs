@@ -1,7 +1,7 @@
 //! The materials of a body: `[material]`, `[materials.NAME]`, or both.
 
 use super::material;
-use super::shared::difference_of_tables;
+use super::shared::{difference_of_tables, same_length};
 use super::types::{Material, MaterialModel, NamedMaterial};
 use crate::body::BodyRead;
 use crate::fault::Fault;
@@ -128,10 +128,12 @@ fn other(
         return None;
     }
     let mut model = read.model;
-    // To the last bit.
-    match &mut model {
-        MaterialModel::Bonds(bonds) => bonds.horizon = own.horizon(),
-        MaterialModel::StateBased(state) => state.solid.horizon = own.horizon(),
+    if same_length(own.horizon(), model.horizon()) {
+        // To the last bit.
+        match &mut model {
+            MaterialModel::Bonds(bonds) => bonds.horizon = own.horizon(),
+            MaterialModel::StateBased(state) => state.solid.horizon = own.horizon(),
+        }
     }
     Some(model)
 }

@@ -4,9 +4,11 @@ use super::types::{Material, MaterialModel};
 
 /// The first key in which two materials of one body differ though they must not.
 ///
-/// A bond belongs to both of its ends: it has one law, one length up to which it exists and one weight. What is not named here, density, elastic constants and failure, may differ.
+/// A bond belongs to both of its ends: it has one law and one influence function. What is not named here, density, elastic constants, failure and the horizon of bond-based materials, may differ. A state-based
+/// material has one horizon, because the weighted volume of a point is a sum over its family.
 pub(crate) fn difference(a: &MaterialModel, b: &MaterialModel) -> Option<&'static str> {
-    let horizon = !same_length(a.horizon(), b.horizon());
+    let horizon =
+        matches!(a, MaterialModel::StateBased(_)) && !same_length(a.horizon(), b.horizon());
     let correction = a.volume_correction() != b.volume_correction();
     let (law, influence) = match (a, b) {
         (MaterialModel::Bonds(a), MaterialModel::Bonds(b)) => {
@@ -51,7 +53,7 @@ fn first(keys: &[(bool, &'static str)]) -> Option<&'static str> {
     found.map(|(_, key)| *key)
 }
 
-/// Lengths that differ by rounding only: a length and a multiple of the spacing.
-fn same_length(a: f64, b: f64) -> bool {
+/// Whether lengths differ by rounding only: a length and a multiple of the spacing.
+pub(super) fn same_length(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }

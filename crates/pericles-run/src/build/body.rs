@@ -15,6 +15,7 @@ use pericles_waves::{AssembledForce, ForceForm};
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::discretisation::{Discretisation, Grids, Sets};
+use super::graded::have_several_horizons;
 use super::materials::{Between, Composition};
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;
@@ -193,7 +194,9 @@ impl Assembler<'_> {
             },
             ..composite
         };
-        let assembled = if grids.ratios.len() > 1 {
+        let is_graded = grids.ratios.len() > 1
+            || composite.classes.is_some() && have_several_horizons(materials);
+        let assembled = if is_graded {
             self.graded_bonds(solid, &composite, grids, (materials, interfaces))?
         } else {
             let form = match solid.material.form {

@@ -1,4 +1,4 @@
-//! Bonds of a body with cells of several sizes.
+//! Bonds of a body with cells of several sizes or materials of different horizons.
 
 use pericles::material::BondMaterial;
 use pericles::operator::{CompositeBody, Feature, GradedBody, Materials};
@@ -18,7 +18,9 @@ impl Assembler<'_> {
         grids: &Grids,
         (materials, interfaces): (&[BondMaterial], &[Between]),
     ) -> Result<AssembledForce, BuildError> {
-        let features = composite.features().with(Feature::SeveralSpacings, true);
+        let features = (composite.features())
+            .with(Feature::SeveralSpacings, grids.ratios.len() > 1)
+            .with(Feature::SeveralHorizons, have_several_horizons(materials));
         solid.material.form.check(features).map_err(at_material)?;
         GradedBody::check(features).map_err(|error| at("material.surface_correction", error))?;
         let body = &composite.body;
@@ -40,4 +42,11 @@ impl Assembler<'_> {
         };
         Ok(graded.operator().map_err(at_material)?.into())
     }
+}
+
+/// Whether materials have different horizons.
+pub(super) fn have_several_horizons(materials: &[BondMaterial]) -> bool {
+    materials
+        .windows(2)
+        .any(|two| two[0].horizon != two[1].horizon)
 }

@@ -191,17 +191,15 @@ impl Assembler<'_> {
     /// Points within the horizon of a point inside.
     fn neighbours(&self, solid: &Solid, dimension: usize, spacing: Option<f64>) -> f64 {
         let material = &solid.material;
+        let horizon = self.largest_horizon(solid);
         let spacing = match (solid.shape.rectangular(), spacing) {
             // The side of the square or cube of the same volume.
             (Some(sides), _) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
             (None, Some(spacing)) => spacing,
             // Of a mesh that is not read yet: the usual three spacings in a horizon.
-            (None, None) => material.horizon() / 3.0,
+            (None, None) => horizon / 3.0,
         };
-        let ratio = material
-            .volume_correction()
-            .reach(material.horizon(), spacing)
-            / spacing;
+        let ratio = material.volume_correction().reach(horizon, spacing) / spacing;
         match dimension {
             1 => 2.0 * ratio,
             2 => std::f64::consts::PI * ratio.powi(2),
@@ -226,6 +224,7 @@ impl Assembler<'_> {
             ForceForm::Convolution | ForceForm::Spectral => transform,
             ForceForm::Grid | ForceForm::FloatGrid => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_refined() || solid.shape.is_listed() => listed * neighbours,
+            _ if self.has_several_horizons(solid) => listed * neighbours,
             _ if !self.has_one_stiffness(solid) => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_periodic() => transform,
             _ => (neighbours / 8.0).max(transform),
@@ -291,6 +290,24 @@ impl Assembler<'_> {
     /// Whether all bonds of the same vector have one stiffness.
     fn has_one_stiffness(&self, solid: &Solid) -> bool {
         self.model.assignments.is_empty() && solid.material.surface_correction == Default::default()
+    }
+
+    /// The horizons of all materials, the body's first.
+    fn horizons(self, solid: &Solid) -> impl Iterator<Item = f64> {
+        let others = self.model.materials.iter();
+        let others = others.map(|other| other.model.horizon());
+        std::iter::once(solid.material.horizon()).chain(others)
+    }
+
+    /// The largest horizon of all materials.
+    pub(super) fn largest_horizon(self, solid: &Solid) -> f64 {
+        self.horizons(solid).fold(0.0, f64::max)
+    }
+
+    /// Whether materials have different horizons.
+    fn has_several_horizons(self, solid: &Solid) -> bool {
+        let own = solid.material.horizon();
+        self.horizons(solid).any(|horizon| horizon != own)
     }
 
     /// Whether one stencil or transform can serve all points.

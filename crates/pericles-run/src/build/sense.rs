@@ -198,8 +198,8 @@ impl Assembler<'_> {
     fn pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) -> Option<Vec<usize>> {
         let material = &solid.material;
         // What is wrong with families and cracks has been refused when the operator was made.
-        let mut bonds =
-            BondList::new(cloud, material.horizon(), material.volume_correction()).ok()?;
+        let horizon = self.largest_horizon(solid);
+        let mut bonds = BondList::new(cloud, horizon, material.volume_correction()).ok()?;
         for (surface, ends) in self.cracks {
             bonds.cut(surface, *ends).ok()?;
         }

@@ -58,8 +58,8 @@ fn decks_are_refused_where_the_table_says() {
 fn deck_with(feature: Feature, form: &Form) -> String {
     use Feature::{
         BondEnergy, BondStretch, Breaking, FreeFaces, GaussNodes, GreenStrain, GreenStrainBar,
-        Inclusions, NoLattice, OtherCubic, PeriodicFaces, PreCracks, SeveralMaterials,
-        SeveralSpacings, StateBased, SurfaceCorrection, Tensors,
+        Inclusions, NoLattice, OtherCubic, PeriodicFaces, PreCracks, SeveralHorizons,
+        SeveralMaterials, SeveralSpacings, StateBased, SurfaceCorrection, Tensors,
     };
     let bar = matches!(feature, GreenStrainBar | OtherCubic | GaussNodes);
     let periodic = match feature {
@@ -99,6 +99,9 @@ fn deck_with(feature: Feature, form: &Form) -> String {
     let others = match feature {
         SeveralMaterials => {
             "materials.other = { density = 1, youngs_modulus = 2 }\nassign = [{ set = \"part\", material = \"other\" }]\n"
+        }
+        SeveralHorizons => {
+            "materials.other = { density = 1, youngs_modulus = 2, horizon_ratio = 2 }\nassign = [{ set = \"part\", material = \"other\" }]\n"
         }
         Inclusions => "assign = [{ set = \"part\", stiffness = 2 }]\n",
         PreCracks => "crack = [{ segment = [[0, 4], [6, 4]] }]\n",

@@ -2,6 +2,7 @@
 
 use pericles::{Control, Simulation};
 use pericles_deck::{Deck, Model};
+use pericles_waves::ForceForm;
 
 use super::composition::run_every_way;
 use super::{build, parse, refusal};
@@ -234,6 +235,36 @@ fn a_laminate_has_the_stiffness_of_its_layers_in_series() {
         let error = (u[108] - u[12]) / sum - 1.0;
         assert!(error.abs() < 5e-3, "{model}: {error:e}");
     }
+}
+
+/// Horizons of 3, 2 and 4 spacings: the same strains, since the constants of each material belong to its own horizon.
+#[test]
+fn a_laminate_of_different_horizons_has_the_same_stiffness() {
+    let of = |text: &str, young: usize, ratio: usize| {
+        let young = format!("youngs_modulus = {young}\n");
+        assert!(text.contains(&young), "{text}");
+        text.replace(&young, &format!("{young}horizon_ratio = {ratio}\n"))
+    };
+    let text = of(&of(&laminate("linear"), 20, 2), 40, 4);
+    let assembly = build(&text);
+    assert_eq!(assembly.form, ForceForm::List);
+    let run = run(&text);
+    let u = &run.state().u;
+    for (from, to, young) in [(12, 30, 10.0), (48, 72, 20.0), (88, 108, 40.0)] {
+        let strain = (u[to] - u[from]) / (to - from) as f64;
+        let error = strain * young / 0.01 - 1.0;
+        assert!(error.abs() < 1e-6, "E = {young}: {error:e}");
+    }
+    let grid = text.replacen("[material]\n", "[material]\nbonds = \"grid\"\n", 1);
+    let message = refusal(&grid).to_string();
+    assert!(message.contains("has one horizon"), "{message}");
+    let solids = laminate("state-based").replacen(
+        "youngs_modulus = 20\n",
+        "youngs_modulus = 20\nhorizon_ratio = 2\n",
+        1,
+    );
+    let report = Deck::parse(&solids, "deck.toml", &[]).unwrap_err().to_string();
+    assert!(report.contains("`horizon_ratio` in [materials.middle] differs"), "{report}");
 }
 
 #[test]

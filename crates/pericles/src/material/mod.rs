@@ -31,6 +31,7 @@ mod treatment;
 mod waves;
 
 pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration, Modulus};
+pub(crate) use composite::check_materials;
 pub use composite::{InterfaceRule, PairClasses};
 pub use constants::BondConstants;
 pub use crack_planes::CrackPlane;

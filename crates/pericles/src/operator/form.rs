@@ -21,6 +21,7 @@ const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 
 const OF_GRID: &[Limit] = &[
     Limit::SEVERAL_SPACINGS,
+    Limit::SEVERAL_HORIZONS,
     Limit::listed_law(Feature::GreenStrainBar),
     Limit::listed_law(Feature::GreenStrain),
     Limit::listed_law(Feature::OtherCubic),

@@ -1,4 +1,4 @@
-//! Bonds of a body with cells of several sizes.
+//! Bonds of a body with cells of several sizes or materials of different horizons.
 
 use std::sync::Arc;
 
@@ -9,6 +9,7 @@ use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule};
 use crate::material::{
     BondConstants, BondMaterial, InterfaceRule, MaterialInterface, PairClasses, StressState,
+    check_materials,
 };
 use crate::space::{PointCloud, check_length};
 
@@ -92,7 +93,7 @@ impl GradedBody<'_> {
     /// What the list of such a body does not represent.
     pub const LIMITS: &'static [Limit] = &[Limit::new(
         Feature::SurfaceCorrection,
-        "a point near an interface has families of two grids, which a correction would take for those at a surface; leave surface_correction out",
+        "a point near an interface has families of two grids or horizons, which a correction would take for those at a surface; leave surface_correction out",
     )];
 
     /// Refuses a body with features that a list of bonds between cells of several sizes does not represent.
@@ -117,6 +118,9 @@ impl GradedBody<'_> {
             horizon: kind.horizon,
             ..material.clone()
         };
+        if self.ratios.len() == 1 {
+            return own.constants(cloud, self.state);
+        }
         let ratio = f64::from(self.ratios[kind.grid]);
         let sides = vec![cloud.spacing() / ratio; cloud.dimension()];
         own.constants_on(&sides, cloud.section(), self.state)

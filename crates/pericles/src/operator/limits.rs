@@ -25,6 +25,8 @@ pub enum Feature {
     PreCracks,
     /// Several materials.
     SeveralMaterials,
+    /// Materials of different horizons.
+    SeveralHorizons,
     /// Inclusions: points with a stiffness of their own.
     Inclusions,
     /// A surface correction.
@@ -45,7 +47,7 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -55,6 +57,7 @@ impl Feature {
         Self::BondEnergy,
         Self::PreCracks,
         Self::SeveralMaterials,
+        Self::SeveralHorizons,
         Self::Inclusions,
         Self::SurfaceCorrection,
         Self::SeveralSpacings,
@@ -77,6 +80,7 @@ impl Feature {
             Self::BondEnergy => "breaking by bond energy",
             Self::PreCracks => "pre-cracks",
             Self::SeveralMaterials => "several materials",
+            Self::SeveralHorizons => "materials of different horizons",
             Self::Inclusions => "inclusions",
             Self::SurfaceCorrection => "surface correction",
             Self::SeveralSpacings => "cells of several sizes",
@@ -170,6 +174,12 @@ impl Limit {
     pub const SEVERAL_SPACINGS: Self = Self::new(
         Feature::SeveralSpacings,
         "there is no one lattice; leave `bonds` out or give \"list\"",
+    );
+
+    /// Of forms whose points all have the same family.
+    pub const SEVERAL_HORIZONS: Self = Self::new(
+        Feature::SeveralHorizons,
+        "one stencil or transform has one horizon; leave `bonds` out or give \"list\"",
     );
 
     /// Of forms that compute some laws only.

@@ -11,6 +11,7 @@ mod ends;
 mod fragments;
 mod grid;
 mod guard;
+mod horizons;
 mod implicit;
 mod list;
 mod multi_time_step;

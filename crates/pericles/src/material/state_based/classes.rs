@@ -3,7 +3,7 @@
 use super::failure::BondLimits;
 use super::linear_solid::LinearSolidConstants;
 use crate::error::{PericlesError, Result};
-use crate::material::composite::check_materials;
+use crate::material::check_materials;
 use crate::space::Sites;
 
 /// The material of every point, and what bonds between each pair of materials can bear.
