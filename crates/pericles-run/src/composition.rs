@@ -82,19 +82,19 @@ pub const SCHEMES: [Scheme; 12] = [
     Scheme {
         words: "Newmark: P(EC)ᵏ, Anderson",
         names: &["newmark"],
-        kind: StepKind::Stages,
+        kind: InnerSolver::FixedPoint.step_kind(),
         requirements: InnerSolver::FixedPoint.requirements(),
     },
     Scheme {
         words: "Newmark: Newton–Krylov",
         names: &["newmark"],
-        kind: StepKind::Stages,
+        kind: InnerSolver::NewtonKrylov.step_kind(),
         requirements: InnerSolver::NewtonKrylov.requirements(),
     },
     Scheme {
         words: "discrete gradient",
         names: &["discrete-gradient"],
-        kind: StepKind::Stages,
+        kind: StepKind::Middle,
         requirements: DiscreteGradient::REQUIREMENTS,
     },
     Scheme {
@@ -134,7 +134,7 @@ pub const FORMS: [Form; 7] = [
     Form {
         words: "stencil, single precision",
         name: "grid-f32",
-        offers: &[],
+        offers: &[Need::FiniteReach, Need::SumOverBonds],
         choice: Some(ForceForm::FloatGrid),
     },
     Form {
@@ -252,8 +252,7 @@ impl Condition {
     /// Whether a system with it does not meet a need.
     fn breaks(self, need: Need) -> bool {
         match self {
-            Self::Supports | Self::ReleasedPoints => need == Need::NoSupports,
-            Self::Breaking => need == Need::NothingBreaks,
+            Self::Supports | Self::ReleasedPoints | Self::Breaking => false,
             Self::AbsorbingEnds => matches!(need, Need::NoBoundaries | Need::NoMemory),
             Self::DampingLayers => need == Need::NoBoundaries,
         }
@@ -269,7 +268,7 @@ impl Condition {
 }
 
 /// Why absorbing ends do not go with most kinds of steps.
-const OTHER_KERNELS: &str = "the kernels of an absorbing end are made for a scheme: velocity-verlet, implicit-midpoint or trapezoidal";
+const OTHER_KERNELS: &str = "the kernels of an absorbing end are made for a scheme: velocity-verlet, implicit-midpoint, trapezoidal or discrete-gradient";
 
 /// The tables of schemes with forms and with conditions, and of features of bodies with forms, in Markdown, with the reasons of what is refused.
 pub fn tables() -> String {
@@ -277,26 +276,28 @@ pub fn tables() -> String {
     let forms = FORMS.map(|form| form.words);
     let conditions = Condition::ALL.map(Condition::words);
     let mut text = head("scheme", &forms);
-    for scheme in &SCHEMES {
-        let cells = FORMS.each_ref().map(|form| scheme.refusal_of_form(form));
-        row(&mut text, scheme.words, &cells, &mut reasons);
-    }
+    let of_forms = SCHEMES.iter().map(|scheme| {
+        let cells = FORMS.iter().map(|form| scheme.refusal_of_form(form));
+        (scheme.words, cells.collect())
+    });
+    rows(&mut text, of_forms, &mut reasons);
     text.push('\n');
     text.push_str(&head("scheme", &conditions));
-    for scheme in &SCHEMES {
+    let of_conditions = SCHEMES.iter().map(|scheme| {
         let cells = Condition::ALL.map(|condition| scheme.refusal_of_condition(condition));
-        row(&mut text, scheme.words, &cells, &mut reasons);
-    }
+        (scheme.words, cells.to_vec())
+    });
+    rows(&mut text, of_conditions, &mut reasons);
     text.push('\n');
     let chosen = FORMS.iter().filter(|form| form.choice.is_some());
     let chosen: Vec<&Form> = chosen.collect();
     let words: Vec<&str> = chosen.iter().map(|form| form.words).collect();
     text.push_str(&head("body", &words));
-    for feature in Feature::ALL {
+    let of_features = Feature::ALL.into_iter().map(|feature| {
         let cells = chosen.iter().map(|form| form.refusal_of_feature(feature));
-        let cells: Vec<_> = cells.collect();
-        row(&mut text, feature.words(), &cells, &mut reasons);
-    }
+        (feature.words(), cells.collect())
+    });
+    rows(&mut text, of_features, &mut reasons);
     text.push('\n');
     for (k, reason) in reasons.0.iter().enumerate() {
         let mut sentence = reason.chars();
@@ -328,6 +329,24 @@ impl Reasons {
 fn head(first: &str, columns: &[&str]) -> String {
     let rule = "|---".repeat(columns.len() + 1);
     format!("| {first} | {} |\n{rule}|\n", columns.join(" | "))
+}
+
+/// Adds rows; what has the same cells shares a row.
+fn rows<'a>(
+    text: &mut String,
+    all: impl Iterator<Item = (&'a str, Vec<Option<&'static str>>)>,
+    reasons: &mut Reasons,
+) {
+    let mut grouped: Vec<(String, Vec<Option<&'static str>>)> = Vec::new();
+    for (words, cells) in all {
+        match grouped.iter_mut().find(|(_, known)| *known == cells) {
+            Some((group, _)) => *group += &format!("; {words}"),
+            None => grouped.push((words.to_owned(), cells)),
+        }
+    }
+    for (words, cells) in &grouped {
+        row(text, words, cells, reasons);
+    }
 }
 
 fn row(text: &mut String, words: &str, cells: &[Option<&'static str>], reasons: &mut Reasons) {

@@ -21,74 +21,76 @@ pub enum ForceForm {
     Spectral,
 }
 
-/// Plane waves are independent of each other for the linear law alone.
-pub(crate) const LINEAR_ONLY: &str =
-    "plane waves are independent for the linear law only; use model = \"linear\"";
+/// A transform is a linear operator.
+pub(crate) const LINEAR_ONLY: &str = "a transform is a linear operator; use model = \"linear\", or bonds = \"list\", \"grid\" or \"fastest\"";
 
-const PRE_CRACKS: Limit = Limit::new(
-    Feature::PreCracks,
-    "pre-cracks cut single bonds, which it cannot; use \"list\" or \"grid\"",
-);
+/// The bonds of a transform are the same at every point.
+const UNIFORM: &str = "a transform has the same bonds at every point, for the whole run; use bonds = \"list\", \"grid\" or \"fastest\"";
+
+const fn linear(feature: Feature) -> Limit {
+    Limit::new(feature, LINEAR_ONLY)
+}
+
+const fn uniform(feature: Feature) -> Limit {
+    Limit::new(feature, UNIFORM)
+}
 
 const TENSORS: Limit = Limit::new(
     Feature::Tensors,
     "they are sums over single bonds; use bonds = \"list\", \"grid\" or \"fastest\"",
 );
 
-const OF_CONVOLUTION: &[Limit] = &[
+/// Limits of all transforms.
+const OF_TRANSFORMS: [Limit; 13] = [
     Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_HORIZONS,
-    Limit::SEVERAL_MATERIALS,
-    Limit::SURFACE_CORRECTION,
-    Limit::listed_law(Feature::GreenStrainBar),
-    Limit::listed_law(Feature::GreenStrain),
-    Limit::listed_law(Feature::OtherCubic),
-    Limit::INCLUSIONS,
-    PRE_CRACKS,
-    Limit::new(
-        Feature::BondStretch,
-        "only the linear law is a convolution; use the bond list for the bond-stretch law",
-    ),
-    Limit::new(
-        Feature::Breaking,
-        "breaking is not supported; use the bond list, or leave the critical stretch and fracture energy out",
-    ),
-    Limit::new(
-        Feature::NoLattice,
-        "it needs points on a regular grid; use the bond list for this body",
-    ),
-    TENSORS,
+    linear(Feature::BondStretch),
+    linear(Feature::GreenStrain),
+    linear(Feature::OtherCubic),
+    uniform(Feature::SeveralMaterials),
+    uniform(Feature::Inclusions),
+    uniform(Feature::SurfaceCorrection),
+    uniform(Feature::PreCracks),
+    uniform(Feature::Breaking),
     Limit::BOND_ENERGY,
+    TENSORS,
 ];
 
 const FULL_BOX: &str =
     "a Fourier series needs a full box of cells (bar, plate or block without holes)";
 
-const OF_SPECTRAL: &[Limit] = &[
-    Limit::STATE_BASED,
-    Limit::SEVERAL_SPACINGS,
-    Limit::SEVERAL_HORIZONS,
-    Limit::SEVERAL_MATERIALS,
-    Limit::SURFACE_CORRECTION,
-    Limit::listed_law(Feature::GreenStrain),
-    Limit::listed_law(Feature::OtherCubic),
-    Limit::INCLUSIONS,
-    PRE_CRACKS,
+/// All limits of convolutions. On bars plane waves compute the Green-strain law too.
+const OF_CONVOLUTION: &[Limit] = &joined::<{ OF_TRANSFORMS.len() + 2 }>(&[
+    linear(Feature::GreenStrainBar),
+    Limit::new(
+        Feature::NoLattice,
+        "it needs points on a regular grid; use the bond list for this body",
+    ),
+]);
+
+const OF_SPECTRAL: &[Limit] = &joined::<{ OF_TRANSFORMS.len() + 3 }>(&[
     Limit::new(
         Feature::FreeFaces,
         "Fourier series need a body whose opposite faces are one: set body.periodic = true, or use \"convolution\"",
     ),
-    Limit::new(Feature::BondStretch, LINEAR_ONLY),
-    Limit::new(
-        Feature::Breaking,
-        "bonds that break couple all plane waves; leave the critical stretch and fracture energy out",
-    ),
     Limit::new(Feature::NoLattice, FULL_BOX),
     Limit::new(Feature::GaussNodes, FULL_BOX),
-    TENSORS,
-    Limit::BOND_ENERGY,
-];
+]);
+
+/// The limits of all transforms, and others.
+const fn joined<const N: usize>(others: &[Limit]) -> [Limit; N] {
+    let mut all = [OF_TRANSFORMS[0]; N];
+    let mut k = 0;
+    while k < N {
+        all[k] = match k < OF_TRANSFORMS.len() {
+            true => OF_TRANSFORMS[k],
+            false => others[k - OF_TRANSFORMS.len()],
+        };
+        k += 1;
+    }
+    all
+}
 
 impl ForceForm {
     /// As written in decks.

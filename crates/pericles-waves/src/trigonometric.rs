@@ -110,13 +110,10 @@ const NAME: &str = "trigonometric";
 
 impl Trigonometric {
     /// What it needs of a system.
-    pub const REQUIREMENTS: &'static [Requirement] = &[
-        Requirement::IN_DOUBLES,
-        Requirement {
-            need: Need::NoMemory,
-            reason: "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
-        },
-    ];
+    pub const REQUIREMENTS: &'static [Requirement] = &[Requirement {
+        need: Need::NoMemory,
+        reason: "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
+    }];
 
     /// The scheme for a body.
     ///

@@ -12,10 +12,6 @@ pub enum Need {
     FiniteReach,
     /// Forces that are sums over bonds, whose parts can be summed up alone.
     SumOverBonds,
-    /// Bonds that do not break.
-    NothingBreaks,
-    /// No prescribed motion.
-    NoSupports,
     /// No boundaries that keep a state of their own.
     NoBoundaries,
     /// No boundaries with a memory: none, or such that depend on the state of a stage alone.
@@ -34,10 +30,10 @@ pub struct Requirement {
 }
 
 impl Requirement {
-    /// For schemes that solve equations, judge small differences or take the force apart.
+    /// For schemes that solve equations.
     pub const IN_DOUBLES: Self = Self {
         need: Need::DoublePrecision,
-        reason: "it solves equations, judges small differences or takes the force apart, and six digits are too few for that; use forces in double precision",
+        reason: "it solves equations to more digits than forces in single precision have; use forces in double precision",
     };
 }
 
@@ -49,8 +45,6 @@ impl Need {
             Self::DoublePrecision => !force.capabilities().single_precision,
             Self::FiniteReach => force.as_local().is_some(),
             Self::SumOverBonds => force.as_split().is_some(),
-            Self::NothingBreaks => !force.can_break(),
-            Self::NoSupports => system.motions().is_empty(),
             Self::NoBoundaries => !system.has_boundaries(),
             Self::NoMemory => !system.boundaries().any(|one| one.has_memory()),
             Self::BoundariesWithinStep => {

@@ -31,14 +31,15 @@ pub enum Path<'a> {
         /// Velocity before and after the step, m/s.
         v: [&'a [f64]; 2],
     },
-    /// Straight from one static state to the next, pushed by forces that change linearly between their values at both.
+    /// Straight from one state to the next, pushed all the way by forces that change linearly between their values at both: the quadrature of the discrete gradient, and of load steps between static states, in
+    /// which loads and supports change slowly. They do the work of their means, and a bond that breaks at the end has acted for the whole step.
     ///
-    /// Loads and supports change slowly within such a load step, so that they do the work of their means. The first static state of a run is the body without loads: in the first load step all loads grow from
+    /// The first static state of a run is the body without loads: in the first load step all loads grow from
     /// zero, whatever their time functions say at t = 0, and supports move their points from where they are.
     Chord {
-        /// Displacement at the static state before, m.
+        /// Displacement at the state before, m.
         u: &'a [f64],
-        /// Whether the load step is the first of the run.
+        /// Whether it is the first load step of a static run.
         first: bool,
     },
     /// A part of the body at the end of a sub-step, over which forces acted all the time. Nothing is booked by it.

@@ -5,13 +5,13 @@
 pub enum StepKind {
     /// At the end of the step, once: velocity Verlet.
     EndOfStep,
-    /// At its middle, by an equation for the whole step: the implicit midpoint rule and, for linear forces, the trapezoidal rule.
+    /// At its middle, by an equation for the whole step: the implicit midpoint rule and, for linear forces, the trapezoidal rule and the discrete gradient.
     Middle,
     /// Nowhere: the step is a function of the stiffness, which reaches past any layer of ghosts.
     Flow,
     /// At stages, or in sub-steps.
     Stages,
-    /// In parts, each at times of its own: r-RESPA.
+    /// At times of their own, between which boundaries act: the parts of r-RESPA, and Newmark's method with Newton's.
     Kicks,
 }
 
@@ -20,7 +20,7 @@ impl StepKind {
     pub fn schemes(self) -> &'static [&'static str] {
         match self {
             Self::EndOfStep => &["velocity-verlet"],
-            Self::Middle => &["implicit-midpoint", "trapezoidal"],
+            Self::Middle => &["implicit-midpoint", "trapezoidal", "discrete-gradient"],
             Self::Stages => &["rk3", "rk4", "dormand-prince", "rk3-mts", "rk4-mts"],
             Self::Flow => &["trigonometric"],
             Self::Kicks => &["respa"],

@@ -211,7 +211,7 @@ impl Assembler<'_> {
                 {
                     return Err(at_material(PericlesError::FormNotUsable {
                         form: ForceForm::FloatGrid.name(),
-                        reason: "this scheme needs forces in double precision; use \"grid\", or a Verlet or Runge–Kutta scheme with one step",
+                        reason: "this scheme needs forces in double precision; use \"grid\", or an explicit scheme",
                     }));
                 }
                 form => form,

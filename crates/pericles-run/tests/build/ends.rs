@@ -48,7 +48,7 @@ fn waves_leave_through_absorbing_ends() {
 
 #[test]
 fn waves_leave_in_implicit_steps_beyond_the_explicit_limit() {
-    for scheme in ["implicit-midpoint", "trapezoidal"] {
+    for scheme in ["implicit-midpoint", "trapezoidal", "discrete-gradient"] {
         let time = format!("[time]\nscheme = \"{scheme}\"\ndt = \"1 us\"");
         let mut run = build(&BAR.replace("[time]", &time)).simulation();
         run.run(|_| pericles::Control::Continue).unwrap();
@@ -119,7 +119,7 @@ fn ends_that_cannot_be_continued_are_refused() {
             "[time]",
             "[time]\nscheme = \"rk4\"",
             (24, 10),
-            "made for velocity-verlet, implicit-midpoint or trapezoidal, not for rk4",
+            "made for velocity-verlet, implicit-midpoint, trapezoidal or discrete-gradient, not for rk4",
         ),
         ("[time]", "[time]\ndt = \"1 us\"", (24, 6), "is unstable"),
         (
@@ -288,6 +288,8 @@ fn damping_layers_absorb() {
         ("scheme = \"newmark\"", 1e-3),
         ("scheme = \"implicit-midpoint\"", 1e-11),
         ("scheme = \"trapezoidal\"", 1e-11),
+        ("scheme = \"discrete-gradient\"", 1e-8),
+        ("scheme = \"newmark\"\nsolver = \"newton-krylov\"", 1e-3),
     ] {
         let time = format!("[time]\ndt = \"0.03 us\"\n{scheme}");
         let mut run = build(&layers.replace("[time]", &time)).simulation();

@@ -263,8 +263,13 @@ fn a_laminate_of_different_horizons_has_the_same_stiffness() {
         "youngs_modulus = 20\nhorizon_ratio = 2\n",
         1,
     );
-    let report = Deck::parse(&solids, "deck.toml", &[]).unwrap_err().to_string();
-    assert!(report.contains("`horizon_ratio` in [materials.middle] differs"), "{report}");
+    let report = Deck::parse(&solids, "deck.toml", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        report.contains("`horizon_ratio` in [materials.middle] differs"),
+        "{report}"
+    );
 }
 
 #[test]

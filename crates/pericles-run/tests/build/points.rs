@@ -60,7 +60,7 @@ fn parts_with_smaller_cells() {
         (refined(&text, "1 um"), "divides none", "[[body.refine]]"),
         (
             refined(&text, "3 mm").replace("[material]", "[material]\nbonds = \"grid\""),
-            "there is no one lattice",
+            "one spacing and one horizon",
             "\"grid\"",
         ),
         (

@@ -9,7 +9,7 @@ use super::decks::{SURFACE, WAVE, Wrong, explained, wrong};
 const WRONG_WAVES: &[Wrong] = &[
     wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" does not fit this body", "body.periodic = true"]),
     wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["belongs to model = \"linear\""]),
-    wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["bonds that break couple all plane waves"]),
+    wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["the same bonds at every point"]),
     wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` has no place in [body]", "with two ends"]),
     wrong("shape = \"bar\"\nlength = 20\norigin = -10", "shape = \"plate\"\nsize = [20, 20]\nplane = \"strain\"\nquadrature = \"gauss\"", (5, 1), "quadrature", &["only the cells of a bar"]),
     wrong("periodic = true", "periodic = true\nhole = [{ box = { max = 0 } }]", (6, 1), "periodic", &["`periodic` has no place in [body]", "without holes"]),
@@ -21,7 +21,7 @@ const WRONG_WAVES: &[Wrong] = &[
     wrong("scheme = \"trigonometric\"", "scheme = \"implicit-midpoint\"\nfunctions = \"chebyshev\"", (26, 1), "functions", &["belongs to scheme = \"trigonometric\""]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nfunctions = \"fast\"", (26, 13), "\"fast\"", &["did you mean `fastest`?"]),
     wrong("dt = 0.5\nscheme = \"trigonometric\"", "dt = 1.5\nscheme = \"velocity-verlet\"", (24, 6), "1.5", &["the time step 1.5e0 s is unstable", "allow_unstable"]),
-    wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (14, 9), "\"convolution\"", &["pre-cracks cut single bonds"]),
+    wrong("bonds = \"spectral\"", "bonds = \"convolution\"\n[[crack]]\nsection = 0.05", (14, 9), "\"convolution\"", &["the same bonds at every point"]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trapezoidal\"\nlinear_solver = \"lu\"", (26, 17), "\"lu\"", &["unknown linear solver `lu`", "\"direct\"", "\"conjugate-gradients\""]),
     wrong("scheme = \"trigonometric\"", "scheme = \"trigonometric\"\nlinear_solver = \"direct\"", (26, 1), "linear_solver", &["belongs to scheme = \"implicit-midpoint\""]),
     wrong("model = \"linear\"", "model = \"linear\"\ntreatment = \"taylor-2\"", (10, 1), "treatment", &["belongs to model = \"green-strain\""]),

@@ -11,8 +11,8 @@ use pericles::operator::{BondBody, BondForm};
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, Shape};
 use pericles::time::{
-    Implicit, ImplicitRule, InnerSolver, Integrator, LinearSolver, Newmark, NewmarkOptions, State,
-    VelocityVerlet,
+    DiscreteGradient, Implicit, ImplicitRule, InnerSolver, Integrator, LinearSolver, Newmark,
+    NewmarkOptions, State, VelocityVerlet,
 };
 use pericles::{Control, PointScalar, Simulation, System};
 use pericles_waves::{FunctionMethod, Trigonometric, TrigonometricOptions};
@@ -83,7 +83,7 @@ const fn trigonometric(functions: FunctionMethod) -> TrigonometricOptions {
     }
 }
 
-const SCHEMES: [(&str, Make); 7] = [
+const SCHEMES: [(&str, Make); 8] = [
     ("midpoint, direct", |system| {
         let solver = LinearSolver::Direct;
         Box::new(Implicit::with_solver(ImplicitRule::Midpoint, solver, system).unwrap())
@@ -102,6 +102,9 @@ const SCHEMES: [(&str, Make); 7] = [
             ..NewmarkOptions::default()
         };
         Box::new(Newmark::new(options, system).unwrap())
+    }),
+    ("discrete gradient", |system| {
+        Box::new(DiscreteGradient::new(1e-12, system).unwrap())
     }),
     ("trigonometric", |system| {
         let options = trigonometric(FunctionMethod::Chebyshev);

@@ -12,19 +12,11 @@ pub trait ByLaw: Sized {
     /// What is made.
     type Output;
 
-    /// Makes it for a law that every form of bonds computes; a list, if the maker makes nothing else.
+    /// Makes it.
     ///
     /// # Errors
     /// Those of the maker.
-    fn any_form<L: FastLaw, const D: usize>(self) -> Result<Self::Output> {
-        self.listed::<L, D>()
-    }
-
-    /// Makes it for a law that only lists compute. The grid's loops are not compiled for these laws.
-    ///
-    /// # Errors
-    /// Those of the maker.
-    fn listed<L: FastLaw, const D: usize>(self) -> Result<Self::Output>;
+    fn of_law<L: FastLaw, const D: usize>(self) -> Result<Self::Output>;
 }
 
 /// Makes something for a pair law in 1, 2 or 3 dimensions: the one place that joins the names of laws with their implementations.
@@ -33,28 +25,28 @@ pub trait ByLaw: Sized {
 /// [`PericlesError::WrongDimension`] for a law that is not defined in this dimension; those of the maker.
 pub fn by_law<M: ByLaw>(law: PairLaw, dimension: usize, maker: M) -> Result<M::Output> {
     match (law, dimension) {
-        (PairLaw::Linear, 1) => maker.any_form::<LinearBond, 1>(),
-        (PairLaw::Linear, 2) => maker.any_form::<LinearBond, 2>(),
-        (PairLaw::Linear, 3) => maker.any_form::<LinearBond, 3>(),
-        (PairLaw::BondStretch, 1) => maker.any_form::<BondStretch, 1>(),
-        (PairLaw::BondStretch, 2) => maker.any_form::<BondStretch, 2>(),
-        (PairLaw::BondStretch, 3) => maker.any_form::<BondStretch, 3>(),
-        (PairLaw::GreenStrain, 1) => maker.listed::<GreenBond, 1>(),
-        (PairLaw::GreenStrain, 2) => maker.listed::<GreenBond, 2>(),
-        (PairLaw::GreenStrain, 3) => maker.listed::<GreenBond, 3>(),
-        (PairLaw::Literal57, 1) => maker.listed::<LiteralBond, 1>(),
+        (PairLaw::Linear, 1) => maker.of_law::<LinearBond, 1>(),
+        (PairLaw::Linear, 2) => maker.of_law::<LinearBond, 2>(),
+        (PairLaw::Linear, 3) => maker.of_law::<LinearBond, 3>(),
+        (PairLaw::BondStretch, 1) => maker.of_law::<BondStretch, 1>(),
+        (PairLaw::BondStretch, 2) => maker.of_law::<BondStretch, 2>(),
+        (PairLaw::BondStretch, 3) => maker.of_law::<BondStretch, 3>(),
+        (PairLaw::GreenStrain, 1) => maker.of_law::<GreenBond, 1>(),
+        (PairLaw::GreenStrain, 2) => maker.of_law::<GreenBond, 2>(),
+        (PairLaw::GreenStrain, 3) => maker.of_law::<GreenBond, 3>(),
+        (PairLaw::Literal57, 1) => maker.of_law::<LiteralBond, 1>(),
         (PairLaw::Treated(law, treatment), 1) => match (law, treatment) {
             (CubicLaw::GreenStrain, Treatment::SecondOrder) => {
-                maker.listed::<Treated<GreenBond, SecondOrder>, 1>()
+                maker.of_law::<Treated<GreenBond, SecondOrder>, 1>()
             }
             (CubicLaw::GreenStrain, Treatment::Trapezoidal) => {
-                maker.listed::<Treated<GreenBond, Trapezoidal>, 1>()
+                maker.of_law::<Treated<GreenBond, Trapezoidal>, 1>()
             }
             (CubicLaw::Literal57, Treatment::SecondOrder) => {
-                maker.listed::<Treated<LiteralBond, SecondOrder>, 1>()
+                maker.of_law::<Treated<LiteralBond, SecondOrder>, 1>()
             }
             (CubicLaw::Literal57, Treatment::Trapezoidal) => {
-                maker.listed::<Treated<LiteralBond, Trapezoidal>, 1>()
+                maker.of_law::<Treated<LiteralBond, Trapezoidal>, 1>()
             }
         },
         (PairLaw::Treated(..), dimension) => Err(PericlesError::WrongDimension {

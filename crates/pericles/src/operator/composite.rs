@@ -70,12 +70,12 @@ impl CompositeBody<'_> {
         by_law(self.body.material.law, dimension, OfBody(self, form))
     }
 
-    /// The operator for a pair law that every form of bonds computes.
+    /// The operator for a pair law.
     pub(super) fn operator_of<L: FastLaw, const D: usize>(
         &self,
         form: BondForm,
     ) -> Result<AssembledBonds> {
-        OfBody(self, form).any_form::<L, D>()
+        OfBody(self, form).of_law::<L, D>()
     }
 
     /// The stiffness of bonds by their sites. `bonds` are the families without bonds that pre-cracks cut; only the correction of surfaces needs them.
@@ -227,16 +227,16 @@ struct OfBody<'a>(&'a CompositeBody<'a>, BondForm);
 impl ByLaw for OfBody<'_> {
     type Output = AssembledBonds;
 
-    fn any_form<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+    fn of_law<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
         let Self(body, form) = self;
         let form = match form {
             BondForm::Fastest => body.fastest_form(),
             chosen => chosen,
         };
-        if form == BondForm::List {
-            return Self(body, form).listed::<L, D>();
-        }
         form.check(body.features())?;
+        if form == BondForm::List {
+            return body.list::<L, D>();
+        }
         let mut grid = body.grid::<L, D>()?;
         if form == BondForm::FloatGrid {
             grid = grid.in_floats();
@@ -246,11 +246,5 @@ impl ByLaw for OfBody<'_> {
             operator: Box::new(grid),
             form,
         })
-    }
-
-    fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        let Self(body, form) = self;
-        form.check(body.features())?;
-        body.list::<L, D>()
     }
 }

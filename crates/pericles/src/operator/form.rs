@@ -22,9 +22,6 @@ const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 const OF_GRID: &[Limit] = &[
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_HORIZONS,
-    Limit::listed_law(Feature::GreenStrainBar),
-    Limit::listed_law(Feature::GreenStrain),
-    Limit::listed_law(Feature::OtherCubic),
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
     Limit::BOND_ENERGY,

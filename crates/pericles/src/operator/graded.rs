@@ -329,7 +329,7 @@ struct Listed<'a>(&'a GradedBody<'a>);
 impl ByLaw for Listed<'_> {
     type Output = AssembledBonds;
 
-    fn listed<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+    fn of_law<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
         self.0.list::<L, D>()
     }
 }

@@ -145,19 +145,11 @@ pub struct Limit {
     pub reason: &'static str,
 }
 
-const OF_ENDS: &str = "bonds whose stiffness depends on their ends are no convolution; use \"list\", \"grid\" or \"fastest\"";
+const ONE_FAMILY: &str =
+    "a stencil or transform has one spacing and one horizon; leave `bonds` out or give \"list\"";
 
 /// Limits of several forms.
 impl Limit {
-    /// Of convolutions.
-    pub const SEVERAL_MATERIALS: Self = Self::new(Feature::SeveralMaterials, OF_ENDS);
-
-    /// Of convolutions.
-    pub const INCLUSIONS: Self = Self::new(Feature::Inclusions, OF_ENDS);
-
-    /// Of convolutions.
-    pub const SURFACE_CORRECTION: Self = Self::new(Feature::SurfaceCorrection, OF_ENDS);
-
     /// Of forms that compute pair forces only.
     pub const STATE_BASED: Self = Self::new(
         Feature::StateBased,
@@ -170,22 +162,11 @@ impl Limit {
         "the work of every bond is kept as a list; use \"list\", leave `bonds` out, or break bonds by their stretch",
     );
 
-    /// Of forms that need one lattice.
-    pub const SEVERAL_SPACINGS: Self = Self::new(
-        Feature::SeveralSpacings,
-        "there is no one lattice; leave `bonds` out or give \"list\"",
-    );
+    /// Of forms whose points all have the same family.
+    pub const SEVERAL_SPACINGS: Self = Self::new(Feature::SeveralSpacings, ONE_FAMILY);
 
     /// Of forms whose points all have the same family.
-    pub const SEVERAL_HORIZONS: Self = Self::new(
-        Feature::SeveralHorizons,
-        "one stencil or transform has one horizon; leave `bonds` out or give \"list\"",
-    );
-
-    /// Of forms that compute some laws only.
-    pub const fn listed_law(law: Feature) -> Self {
-        Self::new(law, "this law is kept as a list: \"list\" or \"fastest\"")
-    }
+    pub const SEVERAL_HORIZONS: Self = Self::new(Feature::SeveralHorizons, ONE_FAMILY);
 }
 
 impl Limit {

@@ -42,17 +42,17 @@ const SAFETY: f64 = 0.9;
 /// Sub-steps smaller than this part of a step are given up.
 const SMALLEST: f64 = 1e-9;
 
+/// The smallest tolerance with forces in single precision, whose rounding is up to 2e-5 of the largest where points are nearly in equilibrium.
+const SMALLEST_IN_FLOATS: f64 = 1e-5;
+
 const NAME: &str = "dormand-prince";
 
 impl AdaptiveRungeKutta {
     /// What it needs of a system.
-    pub const REQUIREMENTS: &'static [Requirement] = &[
-        Requirement::IN_DOUBLES,
-        Requirement {
-            need: Need::NoMemory,
-            reason: "the kernels of a boundary with a memory are made for steps of one length, and its steps have many; use velocity-verlet",
-        },
-    ];
+    pub const REQUIREMENTS: &'static [Requirement] = &[Requirement {
+        need: Need::NoMemory,
+        reason: "the kernels of a boundary with a memory are made for steps of one length, and its steps have many; use velocity-verlet",
+    }];
 
     /// The scheme with a relative tolerance per sub-step.
     ///
@@ -60,6 +60,14 @@ impl AdaptiveRungeKutta {
     /// A tolerance that is not positive; a body with boundaries that keep a state: sub-steps that are tried and rejected would disturb it.
     pub fn new(tolerance: f64, system: &System) -> Result<Self> {
         positive("the tolerance of the adaptive step", tolerance)?;
+        let in_floats = system.operator().capabilities().single_precision;
+        if in_floats && tolerance < SMALLEST_IN_FLOATS {
+            return Err(PericlesError::SchemeParameter {
+                parameter: "the tolerance of the adaptive step with forces in single precision",
+                value: tolerance,
+                allowed: "at least 1e-5, the rounding of the forces",
+            });
+        }
         require(NAME, Self::REQUIREMENTS, system)?;
         let tableau = Tableau::dormand_prince();
         let entries = system.dimension() * system.points();

@@ -1,6 +1,7 @@
 //! Time integration: u(t) ↦ u(t + dt), any scheme.
 
 mod embedded;
+mod ends;
 mod fine_region;
 mod frequency;
 mod implicit;

@@ -64,7 +64,6 @@ struct Work {
 impl MultiTimeStep {
     /// What it needs of a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
-        Requirement::IN_DOUBLES,
         Requirement {
             need: Need::NoMemory,
             reason: "a boundary keeps a state of its own, which knows one time step only; use velocity-verlet",

@@ -39,7 +39,6 @@ const NAME: &str = "respa";
 impl Respa {
     /// What it needs of a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
-        Requirement::IN_DOUBLES,
         Requirement {
             need: Need::NoMemory,
             reason: "it kicks with parts of the force at times of their own, and a boundary with a memory knows one time step only; use velocity-verlet",

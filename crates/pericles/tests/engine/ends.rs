@@ -6,8 +6,8 @@ use crate::common::{boxed, material, points};
 use pericles::domain::Field;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::material::{
-    BondConstants, BondMaterial, Fracture, InterfaceRule, PairClasses, PairLaw, StressState,
-    SurfaceCorrection,
+    BondConstants, BondMaterial, CubicLaw, Fracture, InterfaceRule, PairClasses, PairLaw,
+    StressState, SurfaceCorrection, Treatment,
 };
 use pericles::operator::{
     AssembledBonds, BondBody, BondForm, CompositeBody, Force, InstructionSet, On,
@@ -218,6 +218,24 @@ fn each_part(dimension: usize) -> Vec<(&'static str, Parts)> {
             },
         ),
     ];
+    let green = Parts {
+        law: PairLaw::GreenStrain,
+        ..ALL
+    };
+    all.push(("all, Green strain", green));
+    if dimension == 1 {
+        let literal = Parts {
+            law: PairLaw::Literal57,
+            ..ALL
+        };
+        all.push(("all, equation 57", literal));
+        for cubic in [CubicLaw::GreenStrain, CubicLaw::Literal57] {
+            for treatment in [Treatment::SecondOrder, Treatment::Trapezoidal] {
+                let law = PairLaw::Treated(cubic, treatment);
+                all.push(("all, treated", Parts { law, ..ALL }));
+            }
+        }
+    }
     if dimension > 1 {
         let of = |correction| Parts {
             correction,

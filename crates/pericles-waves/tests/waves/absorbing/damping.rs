@@ -4,9 +4,9 @@ use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile};
 use pericles::round_trip::check_resume;
 use pericles::space::Face;
 use pericles::time::{
-    AdaptiveRungeKutta, Fine, Implicit, ImplicitRule, InnerSolver, Integrator, Interpolant,
-    LinearSolver, MultiTimeStep, MultiTimeStepOptions, Newmark, NewmarkOptions, Predictor, Respa,
-    RungeKutta, Tableau, VelocityVerlet,
+    AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, ImplicitRule, InnerSolver, Integrator,
+    Interpolant, LinearSolver, MultiTimeStep, MultiTimeStepOptions, Newmark, NewmarkOptions,
+    Predictor, Respa, RungeKutta, Tableau, VelocityVerlet,
 };
 use pericles::{Control, Simulation, StepKind, System};
 use pericles_waves::{Trigonometric, TrigonometricOptions};
@@ -139,7 +139,7 @@ fn two_steps(tableau: &Tableau, system: &System) -> Box<dyn Integrator> {
     Box::new(MultiTimeStep::new(tableau, options, system).unwrap())
 }
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 13] = [
     Case {
         name: "rk3",
         kind: StepKind::Stages,
@@ -198,6 +198,18 @@ const CASES: [Case; 11] = [
         name: "trapezoidal",
         kind: StepKind::Middle,
         make: |system| rule(ImplicitRule::Trapezoidal, LinearSolver::Fastest, system),
+        order: 2,
+    },
+    Case {
+        name: "discrete-gradient",
+        kind: StepKind::Middle,
+        make: |system| Box::new(DiscreteGradient::new(1e-13, system).unwrap()),
+        order: 2,
+    },
+    Case {
+        name: "newmark",
+        kind: StepKind::Kicks,
+        make: |system| newmark(InnerSolver::NewtonKrylov, system),
         order: 2,
     },
     Case {
@@ -303,13 +315,13 @@ fn schemes_without_a_velocity_to_damp_are_refused() {
     let respa = Respa::new(2, Fine::Fixed(vec![(150..250).collect()]), &remembering);
     let respa = respa.err().unwrap().to_string();
     assert!(respa.contains("knows one time step only"), "{respa}");
-    let system = damped_for(StepKind::Stages, layer(10.0, 0.1), DT);
     let newton = NewmarkOptions {
         solver: InnerSolver::NewtonKrylov,
         ..NewmarkOptions::default()
     };
-    let newton = Newmark::new(newton, &system).err().unwrap().to_string();
-    assert!(newton.contains("fixed-point"), "{newton}");
+    let newton = Newmark::new(newton, &remembering).err().unwrap();
+    assert!(newton.to_string().contains("memory"), "{newton}");
+    let system = damped_for(StepKind::Stages, layer(10.0, 0.1), DT);
     // A layer made for other steps is found when the run begins.
     let state = pulse(&system, 0.0);
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, DT, 10).unwrap();

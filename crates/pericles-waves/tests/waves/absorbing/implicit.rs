@@ -2,7 +2,9 @@
 
 use pericles::cache::NoCache;
 use pericles::round_trip::check_resume;
-use pericles::time::{Implicit, ImplicitRule, LinearSolver, State, VelocityVerlet};
+use pericles::time::{
+    DiscreteGradient, Implicit, ImplicitRule, LinearSolver, State, VelocityVerlet,
+};
 use pericles::{Control, PericlesError, Simulation, SimulationError, System};
 use pericles_waves::absorbing::history::{BlockedHistory, DirectHistory, History, HistoryForm};
 use pericles_waves::absorbing::{
@@ -64,6 +66,31 @@ fn error(
         difference(large.state(), small.state()),
         energies.balance().abs() / energies.initial,
     ]
+}
+
+/// For linear forces the discrete gradient is the midpoint rule, for which its ends are made.
+#[test]
+fn discrete_gradients_leave_through_the_ends_of_the_midpoint_rule() {
+    let (dt, steps) = (0.5, 120);
+    let run = |system: System, state: State| {
+        let scheme = DiscreteGradient::new(1e-13, &system).unwrap();
+        let mut run = Simulation::new(system, Box::new(scheme), state, dt, steps).unwrap();
+        run.run(|_| Control::Continue).unwrap();
+        run
+    };
+    let large = bar(700, 0.5);
+    let state = pulse(&large, 2.0);
+    let large = run(large, state);
+    let mut small = bar(100, 0.5);
+    let state = pulse(&small, 2.0);
+    add_ends(&mut small, &state, dt, steps, HistoryForm::Blocked);
+    let small = run(small, state);
+    let error = difference(large.state(), small.state());
+    assert!(error < 1e-10, "{error:e}");
+    let energies = small.snapshot().energies();
+    assert!(energies.work < 0.0, "waves leave");
+    let off = energies.balance().abs() / energies.initial;
+    assert!(off < 1e-10, "{off:e}");
 }
 
 #[test]

@@ -170,8 +170,8 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
                 (false, _) => Linearity::Nonlinear,
             },
             breaking: Some(self),
-            local: in_doubles.then_some(self),
-            split: in_doubles.then_some(self),
+            local: Some(self),
+            split: Some(self),
             bonds: Some(self),
             single_precision: !in_doubles,
             dilatation: None,
@@ -183,7 +183,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
     }
 
     fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
-        self.floats.is_none().then_some(self)
+        Some(self)
     }
 }
 

@@ -1,12 +1,11 @@
 //! Implicit schemes of order two: the midpoint and the trapezoidal rule.
 
-mod ends;
 mod solver;
 
 pub use solver::LinearSolver;
 use solver::StepSolver;
 
-use super::{Integrator, State};
+use super::{Integrator, State, ends};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;

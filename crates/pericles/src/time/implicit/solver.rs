@@ -1,10 +1,11 @@
 //! The linear systems of implicit steps: by a factor that is kept, or by iteration.
 
-use super::{add_and_weigh, ends};
+use super::add_and_weigh;
 use crate::error::Result;
 use crate::operator::{Force, LinearOperator};
 use crate::solve::{BandedCholesky, SolveLimits, Work, conjugate_gradient};
 use crate::system::System;
+use crate::time::ends;
 
 /// How the linear system of a step is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,8 +5,10 @@ use super::equation::{StepEquation, centre, root_masses};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
+use crate::operator::On;
 use crate::solve::{SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
+use crate::step_kind::StepKind;
 use crate::system::System;
 use crate::time::zone::{Sum, Zone};
 use crate::time::{Integrator, State};
@@ -53,30 +55,20 @@ const ROUNDING: f64 = 1e-15;
 
 const NAME: &str = "discrete-gradient";
 
-const FREE_AND_ELASTIC: &str = "it balances the energy of a free elastic body under loads: no prescribed motion, no breaking, no absorbing boundary; newmark can";
-
 impl DiscreteGradient {
     /// What it needs of a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
-            need: Need::NoSupports,
-            reason: FREE_AND_ELASTIC,
-        },
-        Requirement {
-            need: Need::NoBoundaries,
-            reason: FREE_AND_ELASTIC,
-        },
-        Requirement {
-            need: Need::NothingBreaks,
-            reason: FREE_AND_ELASTIC,
+            need: Need::BoundariesWithinStep,
+            reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
         },
     ];
 
     /// The scheme for a body; `tolerance` is the relative error of the energy in a step.
     ///
     /// # Errors
-    /// A tolerance out of range; bodies whose points are held, whose bonds break, or with boundaries that have a memory.
+    /// A tolerance out of range; boundaries that are not made for implicit schemes; forces in single precision.
     pub fn new(tolerance: f64, system: &System) -> Result<Self> {
         if !(1e-14..1e-2).contains(&tolerance) {
             return Err(PericlesError::SchemeParameter {
@@ -101,6 +93,28 @@ impl DiscreteGradient {
             correction: 0.0,
             iterations: InnerIterations::default(),
         })
+    }
+
+    /// Puts prescribed displacements into the first guess, and what a support gives to points that it lets go into what is known.
+    fn prescribe(&mut self, system: &mut System, [t, t_next]: [f64; 2], state: &State) {
+        let theta = 0.5 * (t_next - t).powi(2);
+        if let Some(push) = system.last_push([t, t_next], &state.u) {
+            for (known, push) in self.known.iter_mut().zip(&push) {
+                *known += theta * push;
+            }
+        }
+        system.place_on(t_next, &On::All, &mut self.scaled);
+    }
+
+    /// ‖√m Δu‖ of the points that supports move.
+    fn moved_by_supports(&mut self, system: &System, t_next: f64, state: &State) -> f64 {
+        // Where the points are held, and zero elsewhere.
+        let moved = &mut self.next;
+        moved.copy_from_slice(&state.u);
+        system.place_on(t_next, &On::All, moved);
+        let (root, moved) = (&self.root_mass, &*moved);
+        let scaled = |k: usize| (root[k] * (moved[k] - state.u[k])).powi(2);
+        system.domain().sum(root.len(), scaled).sqrt()
     }
 
     /// Solves the step for a given c.
@@ -130,6 +144,7 @@ impl DiscreteGradient {
             base: &state.u,
             nodes: &NODES,
             pull: theta * c,
+            with_boundaries: system.has_boundaries(),
             work: &mut self.vectors,
         };
         let solved = newton_krylov(
@@ -261,6 +276,10 @@ impl Integrator for DiscreteGradient {
         Self::REQUIREMENTS
     }
 
+    fn step_kind(&self) -> StepKind {
+        StepKind::Middle
+    }
+
     fn order(&self) -> u32 {
         2
     }
@@ -302,6 +321,11 @@ impl Integrator for DiscreteGradient {
             n,
             &mut self.scaled,
         );
+        let mut given = 0.0;
+        if !system.motions().is_empty() {
+            self.prescribe(system, [state.t, t_next], state);
+            given = self.moved_by_supports(system, t_next, state);
+        }
         for (y, root) in self.scaled.iter_mut().zip(&self.root_mass) {
             *y *= root;
         }
@@ -310,21 +334,27 @@ impl Integrator for DiscreteGradient {
             dt,
             kinetic,
             elastic: system.operator().energy(state.t, &state.u),
-            reach: (dt * (2.0 * kinetic).sqrt()).max(0.5 * theta * pushed),
+            reach: (dt * (2.0 * kinetic).sqrt())
+                .max(0.5 * theta * pushed)
+                .max(given),
         };
         self.correction = self.balance(system, state, step, interrupt)?;
-        // v′ = 2 Δu/dt − v, and the mean velocity Δu/dt.
-        let (next, mean) = (&self.next, &mut self.mean);
-        for k in 0..next.len() {
-            mean[k] = (next[k] - state.u[k]) / dt;
-            state.v[k] = 2.0 * mean[k] - state.v[k];
+        // v′ = 2 Δu/dt − v.
+        for k in 0..self.next.len() {
+            let mean = (self.next[k] - state.u[k]) / dt;
+            state.v[k] = 2.0 * mean - state.v[k];
         }
         std::mem::swap(&mut state.u, &mut self.next);
+        system.constrain(t_next, &mut state.u, &mut state.v);
+        system.constrain_velocity(t_next, &mut state.v);
         let end = StepEnd {
             t: t_next,
             dt,
             u: &state.u,
-            path: Path::MeanVelocity(&self.mean),
+            path: Path::Chord {
+                u: &self.next,
+                first: false,
+            },
         };
         system.end_step(&end, &state.v, &mut state.a);
         state.close(system, t_next);

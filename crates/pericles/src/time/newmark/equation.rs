@@ -5,8 +5,9 @@ use crate::operator::On;
 use crate::parallel::for_each_chunk;
 use crate::solve::Nonlinear;
 use crate::system::System;
+use crate::time::ends;
 
-/// u − known − θ f̄(u)/ρ + φ P (u − base) = 0, with f̄ = Σ weight · f(base + node · (u − base)), the mean force on the way from the base, and P the projection along rigid translations that is orthogonal in the masses.
+/// u − known − θ (f̄(u)/ρ + g) + φ P (u − base) = 0, with f̄ = Σ weight · f(base + node · (u − base)), the mean force on the way from the base, g the acceleration that boundaries give at the middle of the step, and P the projection along rigid translations that is orthogonal in the masses.
 ///
 /// The unknowns are y = √m u, the residual is scaled the same way: the derivative is then 1 − θ M^(−1/2) T M^(−1/2) + φ P, symmetric as the
 /// solver wants it, and positive definite where the tangent T is negative semi-definite.
@@ -23,6 +24,8 @@ pub(super) struct StepEquation<'a> {
     pub(super) nodes: &'a [(f64, f64)],
     /// φ.
     pub(super) pull: f64,
+    /// Whether boundaries act.
+    pub(super) with_boundaries: bool,
     /// Displacement, direction, force, and the displacement and tangent of a node.
     pub(super) work: &'a mut [Vec<f64>; 5],
 }
@@ -54,6 +57,27 @@ impl StepEquation<'_> {
                 *out = self.root_mass[k] * (x[k] - known(k) - self.theta * acceleration + pull);
             }
         });
+        self.system.hold_at(self.t, out);
+    }
+
+    /// Adds −√m θ g at the displacement in `work[0]` or, of the direction in `work[1]`, the derivative of that.
+    fn add_boundaries(&mut self, of_direction: bool, out: &mut [f64]) {
+        if !self.with_boundaries {
+            return;
+        }
+        let [u, direction, _, middle, given] = &mut *self.work;
+        given.fill(0.0);
+        let factor = if of_direction {
+            ends::add_stiffness(self.system, direction, given);
+            0.5 * self.theta
+        } else {
+            between(self.base, u, 0.5, middle);
+            ends::add_middle(self.system, middle, given);
+            -self.theta
+        };
+        for ((out, given), root_mass) in out.iter_mut().zip(&*given).zip(self.root_mass) {
+            *out += factor * root_mass * given;
+        }
         self.system.hold_at(self.t, out);
     }
 
@@ -133,6 +157,7 @@ impl Nonlinear for StepEquation<'_> {
         self.unscale(y, 0);
         self.mean_force();
         self.scale_into(&self.work[0], true, out);
+        self.add_boundaries(false, out);
     }
 
     fn derivative_into(&mut self, y: &[f64], direction: &[f64], out: &mut [f64]) {
@@ -140,6 +165,7 @@ impl Nonlinear for StepEquation<'_> {
         self.unscale(direction, 1);
         self.mean_tangent();
         self.scale_into(&self.work[1], false, out);
+        self.add_boundaries(true, out);
     }
 }
 

@@ -25,6 +25,7 @@ pub use scheme::Newmark;
 
 use crate::compatibility::{Need, Requirement};
 use crate::error::{PericlesError, Result};
+use crate::step_kind::StepKind;
 use crate::system::System;
 
 /// How the equation of a step is solved.
@@ -51,6 +52,14 @@ impl InnerSolver {
         }
     }
 
+    /// Where within a step the scheme takes the forces. Newton's method solves for displacements, so that what depends on velocities acts between the steps.
+    pub const fn step_kind(self) -> StepKind {
+        match self {
+            Self::FixedPoint | Self::Anderson { .. } => StepKind::Stages,
+            Self::NewtonKrylov => StepKind::Kicks,
+        }
+    }
+
     /// What the scheme with this solver needs of a system.
     pub const fn requirements(self) -> &'static [Requirement] {
         match self {
@@ -58,8 +67,8 @@ impl InnerSolver {
             Self::NewtonKrylov => &[
                 Requirement::IN_DOUBLES,
                 Requirement {
-                    need: Need::NoBoundaries,
-                    reason: "its equation has forces by displacements only, none of boundaries; use velocity-verlet, and for damping layers also solver = \"fixed-point\"",
+                    need: Need::NoMemory,
+                    reason: "its equation has forces by displacements only, none of boundaries with a memory; use velocity-verlet",
                 },
             ],
         }

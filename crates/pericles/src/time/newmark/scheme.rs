@@ -3,12 +3,14 @@
 use super::anderson::Anderson;
 use super::equation::{StepEquation, root_masses};
 use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
+use crate::boundary::Exchange;
 use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::solve::{SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
+use crate::step_kind::StepKind;
 use crate::system::System;
 use crate::time::zone::{Sum, Zone};
 use crate::time::{Integrator, State, highest_frequency};
@@ -231,6 +233,7 @@ impl Newmark {
             base: &state.u,
             nodes: &[(1.0, 1.0)],
             pull: 0.0,
+            with_boundaries: false,
             work: vectors,
         };
         let solved = newton_krylov(&mut equation, scaled, scale, &limits, work)?;
@@ -302,6 +305,10 @@ impl Integrator for Newmark {
         self.options.solver.requirements()
     }
 
+    fn step_kind(&self) -> StepKind {
+        self.options.solver.step_kind()
+    }
+
     fn order(&self) -> u32 {
         if self.options.gamma == 0.5 { 2 } else { 1 }
     }
@@ -340,18 +347,33 @@ impl Integrator for Newmark {
         let (n, dt) = (system.points(), t_next - state.t);
         let NewmarkOptions { beta, gamma, .. } = self.options;
         let [u, v] = &mut self.predicted;
+        let mut exchange = Exchange::default();
+        let damped = matches!(self.inner, Inner::NewtonKrylov(_)) && system.has_boundaries();
+        let before = if damped {
+            let [_, before, _, work] = &mut self.next;
+            before.copy_from_slice(&state.v);
+            exchange = system.damp(t_next, 0.5 * dt, before, work);
+            &*before
+        } else {
+            &state.v
+        };
         Sum::new()
-            .plus(dt, &state.v)
+            .plus(dt, before)
             .plus((0.5 - beta) * dt * dt, &state.a)
             .onto(&state.u, &self.zone, n, u);
         Sum::new()
             .plus((1.0 - gamma) * dt, &state.a)
-            .onto(&state.v, &self.zone, n, v);
+            .onto(before, &self.zone, n, v);
         match self.inner {
             Inner::NewtonKrylov(_) => self.solve(system, state, [t_next, dt], interrupt)?,
             Inner::FixedPoint | Inner::Anderson(_) => {
                 self.iterate(system, t_next, dt, interrupt)?
             }
+        }
+        if damped {
+            let [_, v, _, work] = &mut self.next;
+            exchange.add(system.damp(t_next, 0.5 * dt, v, work));
+            system.book_exchange(exchange);
         }
         self.accept(system, state, t_next, dt);
         state.step += 1;

@@ -3,7 +3,7 @@
 use crate::boundary::WithinStep;
 use crate::system::System;
 
-/// The boundaries' parts in a step; each has one ([`refuse_explicit_boundaries`](super::refuse_explicit_boundaries)).
+/// The boundaries' parts in a step; each has one where a scheme needs [`BoundariesWithinStep`](crate::Need::BoundariesWithinStep).
 fn parts(system: &System) -> impl Iterator<Item = &dyn WithinStep> {
     system
         .boundaries()
