@@ -44,7 +44,7 @@ const TENSORS: Limit = Limit::new(
 const OF_TRANSFORMS: [Limit; 13] = [
     Limit::STATE_BASED,
     Limit::SEVERAL_SPACINGS,
-    Limit::SEVERAL_HORIZONS,
+    uniform(Feature::SeveralHorizons),
     linear(Feature::BondStretch),
     linear(Feature::GreenStrain),
     linear(Feature::OtherCubic),

@@ -177,6 +177,27 @@ impl Assembler<'_> {
         Ok(points)
     }
 
+    /// The form that a model asks for, or one that its scheme and output can do with.
+    fn form(
+        &self,
+        solid: &Solid,
+        composite: &CompositeBody<'_>,
+        is_graded: bool,
+    ) -> Result<ForceForm, BuildError> {
+        let scheme = &self.model.time.scheme;
+        let needs_bonds = self.model.output.wants_tensors() || has_need(scheme, Need::FiniteReach);
+        match solid.material.form {
+            ForceForm::Fastest if needs_bonds && !is_graded => Ok(composite.fastest_form().into()),
+            ForceForm::FloatGrid if has_need(scheme, Need::DoublePrecision) => {
+                Err(at_material(PericlesError::FormNotUsable {
+                    form: ForceForm::FloatGrid.name(),
+                    reason: "this scheme needs forces in double precision; use \"grid\", or an explicit scheme",
+                }))
+            }
+            form => Ok(form),
+        }
+    }
+
     /// The operator, and what the pre-cracks took from it.
     fn bonds(
         &self,
@@ -196,26 +217,15 @@ impl Assembler<'_> {
         };
         let is_graded = grids.ratios.len() > 1
             || composite.classes.is_some() && have_several_horizons(materials);
+        let form = self.form(solid, &composite, is_graded)?;
         let assembled = if is_graded {
-            self.graded_bonds(solid, &composite, grids, (materials, interfaces))?
+            self.graded_bonds(
+                (form, solid.state),
+                &composite,
+                grids,
+                (materials, interfaces),
+            )?
         } else {
-            let form = match solid.material.form {
-                ForceForm::Fastest
-                    if self.model.output.wants_tensors()
-                        || has_need(&self.model.time.scheme, Need::FiniteReach) =>
-                {
-                    composite.fastest_form().into()
-                }
-                ForceForm::FloatGrid
-                    if has_need(&self.model.time.scheme, Need::DoublePrecision) =>
-                {
-                    return Err(at_material(PericlesError::FormNotUsable {
-                        form: ForceForm::FloatGrid.name(),
-                        reason: "this scheme needs forces in double precision; use \"grid\", or an explicit scheme",
-                    }));
-                }
-                form => form,
-            };
             pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
         let tracked = self.tracked_cracks(surfaces, &assembled.cuts, cloud, warnings);

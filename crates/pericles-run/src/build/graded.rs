@@ -1,9 +1,9 @@
 //! Bonds of a body with cells of several sizes or materials of different horizons.
 
-use pericles::material::BondMaterial;
+use pericles::material::{BondMaterial, StressState};
 use pericles::operator::{CompositeBody, Feature, GradedBody, Materials};
-use pericles_deck::{BuildError, Solid};
-use pericles_waves::AssembledForce;
+use pericles_deck::BuildError;
+use pericles_waves::{AssembledForce, ForceForm};
 
 use super::assembler::Assembler;
 use super::discretisation::Grids;
@@ -13,7 +13,7 @@ use super::refusal::{at, at_material};
 impl Assembler<'_> {
     pub(super) fn graded_bonds(
         &self,
-        solid: &Solid,
+        (form, state): (ForceForm, StressState),
         composite: &CompositeBody<'_>,
         grids: &Grids,
         (materials, interfaces): (&[BondMaterial], &[Between]),
@@ -21,8 +21,10 @@ impl Assembler<'_> {
         let features = (composite.features())
             .with(Feature::SeveralSpacings, grids.ratios.len() > 1)
             .with(Feature::SeveralHorizons, have_several_horizons(materials));
-        solid.material.form.check(features).map_err(at_material)?;
+        form.check(features).map_err(at_material)?;
         GradedBody::check(features).map_err(|error| at("material.surface_correction", error))?;
+        // Transforms have been refused.
+        let form = form.of_bonds().unwrap_or_default();
         let body = &composite.body;
         let graded = GradedBody {
             cloud: body.cloud,
@@ -34,13 +36,13 @@ impl Assembler<'_> {
                 of_point: classes.of_point(),
                 interfaces,
             }),
-            state: solid.state,
+            state,
             cracks: body.cracks,
             no_fail: body.no_fail,
             stiffness: body.stiffness,
             damage: body.damage,
         };
-        Ok(graded.operator().map_err(at_material)?.into())
+        Ok(graded.operator(form).map_err(at_material)?.into())
     }
 }
 

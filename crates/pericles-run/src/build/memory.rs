@@ -224,7 +224,6 @@ impl Assembler<'_> {
             ForceForm::Convolution | ForceForm::Spectral => transform,
             ForceForm::Grid | ForceForm::FloatGrid => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_refined() || solid.shape.is_listed() => listed * neighbours,
-            _ if self.has_several_horizons(solid) => listed * neighbours,
             _ if !self.has_one_stiffness(solid) => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_periodic() => transform,
             _ => (neighbours / 8.0).max(transform),
@@ -241,8 +240,10 @@ impl Assembler<'_> {
         let bits = neighbours / 8.0;
         if self.has_one_stiffness(solid) {
             bits
-        } else if solid.material.surface_correction != Default::default() {
-            // The correction takes the families from a list.
+        } else if solid.material.surface_correction != Default::default()
+            || self.has_several_horizons(solid)
+        {
+            // Corrections, and limits of bonds between two horizons, take the families from a list.
             bits + LISTED * neighbours
         } else {
             // A factor a bond, at most.
@@ -262,6 +263,7 @@ impl Assembler<'_> {
             (Some(solid), _) if matches!(self.model.time.scheme, Scheme::Relaxation(_)) => {
                 list(solid)
             }
+            (Some(solid), _) if self.has_several_horizons(solid) => list(solid),
             _ => 0.0,
         };
         let ends: usize = assembly.ends.iter().map(|(_, end)| end.bytes).sum();

@@ -247,7 +247,7 @@ fn a_laminate_of_different_horizons_has_the_same_stiffness() {
     };
     let text = of(&of(&laminate("linear"), 20, 2), 40, 4);
     let assembly = build(&text);
-    assert_eq!(assembly.form, ForceForm::List);
+    assert_eq!(assembly.form, ForceForm::Grid);
     let run = run(&text);
     let u = &run.state().u;
     for (from, to, young) in [(12, 30, 10.0), (48, 72, 20.0), (88, 108, 40.0)] {
@@ -255,9 +255,12 @@ fn a_laminate_of_different_horizons_has_the_same_stiffness() {
         let error = strain * young / 0.01 - 1.0;
         assert!(error.abs() < 1e-6, "E = {young}: {error:e}");
     }
-    let grid = text.replacen("[material]\n", "[material]\nbonds = \"grid\"\n", 1);
-    let message = refusal(&grid).to_string();
-    assert!(message.contains("has one horizon"), "{message}");
+    let transform = text.replacen("[material]\n", "[material]\nbonds = \"convolution\"\n", 1);
+    let message = refusal(&transform).to_string();
+    assert!(
+        message.contains("the same bonds at every point"),
+        "{message}"
+    );
     let solids = laminate("state-based").replacen(
         "youngs_modulus = 20\n",
         "youngs_modulus = 20\nhorizon_ratio = 2\n",

@@ -60,7 +60,7 @@ fn parts_with_smaller_cells() {
         (refined(&text, "1 um"), "divides none", "[[body.refine]]"),
         (
             refined(&text, "3 mm").replace("[material]", "[material]\nbonds = \"grid\""),
-            "one spacing and one horizon",
+            "there is no one lattice",
             "\"grid\"",
         ),
         (

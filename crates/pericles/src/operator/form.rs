@@ -21,7 +21,6 @@ const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 
 const OF_GRID: &[Limit] = &[
     Limit::SEVERAL_SPACINGS,
-    Limit::SEVERAL_HORIZONS,
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
     Limit::BOND_ENERGY,

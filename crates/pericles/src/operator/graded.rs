@@ -2,16 +2,21 @@
 
 use std::sync::Arc;
 
+use super::assemble::fastest_form;
 use super::by_law::{ByLaw, by_law};
+use super::grid::build::LatticeBonds;
 use super::limits::{Feature, Features, Limit};
-use super::{AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force};
+use super::{
+    AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force, GridForce,
+};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondList, Crack, Cut, EndRule};
+use crate::kernel::Influence;
 use crate::material::{
     BondConstants, BondMaterial, InterfaceRule, MaterialInterface, PairClasses, StressState,
     check_materials,
 };
-use crate::space::{PointCloud, check_length};
+use crate::space::{PointCloud, Sites, check_length};
 
 /// Several materials of a body, which share law, influence function and partial volumes. Each has the horizon that it says.
 #[derive(Debug, Clone, Copy)]
@@ -81,6 +86,11 @@ struct Laws {
 impl Laws {
     fn kind_of(&self, class: u8) -> usize {
         usize::from(class / self.materials)
+    }
+
+    /// The horizon of the points of a class, m.
+    fn horizon_of(&self, class: u8) -> f64 {
+        self.kinds[self.kind_of(class)].horizon
     }
 
     /// The pair of classes of two points where both are of the kind of the first.
@@ -203,15 +213,37 @@ impl GradedBody<'_> {
         })
     }
 
-    /// The operator, always a list.
-    ///
-    /// # Errors
-    /// Those of [`BondMaterial::constants`]; a horizon that reaches no neighbour, an unusable crack.
-    pub fn operator(&self) -> Result<AssembledBonds> {
-        by_law(self.material.law, self.cloud.dimension(), Listed(self))
+    /// What the body has that not every form represents.
+    pub fn features(&self) -> Features {
+        let materials = self.materials.map_or(&[][..], |materials| materials.all);
+        let differ = |two: &[BondMaterial]| two[0].horizon != two[1].horizon;
+        Features::of_points(self.material.law, self.cloud)
+            .with(Feature::PreCracks, !self.cracks.is_empty())
+            .with(Feature::SeveralMaterials, !materials.is_empty())
+            .with(Feature::SeveralHorizons, materials.windows(2).any(differ))
+            .with(Feature::Inclusions, !self.stiffness.is_empty())
+            .with(Feature::SeveralSpacings, self.ratios.len() > 1)
     }
 
-    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
+    /// The operator: a list, or a stencil of the largest horizon if all cells are of one size.
+    ///
+    /// # Errors
+    /// Those of [`BondMaterial::constants`]; a form that does not represent the body; a horizon that reaches no neighbour, an unusable crack.
+    pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
+        let features = self.features();
+        form.check(features)?;
+        let form = match form {
+            BondForm::Fastest => fastest_form(self.cloud, features),
+            chosen => chosen,
+        };
+        by_law(
+            self.material.law,
+            self.cloud.dimension(),
+            OfBody(self, form),
+        )
+    }
+
+    fn make<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
         let points = self.cloud.len();
         check_length("the grids of the points", self.grid_of_point.len(), points)?;
         if let [_, ..] = self.stiffness {
@@ -219,45 +251,62 @@ impl GradedBody<'_> {
             check_length("the stiffnesses of the points", given, points)?;
         }
         let laws = self.laws()?;
-        let mut classes = laws.classes.clone();
         let (cloud, material) = (self.cloud, self.material);
-        let horizon = |&class: &u8| laws.kinds[laws.kind_of(class)].horizon;
+        let horizon = |&class: &u8| laws.horizon_of(class);
         let horizons: Vec<f64> = laws.classes.of_point().iter().map(horizon).collect();
-        let mut bonds = BondList::with_horizons(cloud, horizons, material.volume_correction)?;
-        let sites = bonds.shared_sites();
-        let of_site = laws.classes.on_sites(&sites);
-        let class = of_site.of_point();
-        let stiffness = sites.spread(self.stiffness);
-        let mean = |a: usize, b: usize| match &stiffness[..] {
-            [] => 1.0,
-            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
-        };
-        // c α κ by the law of the first end.
-        let end = |bonds: &BondList, i: usize, j: usize| match bonds.end_factor(i, j) {
-            0.0 => 0.0,
-            kappa => {
-                let pair = laws.as_kind_of([class[i], class[j]]);
-                let micromodulus = laws.classes.pair_micromodulus(pair);
-                let alpha = material
-                    .influence
-                    .alpha_of(bonds.vector(i, j), horizon(&class[i]));
-                kappa * micromodulus * alpha
+        let bonds = BondList::with_horizons(cloud, horizons.clone(), material.volume_correction)?;
+        let classes = self.with_stretches_between(&laws, &bonds)?;
+        match form {
+            BondForm::List | BondForm::Fastest => self.list::<L, D>(&laws, classes, bonds),
+            BondForm::Grid | BondForm::FloatGrid => {
+                drop(bonds);
+                self.grid::<L, D>(&laws, &classes, &horizons, form)
             }
+        }
+    }
+
+    /// The classes with the critical stretches of bonds between two kinds.
+    fn with_stretches_between(&self, laws: &Laws, bonds: &BondList) -> Result<PairClasses> {
+        let mut classes = laws.classes.clone();
+        let ends = self.ends(laws, bonds.sites());
+        let weighted = |bonds: &BondList, a: usize, b: usize| {
+            let factor = bonds.end_factor(a, b);
+            ends.inclusion(a, b) * ends.by_first(a, b, bonds.vector(a, b), factor)
         };
-        let weighted = |bonds: &BondList, a: usize, b: usize| mean(a, b) * end(bonds, a, b);
-        let stretches = self.between_grids(&laws, &bonds, (class, &weighted));
-        for (pair, stretch) in stretches {
+        for (pair, stretch) in self.between_grids(laws, bonds, (&ends.class, &weighted)) {
             classes.set_critical_stretch(pair, stretch)?;
         }
+        Ok(classes)
+    }
+
+    fn ends<'a>(&'a self, laws: &'a Laws, sites: &Sites) -> Ends<'a> {
+        Ends {
+            laws,
+            influence: &self.material.influence,
+            class: laws.classes.on_sites(sites).of_point().to_vec(),
+            inclusions: sites.spread(self.stiffness).into_owned(),
+        }
+    }
+
+    fn list<L: FastLaw, const D: usize>(
+        &self,
+        laws: &Laws,
+        classes: PairClasses,
+        mut bonds: BondList,
+    ) -> Result<AssembledBonds> {
         let cuts: Vec<Cut> = self
             .cracks
             .iter()
             .map(|(crack, rule)| bonds.cut(crack, *rule))
             .collect::<Result<_>>()?;
+        let ends = self.ends(laws, bonds.sites());
         let force = BondForce::<L, D>::with_weighted_stiffness(
-            Arc::clone(cloud),
+            Arc::clone(self.cloud),
             bonds,
-            &|bonds, i, j| mean(i, j) * 0.5 * (end(bonds, i, j) + end(bonds, j, i)),
+            &|bonds, i, j| {
+                let factors = [bonds.end_factor(i, j), bonds.end_factor(j, i)];
+                ends.of_bond(i, j, bonds.vector(i, j), factors)
+            },
             Breaking {
                 critical_stretch: classes.smallest_critical_stretch(),
                 no_fail: self.no_fail,
@@ -272,6 +321,50 @@ impl GradedBody<'_> {
             operator,
             cuts,
             form: BondForm::List,
+        })
+    }
+
+    /// A stencil of unit stiffness and the largest horizon, whose factors are the stiffnesses of the bonds.
+    fn grid<L: FastLaw, const D: usize>(
+        &self,
+        laws: &Laws,
+        classes: &PairClasses,
+        horizons: &[f64],
+        form: BondForm,
+    ) -> Result<AssembledBonds> {
+        let (cloud, correction) = (self.cloud, self.material.volume_correction);
+        let largest = horizons.iter().copied().fold(0.0, f64::max);
+        let largest = cloud.domain().max(largest);
+        let bonds = LatticeBonds::<D>::new(
+            cloud,
+            (largest, Some(horizons)),
+            correction,
+            &|_| 1.0,
+            self.cracks,
+            self.no_fail,
+        )?;
+        let stretch = classes.smallest_critical_stretch();
+        let grid = GridForce::<L, D>::of(Arc::clone(cloud), bonds, stretch, self.damage);
+        let ends = self.ends(laws, grid.sites());
+        let spacing = cloud.spacing();
+        let grid = grid.with_factors(&|a, b, xi| {
+            let r = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let factor = |horizon: f64| match r <= correction.reach(horizon, spacing) {
+                true => correction.factor(r, horizon, spacing),
+                false => 0.0,
+            };
+            let of_ends = [a, b].map(|site| factor(laws.horizon_of(ends.class[site])));
+            ends.of_bond(a, b, xi, of_ends) / factor(largest)
+        });
+        let grid = grid.with_critical_stretches(classes);
+        let grid = match form {
+            BondForm::FloatGrid => grid.in_floats(),
+            _ => grid,
+        };
+        Ok(AssembledBonds {
+            cuts: grid.cuts().to_vec(),
+            operator: Box::new(grid),
+            form,
         })
     }
 
@@ -323,13 +416,49 @@ fn pairs(count: u8) -> impl Iterator<Item = [u8; 2]> {
     (0..count).flat_map(move |a| (a..count).map(move |b| [a, b]))
 }
 
-/// Makes the list of a body.
-struct Listed<'a>(&'a GradedBody<'a>);
+/// What the stiffness of bonds depends on at their ends.
+struct Ends<'a> {
+    laws: &'a Laws,
+    influence: &'a Influence,
+    /// Classes of the sites.
+    class: Vec<u8>,
+    inclusions: Vec<f64>,
+}
 
-impl ByLaw for Listed<'_> {
+impl Ends<'_> {
+    /// c α κ of a bond with the vector ξ, m, by the law of its first end, beyond whose horizon κ is zero.
+    fn by_first(&self, a: usize, b: usize, xi: [f64; 3], factor: f64) -> f64 {
+        if factor == 0.0 {
+            return 0.0;
+        }
+        let pair = self.laws.as_kind_of([self.class[a], self.class[b]]);
+        let micromodulus = self.laws.classes.pair_micromodulus(pair);
+        let horizon = self.laws.horizon_of(self.class[a]);
+        factor * micromodulus * self.influence.alpha_of(xi, horizon)
+    }
+
+    fn inclusion(&self, a: usize, b: usize) -> f64 {
+        match &self.inclusions[..] {
+            [] => 1.0,
+            stiffness => 0.5 * (stiffness[a] + stiffness[b]),
+        }
+    }
+
+    /// The mean of both ends' laws, with κ by the law of each.
+    fn of_bond(&self, a: usize, b: usize, xi: [f64; 3], factors: [f64; 2]) -> f64 {
+        let back = xi.map(|x| -x);
+        let ends = self.by_first(a, b, xi, factors[0]) + self.by_first(b, a, back, factors[1]);
+        self.inclusion(a, b) * 0.5 * ends
+    }
+}
+
+/// Makes the operator of a body in a form.
+struct OfBody<'a>(&'a GradedBody<'a>, BondForm);
+
+impl ByLaw for OfBody<'_> {
     type Output = AssembledBonds;
 
     fn of_law<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
-        self.0.list::<L, D>()
+        self.0.make::<L, D>(self.1)
     }
 }

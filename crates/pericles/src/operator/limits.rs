@@ -145,9 +145,6 @@ pub struct Limit {
     pub reason: &'static str,
 }
 
-const ONE_FAMILY: &str =
-    "a stencil or transform has one spacing and one horizon; leave `bonds` out or give \"list\"";
-
 /// Limits of several forms.
 impl Limit {
     /// Of forms that compute pair forces only.
@@ -162,11 +159,11 @@ impl Limit {
         "the work of every bond is kept as a list; use \"list\", leave `bonds` out, or break bonds by their stretch",
     );
 
-    /// Of forms whose points all have the same family.
-    pub const SEVERAL_SPACINGS: Self = Self::new(Feature::SeveralSpacings, ONE_FAMILY);
-
-    /// Of forms whose points all have the same family.
-    pub const SEVERAL_HORIZONS: Self = Self::new(Feature::SeveralHorizons, ONE_FAMILY);
+    /// Of forms that need one lattice.
+    pub const SEVERAL_SPACINGS: Self = Self::new(
+        Feature::SeveralSpacings,
+        "there is no one lattice; leave `bonds` out or give \"list\"",
+    );
 }
 
 impl Limit {

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use crate::common::{boxed, material};
-use pericles::family::VolumeCorrection;
+use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::material::{
     BondMaterial, Fracture, InterfaceRule, PairClasses, PairLaw, StressState,
 };
 use pericles::operator::{
-    BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials, On,
+    AssembledBonds, BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials,
+    On,
 };
 use pericles::space::PointCloud;
 use pericles::time::{State, VelocityVerlet};
@@ -38,7 +39,13 @@ fn layers(cloud: &PointCloud, length: f64) -> Vec<u8> {
     (0..cloud.len()).map(layer).collect()
 }
 
-fn graded(cloud: &Arc<PointCloud>, all: &[BondMaterial], of_point: &[u8]) -> Box<dyn Force> {
+fn graded(
+    cloud: &Arc<PointCloud>,
+    all: &[BondMaterial],
+    of_point: &[u8],
+    cracks: &[(Crack, EndRule)],
+    form: BondForm,
+) -> AssembledBonds {
     let body = GradedBody {
         cloud,
         ratios: &[1],
@@ -50,12 +57,23 @@ fn graded(cloud: &Arc<PointCloud>, all: &[BondMaterial], of_point: &[u8]) -> Box
             interfaces: &[],
         }),
         state: state(cloud.dimension()),
-        cracks: &[],
-        no_fail: &[],
+        cracks,
+        no_fail: &[0, 3, 7],
         stiffness: &[],
         damage: DamageMeasure::default(),
     };
-    body.operator().unwrap().operator
+    let assembled = body.operator(form).unwrap();
+    assert_eq!(assembled.form, form);
+    assembled
+}
+
+fn whole(
+    cloud: &Arc<PointCloud>,
+    all: &[BondMaterial],
+    of_point: &[u8],
+    form: BondForm,
+) -> Box<dyn Force> {
+    graded(cloud, all, of_point, &[], form).operator
 }
 
 fn noise(cloud: &PointCloud, size: f64) -> Vec<f64> {
@@ -125,28 +143,34 @@ fn forces_are_the_means_of_the_laws_of_both_ends() {
         let cloud = boxed([0.0; 3], &size, 1.0, 1.0);
         let of_point = layers(&cloud, size[0]);
         let all = [of(1.0, 2.0, 0.1), of(3.0, 3.5, 0.1), of(0.5, 2.6, 0.1)];
-        let force = graded(&cloud, &all, &of_point);
-        let u = noise(&cloud, 0.02);
-        let found = force_of(&*force, &u);
-        assert_close(&found, &by_pairs(&cloud, &all, &of_point, &u), 1e-12);
-        // Both ends pull alike, and the force is the gradient of the energy.
-        let total: f64 = found.iter().sum();
-        let size: f64 = found.iter().map(|f| f.abs()).sum();
-        assert!(total.abs() < 1e-13 * size, "{total:e} of {size:e}");
-        let direction = noise(&cloud, 1.7);
-        let energy = |step: f64| {
-            let moved: Vec<f64> = u
-                .iter()
-                .zip(&direction)
-                .map(|(u, d)| u + step * d)
-                .collect();
-            force.energy(0.0, &moved)
-        };
-        let slope = (energy(1e-5) - energy(-1e-5)) / 2e-5;
-        let power: f64 = found.iter().zip(&direction).map(|(f, d)| f * d).sum();
-        let power = power * cloud.volumes()[0];
-        assert!((slope / -power - 1.0).abs() < 1e-6, "{slope} {power}");
+        for form in [BondForm::List, BondForm::Grid] {
+            check_force(&cloud, &all, &of_point, form);
+        }
     }
+}
+
+fn check_force(cloud: &Arc<PointCloud>, all: &[BondMaterial], of_point: &[u8], form: BondForm) {
+    let force = whole(cloud, all, of_point, form);
+    let u = noise(cloud, 0.02);
+    let found = force_of(&*force, &u);
+    assert_close(&found, &by_pairs(cloud, all, of_point, &u), 1e-12);
+    // Both ends pull alike, and the force is the gradient of the energy.
+    let total: f64 = found.iter().sum();
+    let size: f64 = found.iter().map(|f| f.abs()).sum();
+    assert!(total.abs() < 1e-13 * size, "{total:e} of {size:e}");
+    let direction = noise(cloud, 1.7);
+    let energy = |step: f64| {
+        let moved: Vec<f64> = u
+            .iter()
+            .zip(&direction)
+            .map(|(u, d)| u + step * d)
+            .collect();
+        force.energy(0.0, &moved)
+    };
+    let slope = (energy(1e-5) - energy(-1e-5)) / 2e-5;
+    let power: f64 = found.iter().zip(&direction).map(|(f, d)| f * d).sum();
+    let power = power * cloud.volumes()[0];
+    assert!((slope / -power - 1.0).abs() < 1e-6, "{slope} {power}");
 }
 
 #[test]
@@ -162,7 +186,7 @@ fn materials_of_one_horizon_are_the_body_of_several_materials() {
         ..CompositeBody::from(BondBody::new(&cloud, &all[0], &constants[0]))
     };
     let expected = body.operator(BondForm::List).unwrap().operator;
-    let found = graded(&cloud, &all, &of_point);
+    let found = whole(&cloud, &all, &of_point, BondForm::List);
     assert_eq!(found.directed_bonds(), expected.directed_bonds());
     let u = noise(&cloud, 0.02);
     assert_close(&force_of(&*found, &u), &force_of(&*expected, &u), 1e-14);
@@ -181,7 +205,7 @@ fn a_strained_bar_carries_one_force_on_both_sides_of_a_change_of_horizon() {
         },
         ..material
     });
-    let force = graded(&cloud, &all, &of_point);
+    let force = whole(&cloud, &all, &of_point, BondForm::Grid);
     let strain = 1e-3;
     let u: Vec<f64> = cloud.axis(0).iter().map(|x| strain * x).collect();
     let density = force_of(&*force, &u);
@@ -195,14 +219,57 @@ fn a_strained_bar_carries_one_force_on_both_sides_of_a_change_of_horizon() {
     assert!(near.abs() < 1e-14, "{near:e}");
 }
 
+fn notch() -> [(Crack, EndRule); 1] {
+    let crack = Crack::Segment {
+        from: [0.0, 11.7],
+        to: [9.0, 12.4],
+    };
+    [(crack, EndRule::Closed)]
+}
+
+const THREE: [(f64, f64); 3] = [(3.0, 0.02), (4.5, 0.016), (2.0, 0.025)];
+
+#[test]
+fn the_stencil_equals_the_list() {
+    let plate = boxed([0.0; 3], &[40.0, 24.0], 1.0, 1.0);
+    let periodic = Arc::new(PointCloud::clone(&plate).with_periodic_faces().unwrap());
+    for cloud in [plate, periodic] {
+        let of_point = layers(&cloud, 40.0);
+        let all = THREE.map(|(horizon, stretch)| of(1.0, horizon, stretch));
+        let [list, grid] = [BondForm::List, BondForm::Grid]
+            .map(|form| graded(&cloud, &all, &of_point, &notch(), form));
+        assert_eq!(list.cuts[0].bonds, grid.cuts[0].bonds);
+        assert_eq!(list.cuts[0].points, grid.cuts[0].points);
+        let [list, grid] = [list.operator, grid.operator];
+        assert_eq!(list.directed_bonds(), grid.directed_bonds());
+        let u = noise(&cloud, 0.01);
+        assert_close(&force_of(&*grid, &u), &force_of(&*list, &u), 1e-12);
+        let direction = noise(&cloud, 1.3);
+        let both = [&grid, &list].map(|force| {
+            let mut tangent = vec![0.0; u.len()];
+            force.tangent_into(0.0, &u, &direction, &mut tangent);
+            let mut energy = vec![0.0; cloud.len()];
+            force.add_energy_density(0.0, &u, &mut energy);
+            let mut damage = vec![0.0; cloud.len()];
+            force.damage_into(&mut damage);
+            (tangent, energy, damage)
+        });
+        assert_close(&both[0].0, &both[1].0, 1e-12);
+        assert_close(&both[0].1, &both[1].1, 1e-12);
+        assert_close(&both[0].2, &both[1].2, 1e-12);
+        let bound = |force: &dyn Force| force.frequency_bound(&|_| 1.0);
+        assert!((bound(&*grid) / bound(&*list) - 1.0).abs() < 1e-12);
+    }
+}
+
 #[test]
 fn cracks_cross_a_change_of_horizon_and_the_energy_balance_closes() {
     let cloud = boxed([0.0; 3], &[40.0, 24.0], 1.0, 1.0);
     let of_point = layers(&cloud, 40.0);
-    let all = [of(1.0, 3.0, 0.02), of(1.0, 4.5, 0.016), of(1.0, 2.0, 0.025)];
+    let all = THREE.map(|(horizon, stretch)| of(1.0, horizon, stretch));
     let n = cloud.len();
-    let run = |dt: f64, steps: u64| {
-        let force = graded(&cloud, &all, &of_point);
+    let run = |form: BondForm, dt: f64, steps: u64| {
+        let force = graded(&cloud, &all, &of_point, &notch(), form).operator;
         let system = System::new(cloud.clone(), force, PointScalar::Uniform(1.0)).unwrap();
         let mut start = State::at_rest(2 * n);
         for i in 0..n {
@@ -226,9 +293,11 @@ fn cracks_cross_a_change_of_horizon_and_the_energy_balance_closes() {
             let is_cracked = |&i: &usize| of_point[i] == material && damage[i] > 0.2;
             assert!((0..n).filter(is_cracked).count() > 5, "material {material}");
         }
-        (after - before).abs() / dissipated
+        ((after - before).abs() / dissipated, force.broken_bonds())
     };
-    let errors = [run(0.2, 200), run(0.1, 400)];
+    let broken = [BondForm::List, BondForm::Grid].map(|form| run(form, 0.2, 200).1);
+    assert_eq!(broken[0], broken[1]);
+    let errors = [(0.2, 200), (0.1, 400)].map(|(dt, steps)| run(BondForm::Grid, dt, steps).0);
     // The error of velocity Verlet's own energy is of second order.
     assert!(
         errors[1] < 5e-3 && errors[1] < 0.5 * errors[0],

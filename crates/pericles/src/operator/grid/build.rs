@@ -20,6 +20,8 @@ pub(in crate::operator) struct LatticeBonds<const D: usize> {
     pub stencil: Stencil<D>,
     /// Bonds left: one byte per chunk and offset, offsets fastest.
     pub blocks: Vec<BlockDamage>,
+    /// All bonds before cracks cut some, as in `blocks`, where points have families of different horizons.
+    pub geometric: Option<Vec<Vec<u8>>>,
     /// Sites whose bonds never break, one byte for each place (in chunks).
     pub held: Option<Vec<u8>>,
     /// What each pre-crack removed.
@@ -29,13 +31,14 @@ pub(in crate::operator) struct LatticeBonds<const D: usize> {
 }
 
 impl<const D: usize> LatticeBonds<D> {
-    /// The bonds within a horizon, whose `stiffness` (times κ V of the neighbour) the stencil holds for every vector ξ, without those that cracks cut.
+    /// The bonds within a horizon, whose `stiffness` (times κ V of the neighbour) the stencil holds for every vector ξ, without those that cracks cut. Where `horizons` gives one for each point, none larger
+    /// than the first, a bond exists within the larger horizon of its ends.
     ///
     /// # Errors
     /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
     pub fn new(
         cloud: &Arc<PointCloud>,
-        horizon: f64,
+        (horizon, horizons): (f64, Option<&[f64]>),
         correction: VolumeCorrection,
         stiffness: &dyn Fn([f64; 3]) -> f64,
         cracks: &[(Crack, EndRule)],
@@ -66,6 +69,15 @@ impl<const D: usize> LatticeBonds<D> {
         let layout = GridLayout::new(&sites, lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
         let mut blocks = geometric_blocks(&layout, &stencil);
+        let geometric = horizons.map(|horizons| {
+            let of_site = sites.spread(horizons);
+            let reach = |a: usize, b: usize| {
+                let larger = of_site[a].max(of_site[b]);
+                correction.reach(larger, spacing)
+            };
+            keep_within(&sites, &layout, &stencil, &reach, &mut blocks);
+            blocks.iter().map(|block| block.intact.clone()).collect()
+        });
         if cloud.domain().all(bonds_left(&blocks) == 0) {
             return Err(PericlesError::HorizonTooSmall { horizon, spacing });
         }
@@ -74,7 +86,7 @@ impl<const D: usize> LatticeBonds<D> {
             .map(|crack| cut(&sites, &layout, &stencil, crack, &mut blocks))
             .collect::<Result<Vec<_>>>()?;
         let precut = if cuts.iter().any(|cut| !cut.points.is_empty()) {
-            precut_bonds(&layout, &stencil, &blocks)
+            precut_bonds(&layout, &stencil, &blocks, geometric.as_deref())
         } else {
             Vec::new()
         };
@@ -84,6 +96,7 @@ impl<const D: usize> LatticeBonds<D> {
             layout,
             stencil,
             blocks,
+            geometric,
             cuts,
             precut,
         })
@@ -118,6 +131,37 @@ fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -
             BlockDamage::new(intact)
         })
         .collect()
+}
+
+/// Removes the bonds that are longer than what two sites reach.
+fn keep_within<const D: usize>(
+    sites: &Sites,
+    layout: &GridLayout,
+    stencil: &Stencil<D>,
+    reach: &(dyn Fn(usize, usize) -> f64 + Sync),
+    blocks: &mut [BlockDamage],
+) {
+    let m = stencil.len();
+    blocks
+        .par_iter_mut()
+        .enumerate()
+        .for_each(|(block, state)| {
+            let chunks = &layout.chunks()[layout.chunks_of(block)];
+            for (chunk, intact) in chunks.iter().zip(state.intact.chunks_mut(m)) {
+                for (lane, i) in chunk.points() {
+                    let here = sites.of_point(i);
+                    let place = chunk.place as usize * LANES + lane;
+                    for (k, offset) in stencil.offsets().iter().enumerate() {
+                        if intact[k] >> lane & 1 == 1 {
+                            let there = layout.site_at(place.wrapping_add_signed(offset.shift));
+                            if stencil.lengths()[k] > reach(here, there) {
+                                intact[k] &= !(1 << lane);
+                            }
+                        }
+                    }
+                }
+            }
+        });
 }
 
 /// Removes the bonds that meet a crack.
@@ -190,6 +234,7 @@ fn precut_bonds<const D: usize>(
     layout: &GridLayout,
     stencil: &Stencil<D>,
     blocks: &[BlockDamage],
+    geometric: Option<&[Vec<u8>]>,
 ) -> Vec<(u64, u8)> {
     let m = stencil.len();
     let lost: Vec<Vec<(u64, u8)>> = blocks
@@ -200,7 +245,11 @@ fn precut_bonds<const D: usize>(
             for (k, number) in layout.chunks_of(block).enumerate() {
                 let chunk = &layout.chunks()[number];
                 for (offset, &cell) in stencil.cells().iter().enumerate() {
-                    let bits = layout.neighbours(chunk, cell) & !state.intact[k * m + offset];
+                    let family = match geometric {
+                        None => layout.neighbours(chunk, cell),
+                        Some(geometric) => geometric[block][k * m + offset],
+                    };
+                    let bits = family & !state.intact[k * m + offset];
                     if bits != 0 {
                         lost.push(((number * m + offset) as u64, bits));
                     }

@@ -17,6 +17,8 @@ pub(in crate::operator) struct Families<'a, const D: usize> {
     pub stencil: &'a Stencil<D>,
     /// Bonds left: one byte per chunk and offset, offsets fastest.
     pub blocks: &'a [BlockDamage],
+    /// All bonds before cracks cut some, as in `blocks`; none if they are those of the layout.
+    pub geometric: Option<&'a [Vec<u8>]>,
     /// Sites whose bonds never break, one byte for each place (in chunks).
     pub held: Option<&'a [u8]>,
     /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
@@ -25,6 +27,21 @@ pub(in crate::operator) struct Families<'a, const D: usize> {
 }
 
 impl<const D: usize> Families<'_, D> {
+    /// Which of a chunk's points have a bond of one offset, before cracks cut some.
+    pub fn family(&self, number: usize, offset: usize) -> u8 {
+        match self.geometric {
+            None => {
+                let chunk = &self.layout.chunks()[number];
+                self.layout.neighbours(chunk, self.stencil.cells()[offset])
+            }
+            Some(geometric) => {
+                let block = self.layout.block_of(number);
+                let first = self.layout.chunks_of(block).start;
+                geometric[block][(number - first) * self.stencil.len() + offset]
+            }
+        }
+    }
+
     /// Which of a chunk's bonds of one offset may break.
     pub fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
         let Some(held) = self.held else { return 0xFF };
@@ -41,10 +58,10 @@ impl<const D: usize> Families<'_, D> {
             let numbers = self.layout.chunks_of(block);
             for (number, intact) in numbers.zip(state.intact.chunks(m)) {
                 let chunk = &self.layout.chunks()[number];
-                for (offset, &cell) in self.stencil.cells().iter().enumerate() {
+                for offset in 0..m {
                     let group = (number * m + offset) as u64;
                     let cut = precut.next_if(|&&(at, _)| at == group);
-                    let family = self.layout.neighbours(chunk, cell) & !cut.map_or(0, |cut| cut.1);
+                    let family = self.family(number, offset) & !cut.map_or(0, |cut| cut.1);
                     if intact[offset] & !family != 0 {
                         let point = self.cloud.user_number(chunk.point as usize);
                         let reason =
@@ -92,8 +109,8 @@ impl<const D: usize> Families<'_, D> {
             .precut
             .partition_point(|&(group, _)| group < (number * m) as u64);
         let mut precut = self.precut[first..].iter().peekable();
-        for (offset, &cell) in self.stencil.cells().iter().enumerate() {
-            let mut family = self.layout.neighbours(chunk, cell);
+        for offset in 0..m {
+            let mut family = self.family(number, offset);
             if let Some((_, cut)) =
                 precut.next_if(|&&(group, _)| group == (number * m + offset) as u64)
                 && !self.damage.count_precut
@@ -163,11 +180,10 @@ impl<const D: usize> Families<'_, D> {
     pub fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let place = self.layout.place_of(i);
         let (number, lane) = self.layout.chunk_at(place);
-        let chunk = &self.layout.chunks()[number];
         let (n, m) = (self.cloud.len(), self.stencil.len());
         let mut near = Vec::new();
-        for (k, &cell) in self.stencil.cells().iter().enumerate() {
-            let mut family = self.layout.neighbours(chunk, cell);
+        for k in 0..m {
+            let mut family = self.family(number, k);
             let group = (number * m + k) as u64;
             if let Ok(found) = self
                 .precut

@@ -81,6 +81,8 @@ pub struct GridForce<L: FastLaw, const D: usize> {
     pub(super) blocks: Vec<BlockDamage>,
     /// Sites whose bonds never break, one byte for each place (in chunks).
     pub(super) held: Option<Vec<u8>>,
+    /// All bonds before cracks cut some, where points have families of different horizons.
+    pub(super) geometric: Option<Vec<Vec<u8>>>,
     pub(super) cuts: Vec<Cut>,
     /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
     pub(super) precut: Vec<(u64, u8)>,
@@ -113,23 +115,35 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     ) -> Result<Self> {
         let stiffness =
             |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
-        let LatticeBonds {
-            layout,
-            stencil,
-            blocks,
-            held,
-            cuts,
-            precut,
-            sites,
-        } = LatticeBonds::new(
+        let bonds = LatticeBonds::new(
             &cloud,
-            material.horizon,
+            (material.horizon, None),
             material.volume_correction,
             &stiffness,
             cracks,
             no_fail,
         )?;
-        Ok(Self {
+        Ok(Self::of(cloud, bonds, constants.critical_stretch, damage))
+    }
+
+    /// The operator of the bonds of a lattice body.
+    pub(in crate::operator) fn of(
+        cloud: Arc<PointCloud>,
+        bonds: LatticeBonds<D>,
+        critical_stretch: f64,
+        damage: DamageMeasure,
+    ) -> Self {
+        let LatticeBonds {
+            layout,
+            stencil,
+            blocks,
+            geometric,
+            held,
+            cuts,
+            precut,
+            sites,
+        } = bonds;
+        Self {
             directed_bonds: bonds_left(&blocks),
             held,
             doubles: Working::new(
@@ -145,14 +159,15 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             layout,
             stencil,
             blocks,
+            geometric,
             cuts,
             precut,
-            critical_stretch: constants.critical_stretch,
+            critical_stretch,
             pairs: None,
             damage,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
-        })
+        }
     }
 
     /// Runs the loops with another instruction set; for tests and benchmarks.
@@ -362,6 +377,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             layout: &self.layout,
             stencil: &self.stencil,
             blocks: &self.blocks,
+            geometric: self.geometric.as_deref(),
             held: self.held.as_deref(),
             precut: &self.precut,
             damage: self.damage,

@@ -111,6 +111,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
 
     fn bytes(&self) -> usize {
         let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
+        let masks = masks * (1 + usize::from(self.geometric.is_some()));
         let working = match &self.floats {
             Some(floats) => floats.bytes(&self.layout),
             None => self.doubles.bytes(&self.layout),
@@ -210,7 +211,7 @@ impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
 crate::saved! {
     impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
         blocks: under("operator/grid"),
-        cloud, sites, layout, stencil, held, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
+        cloud, sites, layout, stencil, held, geometric, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
         instruction_set, law: fixed,
         doubles, floats, direction: scratch,
     } then |force| force.families().check_bonds()

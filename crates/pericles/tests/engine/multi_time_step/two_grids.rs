@@ -80,7 +80,7 @@ fn bonds_of(
         stiffness: &[],
         damage: DamageMeasure::default(),
     };
-    body.operator().unwrap().operator
+    body.operator(BondForm::Fastest).unwrap().operator
 }
 
 fn middle(dimension: usize) -> Region {

@@ -107,13 +107,15 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             held,
             cuts,
             precut,
-        } = LatticeBonds::<D>::new(cloud, horizon, correction, &weight, cracks, no_fail)?;
+            geometric: _,
+        } = LatticeBonds::<D>::new(cloud, (horizon, None), correction, &weight, cracks, no_fail)?;
         let offsets = solid_offsets(&stencil);
         let families = Families {
             cloud,
             layout: &layout,
             stencil: &stencil,
             blocks: &blocks,
+            geometric: None,
             held: None,
             precut: &precut,
             damage,
@@ -175,6 +177,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             layout: &self.layout,
             stencil: &self.stencil,
             blocks: &self.blocks,
+            geometric: None,
             held: self.held.as_deref(),
             precut: &self.precut,
             damage: self.damage,
