@@ -134,7 +134,7 @@ pub const FORMS: [Form; 7] = [
     Form {
         words: "stencil, single precision",
         name: "grid-f32",
-        offers: &[Need::FiniteReach, Need::SumOverBonds],
+        offers: &[],
         choice: Some(ForceForm::FloatGrid),
     },
     Form {

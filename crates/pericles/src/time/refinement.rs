@@ -53,7 +53,7 @@ struct Looking {
 /// What all schemes with two time steps need of a system.
 pub(super) const PARTS_OF_THE_BODY: Requirement = Requirement {
     need: Need::FiniteReach,
-    reason: "its force is one product over the whole body and cannot be evaluated on a part of it; use bonds, or one time step",
+    reason: "it evaluates the force on parts of the body, which transforms and forces in single precision (rounded relative to one point of the whole body) do not allow; use bonds in double precision, or one time step",
 };
 
 /// The force as one that can be evaluated on a part of the body, if the system meets the requirements of a scheme.

@@ -171,8 +171,8 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
                 (false, _) => Linearity::Nonlinear,
             },
             breaking: Some(self),
-            local: Some(self),
-            split: Some(self),
+            local: in_doubles.then_some(self),
+            split: in_doubles.then_some(self),
             bonds: Some(self),
             single_precision: !in_doubles,
             dilatation: None,
@@ -184,7 +184,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
     }
 
     fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
-        Some(self)
+        self.floats.is_none().then_some(self)
     }
 }
 

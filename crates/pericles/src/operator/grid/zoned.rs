@@ -2,7 +2,7 @@
 
 use super::block::ChunkBlock;
 use super::force::GridForce;
-use super::kernels::{force_chunks, force_chunks_in_floats};
+use super::kernels::force_chunks;
 use super::layout::Partners;
 use crate::operator::fast_law::FastLaw;
 use crate::operator::{Breakable, LocalForce, On, SplitForce};
@@ -44,19 +44,10 @@ impl<L: FastLaw, const D: usize> SplitForce for GridForce<L, D> {
     /// Takes a work array of one byte per bond group of the blocks concerned.
     fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
         let partners = self.partners(partners);
-        let set = self.instruction_set;
-        match &self.floats {
-            Some(floats) => {
-                self.sweep::<f32, D>(floats, u, &on, out, |grid, block, intact, out| {
-                    let left = self.bonds_to(&partners, block, intact);
-                    force_chunks_in_floats::<L, D>(set, grid, block, &left, out);
-                })
-            }
-            None => self.sweep::<f64, D>(&self.doubles, u, &on, out, |grid, block, intact, out| {
-                let left = self.bonds_to(&partners, block, intact);
-                force_chunks::<L, D>(set, grid, block, &left, out);
-            }),
-        }
+        self.sweep::<f64, D>(&self.doubles, u, &on, out, |grid, block, intact, out| {
+            let left = self.bonds_to(&partners, block, intact);
+            force_chunks::<L, D>(self.instruction_set, grid, block, &left, out);
+        });
     }
 
     fn end_step_from(
