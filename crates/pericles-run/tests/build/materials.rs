@@ -271,7 +271,7 @@ fn a_laminate_of_different_horizons_has_the_same_stiffness() {
         .unwrap_err()
         .to_string();
     assert!(
-        report.contains("`horizon_ratio` in [materials.middle] differs"),
+        report.contains("`horizon` in [materials.middle] differs"),
         "{report}"
     );
 }
