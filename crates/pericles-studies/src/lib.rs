@@ -1,10 +1,10 @@
 //! Studies of papers, computed again and compared with the published numbers.
 //!
-//! A [`Study`] is a function that computes rows; it knows nothing of files but the figures it may draw, and does not print. Studies and their decks are inside
-//! the library, so that they run from any directory. A row is judged if it has an expected number ([`Row`]); a printed number known not to reproduce is shown
-//! beside the verified one that is judged, with the reason. The same studies are run by the tests.
+//! A [`Study`] is a file of data: its rows with the printed and the expected numbers, and the functions that compute them with their arguments. A row is judged if it has an expected number ([`Row`]); a
+//! printed number known not to reproduce is shown beside the verified one that is judged, with the reason. Studies, their data and their decks are inside the library, so that they run from any directory; they
+//! know nothing of files but the figures they may draw, and do not print. The same studies are run by the tests.
 //!
-//! A new study is one file with a `STUDY`, listed in its topic's `STUDIES`; a new topic is listed in `TOPICS`.
+//! A new study is a file `data/TOPIC/NAME.toml`, listed in its topic's `studies`; functions that it needs are listed in the topic's `measures`. A new topic is listed in `TOPICS`.
 //!
 //! ```no_run
 //! use pericles_studies::{Context, find, table};
@@ -16,6 +16,9 @@
 //! ```
 
 mod absorbing_boundaries;
+mod context;
+mod data;
+mod decks;
 mod dispersion;
 mod fracture;
 mod manifolds;
@@ -27,27 +30,34 @@ mod state_based;
 mod study;
 mod table;
 
+use std::sync::LazyLock;
+
 use pericles_run::RunError;
 
+pub use context::Context;
 pub use row::Row;
-pub use study::{Context, Study};
+pub use study::Study;
 pub use table::table;
 
-/// All studies, by topic.
-const TOPICS: [&[Study]; 8] = [
-    &absorbing_boundaries::STUDIES,
-    &dispersion::STUDIES,
-    &fracture::STUDIES,
-    &manifolds::STUDIES,
-    &multi_time_step::STUDIES,
-    &nonlocal_wave::STUDIES,
-    &numerics::STUDIES,
-    &state_based::STUDIES,
+use study::Topic;
+
+const TOPICS: [&Topic; 8] = [
+    &absorbing_boundaries::TOPIC,
+    &dispersion::TOPIC,
+    &fracture::TOPIC,
+    &manifolds::TOPIC,
+    &multi_time_step::TOPIC,
+    &nonlocal_wave::TOPIC,
+    &numerics::TOPIC,
+    &state_based::TOPIC,
 ];
+
+static STUDIES: LazyLock<Vec<Study>> =
+    LazyLock::new(|| TOPICS.into_iter().flat_map(Topic::read).collect());
 
 /// All studies, by topic.
 pub fn studies() -> impl Iterator<Item = &'static Study> {
-    TOPICS.into_iter().flatten()
+    STUDIES.iter()
 }
 
 /// The study of a name.
@@ -67,38 +77,4 @@ pub fn all_hold(rows: &[Row]) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn studies_are_found_by_name_only() {
-        for study in studies() {
-            assert_eq!(find(study.id).ok().map(|s| s.id), Some(study.id));
-        }
-        let Err(RunError::Unknown { hint, .. }) = find("fracture/branch") else {
-            panic!("found");
-        };
-        assert!(hint.contains("fracture/branching"), "{hint}");
-        let Err(RunError::Unknown { hint, .. }) = find("zzz") else {
-            panic!("found");
-        };
-        assert!(!hint.contains("did you mean"), "{hint}");
-    }
-
-    #[test]
-    fn one_failing_row_fails_the_study() {
-        let information = Row::new("a", "", Some(f64::NAN));
-        let holds = Row::new("b", "", Some(1.0)).within(1.0, 0.0);
-        let fails = Row::new("c", "", None).within(1.0, 1.0);
-        assert!(all_hold(&[]));
-        assert!(all_hold(&[information.clone(), holds.clone()]));
-        assert!(!all_hold(&[information, fails, holds]));
-    }
-
-    #[test]
-    fn names_are_unique() {
-        for (k, study) in studies().enumerate() {
-            assert!(studies().take(k).all(|other| other.id != study.id));
-        }
-    }
-}
+mod tests;

@@ -1,5 +1,7 @@
 //! One line of a study: a number beside the one it should be.
 
+use std::borrow::Cow;
+
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 /// A number computed by a study, SI units.
@@ -20,12 +22,16 @@ pub struct Row {
     /// What a reader should know.
     pub note: String,
     /// SI unit, for the table; empty for a pure number.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
 }
 
 impl Row {
     /// A row for information.
-    pub fn new(case: impl Into<String>, unit: &'static str, computed: Option<f64>) -> Self {
+    pub fn new(
+        case: impl Into<String>,
+        unit: impl Into<Cow<'static, str>>,
+        computed: Option<f64>,
+    ) -> Self {
         Self {
             case: case.into(),
             printed: None,
@@ -34,7 +40,7 @@ impl Row {
             tolerance: 0.0,
             absolute: false,
             note: String::new(),
-            unit,
+            unit: unit.into(),
         }
     }
 

@@ -23,10 +23,10 @@ pub fn table(rows: &[Row]) -> String {
             notes.push(&row.note);
             case += &format!(" [{}]", notes.len());
         }
-        let number = |value: Option<f64>| value.map_or("-".into(), |value| shown(value, row.unit));
+        let number = |value: Option<f64>| value.map_or("-".into(), |value| shown(value, &row.unit));
         let tolerance = match (row.expected, row.absolute) {
             (None, _) => "-".into(),
-            (_, true) => format!("± {}", shown(row.tolerance, row.unit)),
+            (_, true) => format!("± {}", shown(row.tolerance, &row.unit)),
             (_, false) => format!("± {}", percent(row.tolerance)),
         };
         let verdict = match row.pass() {

@@ -112,7 +112,7 @@ pub(super) struct Bar {
 }
 
 /// The kernels of an end.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     /// The paper's: semi-discrete, trapezoidal rule.
     SemiDiscrete,

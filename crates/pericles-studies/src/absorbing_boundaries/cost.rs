@@ -19,69 +19,22 @@ use pericles_waves::absorbing::{
     OuterLayer, Side, contour_kernels,
 };
 
-use super::paper::PAPER;
+use crate::data::{Case, Found};
 use crate::row::Row;
-use crate::study::{Context, Study};
-
-pub(super) const COST: Study = Study {
-    id: "absorbing-boundaries/cost",
-    paper: PAPER,
-    title: "Time and memory of absorbing ends against a larger body",
-    run: rows,
-};
 
 /// A homogeneous bar −10 … 10 with a bell in the middle, E = ρ = 1.
-struct Case {
-    name: &'static str,
+struct Bar {
+    name: String,
     reach: usize,
     spacing: f64,
     /// C(ξ).
     micromodulus: fn(f64) -> f64,
     dt: f64,
-    /// Numbers of steps, and those only `--full` takes.
-    steps: &'static [usize],
-    long: &'static [usize],
     /// Asked of the exponentials.
     tolerance: f64,
     /// Nodes that fields need to decay beyond the light cone.
     margin: usize,
 }
-
-const CASES: [Case; 3] = [
-    Case {
-        name: "K = 7, dt = 0.01",
-        reach: 7,
-        spacing: 0.1,
-        micromodulus: gaussian,
-        dt: 0.01,
-        steps: &[2048, 8192],
-        long: &[32_768, 131_072],
-        tolerance: 1e-9,
-        margin: 150,
-    },
-    Case {
-        name: "K = 7, dt = 0.1",
-        reach: 7,
-        spacing: 0.1,
-        micromodulus: gaussian,
-        dt: 0.1,
-        steps: &[2048],
-        long: &[8192, 16_384],
-        tolerance: 1e-9,
-        margin: 150,
-    },
-    Case {
-        name: "K = 20, dt = 0.02",
-        reach: 20,
-        spacing: 0.05,
-        micromodulus: constant,
-        dt: 0.02,
-        steps: &[2048],
-        long: &[8192],
-        tolerance: 1e-6,
-        margin: 500,
-    },
-];
 
 /// 4E/(δ³√π) exp(−ξ²/δ²), δ = 0.25.
 fn gaussian(xi: f64) -> f64 {
@@ -100,7 +53,21 @@ const MOST_DIRECT_LONG: usize = 8192;
 /// Steps of the test for growth.
 const ENDLESS: usize = 1_000_000;
 
-impl Case {
+impl Bar {
+    fn of(case: &Case<'_>) -> Result<Self, RunError> {
+        let micromoduli: [(&str, fn(f64) -> f64); 2] =
+            [("gaussian", gaussian), ("constant", constant)];
+        Ok(Self {
+            name: case.text("name")?,
+            reach: case.count("reach")?,
+            spacing: case.number("spacing")?,
+            micromodulus: case.one_of("micromodulus", &micromoduli)?,
+            dt: case.number("dt")?,
+            tolerance: case.number("tolerance")?,
+            margin: case.count("margin")?,
+        })
+    }
+
     fn stencil(&self) -> Result<LatticeStencil, RunError> {
         let weight = |k| (self.micromodulus)(k as f64 * self.spacing) * self.spacing;
         let weights: Vec<f64> = (1..=self.reach).map(weight).collect();
@@ -199,22 +166,9 @@ struct Measured {
     bytes: usize,
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let mut rows = Vec::new();
-    for case in &CASES {
-        let long = if context.full { case.long } else { &[] };
-        for &steps in case.steps.iter().chain(long) {
-            rows.extend(compared(case, steps, context.full)?);
-        }
-    }
-    if context.full {
-        rows.extend(endless(&CASES[0])?);
-    }
-    Ok(rows)
-}
-
 /// The ways to the same displacements, one after the other.
-fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, RunError> {
+pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
+    let (case, steps, full) = (Bar::of(place)?, place.count("steps")?, place.context.full);
     let stencil = case.stencil()?;
     let label = |what: &str| format!("{}, N = {steps}: {what}", case.name);
     let time = |what: &str, seconds: f64| Row::new(label(what), "s", Some(seconds));
@@ -289,24 +243,26 @@ fn compared(case: &Case, steps: usize, full: bool) -> Result<Vec<Row>, RunError>
     }
     let form = HistoryCost::estimate(&stencil, step, steps).cheapest(false);
     rows.push(Row::new(label("chosen"), "", None).note(format!("{form:?}")));
-    Ok(rows)
+    Ok(rows.into())
 }
 
 /// A million steps near the stability limit: nothing may grow.
-fn endless(case: &Case) -> Result<Vec<Row>, RunError> {
-    let case = Case { dt: 0.249, ..*case };
-    let stencil = case.stencil()?;
+pub(super) fn million_steps(case: &Case<'_>) -> Result<Found, RunError> {
+    let bar = Bar::of(case)?;
+    let stencil = bar.stencil()?;
     let began = Instant::now();
-    let step = LatticeStep::verlet(case.dt);
+    let step = LatticeStep::verlet(bar.dt);
     let kernels = GhostKernels::shift(contour_kernels(&stencil, step, ENDLESS));
     let seconds_kernels = began.elapsed().as_secs_f64();
-    let made = case.with_ends(ENDLESS, || BlockedHistory::new(kernels.clone()))?;
-    let largest = made.u.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
-    let label = |what: &str| format!("K = 7, dt = 0.249, N = {ENDLESS}: {what}");
-    Ok(vec![
-        Row::new(label("kernels"), "s", Some(seconds_kernels)),
-        Row::new(label("by blocks"), "s", Some(made.seconds))
-            .note(format!("{:.0} MB for both ends", 1e-6 * made.bytes as f64)),
-        Row::new(label("largest displacement left"), "", Some(largest)).within(0.0, 1e-11),
-    ])
+    let made = bar.with_ends(ENDLESS, || BlockedHistory::new(kernels.clone()))?;
+    Ok([
+        ("kernels", seconds_kernels),
+        ("seconds", made.seconds),
+        ("megabytes", 1e-6 * made.bytes as f64),
+        (
+            "largest",
+            made.u.iter().fold(0.0, |a: f64, u| a.max(u.abs())),
+        ),
+    ]
+    .into())
 }

@@ -7,19 +7,9 @@
 use std::f64::consts::{PI, TAU};
 
 use pericles::boundary::DampingProfile;
-use pericles_io::{Axis, Curve, LineChart};
 use pericles_run::RunError;
 
-use super::paper::PAPER;
-use crate::row::Row;
-use crate::study::{Context, Study};
-
-pub(super) const DAMPING_LAYER: Study = Study {
-    id: "absorbing-boundaries/damping-layer",
-    paper: PAPER,
-    title: "Reflection of a damping layer in a plate against angle and wavelength",
-    run: rows,
-};
+use crate::data::{Case, Found};
 
 /// Bonds reach three spacings; lengths are in spacings, times in those of a longitudinal wave over one.
 const REACH: isize = 3;
@@ -28,9 +18,6 @@ const DT: f64 = 0.5;
 const THICKNESS: f64 = 60.0;
 /// Of the amplitude, asked for head on.
 const ASKED: f64 = 1e-3;
-const LENGTHS: [f64; 3] = [10.0, 20.0, 40.0];
-/// Degrees from the normal.
-const ANGLES: [f64; 5] = [0.0, 30.0, 45.0, 60.0, 70.0];
 
 /// A symmetric 2 × 2 matrix: xx, xy, yy.
 type Tensor = [f64; 3];
@@ -198,31 +185,23 @@ fn reflection(bonds: &[Bond], length: f64, degrees: f64) -> f64 {
     (chain.energy() / before).max(0.0).sqrt()
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let bonds = bonds();
-    let mut rows = Vec::new();
-    let mut chart = LineChart::new(
-        Axis::new("angle from the normal", "°"),
-        Axis::new("reflected share of the amplitude", "").logarithmic(),
-    )
-    .title("damping layer of 60 spacings, asked for 0.001 head on");
-    for length in LENGTHS {
-        let mut found = Vec::new();
-        for degrees in ANGLES {
-            let share = reflection(&bonds, length, degrees);
-            let ratio = THICKNESS / length;
-            let case = format!("{ratio} wavelengths deep, {degrees}°: reflected amplitude");
-            found.push(share);
-            let row = Row::new(case, "", Some(share));
-            // Three wavelengths deep and up to 45° the layer keeps what it is asked for.
-            let kept = ratio >= 3.0 && degrees <= 45.0;
-            rows.push(if kept { row.within(0.0, ASKED) } else { row });
-        }
-        let name = format!("{} wavelengths deep", THICKNESS / length);
-        chart = chart.curve(Curve::line(name, &ANGLES, &found));
-    }
-    if let Some(path) = context.figure("damping-layer.png") {
-        chart.write(path)?;
-    }
-    Ok(rows)
+/// The same for a layer so many wavelengths deep, computed once in a study.
+fn of_depth(case: &Case<'_>, degrees: f64) -> Result<f64, RunError> {
+    let length = THICKNESS / case.number("depth")?;
+    let share = || Ok(reflection(&bonds(), length, degrees));
+    case.once(format!("{length} {degrees}"), share)
+        .map(|share| *share)
+}
+
+/// The share at an angle, degrees from the normal.
+pub(super) fn reflected(case: &Case<'_>) -> Result<Found, RunError> {
+    Ok(of_depth(case, case.number("angle")?)?.into())
+}
+
+/// The shares at some angles.
+pub(super) fn of_angles(case: &Case<'_>) -> Result<Found, RunError> {
+    let angles = case.numbers("angles")?;
+    let shares = angles.iter().map(|&degrees| of_depth(case, degrees));
+    let shares = shares.collect::<Result<Vec<f64>, _>>()?;
+    Ok(Found::default().curve("reflection", &angles, &shares))
 }

@@ -6,26 +6,40 @@
 
 mod bar;
 mod cost;
-mod figures;
+mod kernels;
 mod layer;
 mod midpoint;
-mod paper;
 mod strip;
-mod table_1;
 mod tables;
 
-use crate::study::Study;
+use crate::study::{Topic, data};
 
 /// The topic's studies.
-pub(super) const STUDIES: [Study; 10] = [
-    table_1::TABLE_1,
-    tables::TABLE_2,
-    tables::TABLE_3,
-    tables::TABLE_4,
-    tables::TABLE_5,
-    tables::TABLE_6,
-    cost::COST,
-    layer::DAMPING_LAYER,
-    midpoint::MIDPOINT,
-    strip::STRIP,
-];
+pub(super) const TOPIC: Topic = Topic {
+    studies: &[
+        data!("absorbing-boundaries/table-1"),
+        data!("absorbing-boundaries/table-2"),
+        data!("absorbing-boundaries/table-3"),
+        data!("absorbing-boundaries/table-4"),
+        data!("absorbing-boundaries/table-5"),
+        data!("absorbing-boundaries/table-6"),
+        data!("absorbing-boundaries/cost"),
+        data!("absorbing-boundaries/damping-layer"),
+        data!("absorbing-boundaries/midpoint"),
+        data!("absorbing-boundaries/strip"),
+    ],
+    measures: &[
+        ("kernels", kernels::kernels),
+        ("error", tables::error),
+        ("order", tables::order),
+        ("fields", tables::fields),
+        ("interfaces", tables::interfaces),
+        ("wavelet", tables::wavelet),
+        ("cost", cost::compared),
+        ("million-steps", cost::million_steps),
+        ("reflection", layer::reflected),
+        ("reflection-of-angles", layer::of_angles),
+        ("midpoint", midpoint::midpoint),
+        ("strip", strip::strip_ends),
+    ],
+};

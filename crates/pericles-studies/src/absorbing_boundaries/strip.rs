@@ -8,22 +8,14 @@ use pericles::family::VolumeCorrection;
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Control, PericlesError, PointScalar, Simulation, System};
-use pericles_io::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart};
+use pericles_io::{CellSize, ColourMap, FieldPicture};
 use pericles_run::RunError;
 use pericles_waves::absorbing::Side;
 use pericles_waves::absorbing::strip::{StripEnd, StripLattice};
 use pericles_waves::linear::ConvolutionForce;
 
-use super::paper::PAPER;
-use crate::row::Row;
-use crate::study::{Context, Study};
-
-pub(super) const STRIP: Study = Study {
-    id: "absorbing-boundaries/strip",
-    paper: PAPER,
-    title: "An infinite strip, periodic across: ends by Fourier modes against a larger body",
-    run: rows,
-};
+use crate::context::Context;
+use crate::data::{Case, Found};
 
 /// Rows across; lengths are in spacings.
 const ROWS: usize = 32;
@@ -99,7 +91,8 @@ fn run(
     Ok((states, began.elapsed().as_secs_f64()))
 }
 
-fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
+/// The strip with exact ends against a larger one: errors, energy, seconds.
+pub(super) fn strip_ends(case: &Case<'_>) -> Result<Found, RunError> {
     const EVERY: usize = 10;
     let (mut system, state) = strip(0)?;
     let began = Instant::now();
@@ -129,29 +122,23 @@ fn rows(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             worst = worst.max(u).max(v);
         }
     }
-    draw(context, &cloud, &small)?;
-    let left = small[small.len() - 1].1 / small[0].1;
-    Ok(vec![
-        Row::new(
-            "largest error of displacement and velocity",
-            "",
-            Some(worst),
-        )
-        .within(0.0, 1e-10)
-        .note(format!(
-            "{STEPS} steps, against {points} points in place of {}",
-            cloud.len()
-        )),
-        Row::new("share of the energy that is left", "", Some(left))
-            .note("slow short waves stay longest"),
-        Row::new("kernels of both ends", "s", Some(seconds_kernels)).note(format!(
-            "{} modes, {:.1} MB of histories",
-            ROWS / 2 + 1,
-            1e-6 * memory as f64
-        )),
-        Row::new("run with ends", "s", Some(seconds)),
-        Row::new("larger body", "s", Some(seconds_large)),
+    draw(case.context, &cloud, &small)?;
+    let share = |energy: &f64| energy / small[0].1;
+    let (t, shares): (Vec<f64>, Vec<f64>) = small
+        .iter()
+        .map(|(state, energy)| (state.t, share(energy)))
+        .unzip();
+    Ok(Found::from([
+        ("error", worst),
+        ("points", points as f64),
+        ("strip", cloud.len() as f64),
+        ("left", share(&small[small.len() - 1].1)),
+        ("kernels", seconds_kernels),
+        ("megabytes", 1e-6 * memory as f64),
+        ("run", seconds),
+        ("larger", seconds_large),
     ])
+    .curve("energy", &t, &shares))
 }
 
 /// Where the entries of the small body are in the large one.
@@ -193,19 +180,6 @@ fn draw(
                 state.t
             ))
             .write(path)?;
-    }
-    if let Some(path) = context.figure("strip-energy.png") {
-        let (t, share): (Vec<f64>, Vec<f64>) = states
-            .iter()
-            .map(|(state, energy)| (state.t, energy / states[0].1))
-            .unzip();
-        LineChart::new(
-            Axis::new("t", ""),
-            Axis::new("energy in the strip over that at the start", "").logarithmic(),
-        )
-        .title("energy leaves a strip without ends")
-        .curve(Curve::line("", &t, &share))
-        .write(path)?;
     }
     Ok(())
 }

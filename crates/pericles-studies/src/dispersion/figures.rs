@@ -9,7 +9,7 @@ use pericles_run::RunError;
 use pericles_run::dispersion::{Curves, STEPS, write_classes};
 
 use super::models::targets;
-use crate::study::Context;
+use crate::context::Context;
 
 /// Draws and writes the curves of a table, if figures are wanted: `<name>.png`, `<name>.csv`.
 pub(super) fn write_curves(

@@ -12,49 +12,37 @@ mod one_dimensional;
 mod published;
 mod pulse;
 mod spectrum;
-mod three_dimensional;
 mod two_dimensional;
 
-use crate::study::Study;
+use crate::study::{Topic, data};
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 8] = [
-    one_dimensional::STUDY,
-    two_dimensional::STUDY,
-    three_dimensional::STUDY,
-    spectrum::BARS,
-    spectrum::PLATES,
-    influence::STUDY,
-    critical_stretch::STUDY,
-    pulse::STUDY,
-];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::row::Row;
-    use crate::study::Context;
-
-    /// Every study but the slow ones: all judged rows hold, and there are some.
-    #[test]
-    fn studies_hold() {
-        let context = Context::without_figures();
-        let studies: [&Study; 5] = [
-            &one_dimensional::STUDY,
-            &two_dimensional::STUDY,
-            &three_dimensional::STUDY,
-            &influence::STUDY,
-            &critical_stretch::STUDY,
-        ];
-        for study in studies {
-            let rows = (study.run)(&context).unwrap();
-            let wrong: Vec<&Row> = rows.iter().filter(|r| r.pass() == Some(false)).collect();
-            assert!(wrong.is_empty(), "{}: {wrong:?}", study.id);
-            assert!(
-                rows.iter().any(|row| row.pass() == Some(true)),
-                "{}",
-                study.id
-            );
-        }
-    }
-}
+pub(super) const TOPIC: Topic = Topic {
+    studies: &[
+        data!("dispersion/one-dimensional"),
+        data!("dispersion/two-dimensional"),
+        data!("dispersion/three-dimensional"),
+        data!("dispersion/spectrum-1d"),
+        data!("dispersion/spectrum-2d"),
+        data!("dispersion/influence"),
+        data!("dispersion/critical-stretch"),
+        data!("dispersion/pulse"),
+    ],
+    measures: &[
+        ("original", models::original),
+        ("tuned", models::of_choice),
+        ("write-coefficients", models::write_coefficients),
+        ("published-bars", one_dimensional::published_bars),
+        ("published-plates", two_dimensional::published_plates),
+        ("plane-states", two_dimensional::plane_states),
+        ("polar", two_dimensional::polar),
+        ("other-ratio", two_dimensional::other_ratio),
+        ("spectrum", spectrum::spectrum),
+        ("printed-function", influence::printed_function),
+        ("printed-function-at", influence::at_class),
+        ("fitted-cosines", influence::fitted_cosines),
+        ("critical-stretch", critical_stretch::critical_stretch),
+        ("crack-energy", critical_stretch::crack_energy),
+        ("pulse", pulse::pulse),
+    ],
+};

@@ -1,28 +1,21 @@
 //! Coefficients of bars, by all methods.
 
 use pericles::material::StressState;
-use pericles_dispersion::long_wave_speeds;
 use pericles_run::RunError;
 
 use super::figures::{write_comparison, write_curves, write_tables};
 use super::models::{NamedTables, constraint_residual, model, tuned};
-use super::published::{PAPER, method, number, numbers, published};
+use super::published::{method, number, numbers, published};
+use crate::data::{Case, Found};
 use crate::row::Row;
-use crate::study::{Context, Study};
-
-/// The study.
-pub(crate) const STUDY: Study = Study {
-    id: "dispersion/one-dimensional",
-    paper: PAPER,
-    title: "Coefficients of bars tuned against dispersion",
-    run,
-};
 
 const TABLE: &str =
     include_str!("../../../../validation/dispersion-and-fracture/one-dimensional.csv");
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let mut rows = originals()?;
+/// The rows of the table.
+pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
+    let context = case.context;
+    let mut rows = Vec::new();
     let mut tables: Vec<(f64, NamedTables)> = Vec::new();
     for cells in published(TABLE) {
         let (Some(n), name) = (number(&cells, 0), cells[1]) else {
@@ -55,7 +48,8 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
             );
             rows.push(omega.within(highest, 1e-4));
         }
-        rows.push(constraint_residual(&what, &table));
+        let residual = Some(constraint_residual(&table));
+        rows.push(Row::new(what("constraint residual".into()), "", residual).within(0.0, 1e-12));
         if n == 10.0 {
             rows.push(
                 Row::new(what("condition number".into()), "", Some(table.condition))
@@ -85,39 +79,5 @@ fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
         let (file, title) = (format!("methods-{n}"), format!("bars, N = {n}"));
         write_comparison(context, &model, &file, &title, &tables)?;
     }
-    Ok(rows)
-}
-
-fn originals() -> Result<Vec<Row>, RunError> {
-    let mut rows = Vec::new();
-    for (n, error) in [
-        (1.0, 0.36554),
-        (2.0, 0.75193),
-        (3.0, 1.0),
-        (5.0, 1.17644),
-        (10.0, 1.27588),
-    ] {
-        let model = model(StressState::Uniaxial, n)?;
-        let ones = vec![1.0; model.classes().len()];
-        let found = model.assess(&ones)?;
-        let speed = long_wave_speeds(&model.lattice(&ones), [1.0, 0.0, 0.0])[0];
-        rows.push(
-            Row::new(
-                format!("N = {n}, α = 1: error"),
-                "",
-                Some(found.error.ratio),
-            )
-            .within(error, 1e-5),
-        );
-        rows.push(
-            Row::new(
-                format!("N = {n}, α = 1: long waves, ω²/k²"),
-                "",
-                Some(speed * speed),
-            )
-            .within(1.0 + 1.0 / n, 1e-12)
-            .note("closed form 1 + 1/N"),
-        );
-    }
-    Ok(rows)
+    Ok(rows.into())
 }

@@ -3,9 +3,6 @@
 use pericles_dispersion::tuning::{Combination, Method};
 use pericles_run::RunError;
 
-/// The paper of the topic.
-pub(super) const PAPER: &str = "Alebrahim et al. 2022, Comput. Part. Mech.";
-
 /// The rows of a table of published numbers: cells by column, comments and header left out.
 pub(super) fn published(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -41,11 +38,7 @@ pub(super) fn combination(name: &str) -> Result<Combination, RunError> {
 }
 
 /// The value that a word of a study's data names.
-pub(super) fn known<T: Copy>(
-    kind: &'static str,
-    name: &str,
-    all: &[(&str, T)],
-) -> Result<T, RunError> {
+fn known<T: Copy>(kind: &'static str, name: &str, all: &[(&str, T)]) -> Result<T, RunError> {
     let found = all.iter().find(|(word, _)| *word == name);
     found.map(|(_, value)| *value).ok_or_else(|| {
         let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();

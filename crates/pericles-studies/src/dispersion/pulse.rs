@@ -16,17 +16,7 @@ use pericles_dispersion::tuning::{Tuning, Weights, continuum_speeds};
 use pericles_run::RunError;
 
 use super::models::model;
-use super::published::PAPER;
-use crate::row::Row;
-use crate::study::{Context, Study};
-
-/// The study.
-pub(crate) const STUDY: Study = Study {
-    id: "dispersion/pulse",
-    paper: PAPER,
-    title: "A pulse in a plate after fifty wavelengths, original and tuned (beyond the paper)",
-    run,
-};
+use crate::data::{Case, Found};
 
 /// Points along an axis.
 const NODES: usize = 64;
@@ -38,55 +28,38 @@ const WAVELENGTHS: f64 = 50.0;
 /// Small, so that what is seen is the error of the lattice; over the speed of pressure waves.
 const DT: f64 = 0.05;
 
-fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
+/// The error of a table over the pulse, if it is stable, and that over the error of α = 1.
+pub(super) fn pulse(case: &Case<'_>) -> Result<Found, RunError> {
     let model = model(StressState::PlaneStrain, 3.0)?;
-    let tune = |decay, lower_bound| {
-        model.tune(Tuning {
+    let error = |tuning: Option<Tuning>| -> Result<Option<f64>, RunError> {
+        let alpha = match tuning {
+            Some(tuning) => model.tune(tuning)?.alpha,
+            None => vec![1.0; model.classes().len()],
+        };
+        let stable = model.assess(&alpha)?.stability.is_stable();
+        stable.then(|| cross(&model.lattice(&alpha))).transpose()
+    };
+    let original = *case.once("original".into(), || error(None))?;
+    let tuning = case.flag("tuned").then(|| -> Tuning {
+        Tuning {
             weights: Weights {
-                decay,
+                decay: case.optional("decay"),
                 ..Default::default()
             },
-            lower_bound,
+            lower_bound: case.optional("lower_bound"),
             ..Default::default()
-        })
+        }
+    });
+    let found = match tuning {
+        Some(tuning) => error(Some(tuning))?,
+        None => original,
     };
-    let cases = [
-        ("original", vec![1.0; model.classes().len()]),
-        ("positive table, α ≥ 0.5", tune(None, Some(0.5))?.alpha),
-        ("least squares", tune(None, None)?.alpha),
-        (
-            "least squares, weight exp(−(kΔx)²)",
-            tune(Some(1.0), None)?.alpha,
-        ),
-    ];
-    let mut errors = Vec::new();
-    let mut rows = Vec::new();
-    for (name, alpha) in cases {
-        let found = model.assess(&alpha)?;
-        let note = if found.stability.is_stable() {
-            "stable"
-        } else {
-            "UNSTABLE"
-        };
-        let error = if found.stability.is_stable() {
-            Some(cross(&model.lattice(&alpha))?)
-        } else {
-            None
-        };
-        errors.push(error);
-        rows.push(Row::new(format!("{name}: error over the pulse"), "", error).note(note));
-    }
-    let ratio = |k: usize| Some(errors[k]? / errors[0]?);
-    rows.push(
-        Row::new("least squares over original", "", ratio(2))
-            .note("the zone's corner weighs most there, so that waves in the middle gain less"),
-    );
-    rows.push(
-        Row::new("weighted least squares over original", "", ratio(3))
-            .within(0.0, 0.4)
-            .note("a weight that decays with |k| suits the pulse"),
-    );
-    Ok(rows)
+    let verdict = found.map_or("UNSTABLE", |_| "stable");
+    let over = found
+        .zip(original)
+        .map(|(found, original)| found / original);
+    let result = Found::default().value("value", found).value("over", over);
+    Ok(result.text("verdict", verdict))
 }
 
 /// The root mean square error of the displacement over that of the displacement.

@@ -7,13 +7,17 @@
 //! least-squares slopes over a window of time, short enough to follow the crack and long enough not to see single points.
 
 mod branching;
-mod figures;
 mod front;
 mod inclined;
-mod looks;
 mod record;
 
-use crate::study::Study;
+use crate::study::{Topic, data};
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 2] = [branching::STUDY, inclined::STUDY];
+pub(super) const TOPIC: Topic = Topic {
+    studies: &[data!("fracture/branching"), data!("fracture/inclined")],
+    measures: &[
+        ("branching", branching::branching),
+        ("inclined", inclined::inclined),
+    ],
+};

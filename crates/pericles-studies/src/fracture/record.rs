@@ -8,12 +8,17 @@ use pericles::observe::{
 };
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Control, Simulation};
-use pericles_deck::Deck;
+use pericles_io::observers::PictureOf;
 use pericles_run::{Event, Facts, Resources, RunError, build};
 
-use super::looks::{LOOK, THRESHOLD};
-use crate::row::Row;
-use crate::study::Context;
+use crate::data::{Case, Found};
+use crate::decks::deck;
+
+/// Time between two looks at the crack, s.
+const LOOK: f64 = 0.5e-6;
+
+/// Damage beyond which a point belongs to the crack.
+const THRESHOLD: f64 = 0.35;
 
 /// A symmetry of a body: each point's partner, and the signs of the displacement's components there.
 pub(super) struct Symmetry {
@@ -85,14 +90,11 @@ impl Recorded {
         [x, y]
     }
 
-    /// The first look at which the crack has grown by more than two spacings.
-    pub(super) fn start(&self) -> Option<&Look> {
+    /// What both studies show: the critical stretch, the first time at which the crack has grown by more than two spacings, the worst of the energy balance, what broke, and the curves of the front and its
+    /// speed.
+    pub(super) fn found(&self, front: &[(f64, f64)], speeds: &[(f64, f64)]) -> Found {
         let grown = 2.0 * self.facts.spacing;
-        self.looks.iter().find(|look| look.advance > grown)
-    }
-
-    /// The worst of the energy account, and what broke.
-    pub(super) fn energy_rows(&self) -> Vec<Row> {
+        let start = self.looks.iter().find(|look| look.advance > grown);
         let worst = |over: fn(&Look) -> f64| {
             self.looks
                 .iter()
@@ -102,41 +104,34 @@ impl Recorded {
                 .reduce(f64::max)
         };
         let last = self.looks.last();
-        vec![
-            Row::new(
-                "energy balance over external work, worst after 1 µs",
-                "",
-                worst(|look| look.energies.work),
-            )
-            .within(0.0, 2e-3),
-            Row::new(
-                "energy balance over dissipated energy, worst after 1 µs",
-                "",
+        let curve = |found: Found, (name, points): (_, &[(f64, f64)])| {
+            let (t, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+            found.curve(name, &t, &y)
+        };
+        let curves = [("tip", front), ("speed", speeds)];
+        curves
+            .into_iter()
+            .fold(Found::default(), curve)
+            .value("critical stretch", self.facts.critical_stretch)
+            .value("start", start.map(|look| look.t))
+            .value("balance over work", worst(|look| look.energies.work))
+            .value(
+                "balance over dissipated",
                 worst(|look| look.energies.dissipated),
             )
-            .within(0.0, 0.03),
-            Row::new(
-                "dissipated energy",
-                "J",
-                last.map(|look| look.energies.dissipated),
-            ),
-            Row::new(
-                "bonds broken",
-                "",
-                last.map(|look| look.broken_bonds as f64),
-            ),
-        ]
+            .value("dissipated", last.map(|look| look.energies.dissipated))
+            .value("bonds broken", last.map(|look| look.broken_bonds as f64))
     }
 }
 
-/// Runs a deck with one pre-crack.
+/// Runs the deck of the case, which has one pre-crack, and draws the damage at the end with the title `picture`, if one is given.
 pub(super) fn record(
-    deck: &Deck,
+    case: &Case<'_>,
     symmetry: impl FnOnce(&PointCloud) -> Symmetry,
-    context: &Context<'_>,
 ) -> Result<Recorded, RunError> {
-    let assembly = build(deck, &Resources::default())?;
-    let facts = Facts::of_deck(deck, &assembly);
+    let (deck, context) = (deck(case, &[])?, case.context);
+    let assembly = build(&deck, &Resources::default())?;
+    let facts = Facts::of_deck(&deck, &assembly);
     let recorder = Recorder {
         tracker: CrackTracker::new(&assembly.cloud, assembly.cracks.clone(), THRESHOLD)?,
         symmetry: symmetry(&assembly.cloud),
@@ -159,6 +154,13 @@ pub(super) fn record(
         })
         .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
     (context.tell)(Event::LoopEnds);
+    if let (true, Some(path)) = (case.has("picture"), context.figure("damage.png")) {
+        let picture = PictureOf {
+            title: case.text("picture")?,
+            ..PictureOf::new(Field::Damage)
+        };
+        picture.draw(&simulation.snapshot(), path)?;
+    }
     let looks = mem::take(&mut *looks.lock().unwrap_or_else(PoisonError::into_inner));
     Ok(Recorded {
         looks,

@@ -1,45 +1,112 @@
 //! Runs of the presets, and what is seen of them.
 
+use std::rc::Rc;
+
+use pericles::observe::Field;
 use pericles::{Control, Simulation};
-use pericles_io::{Axis, Curve, LineChart};
-use pericles_manifold::SurfaceMeasure;
+use pericles_io::observers::PictureOf;
+use pericles_manifold::{SurfaceMeasure, SurfaceReading};
 use pericles_run::{Resources, RunError, build};
 
-use super::presets::Preset;
-use crate::study::Context;
+use crate::data::{Case, Found};
+use crate::decks::deck;
 
 /// What is seen of a run at every step.
-#[derive(Debug, Default)]
-pub(super) struct Course {
-    pub(super) t: Vec<f64>,
+#[derive(Default)]
+struct Course {
+    t: Vec<f64>,
     /// S/S₀ − 1.
-    pub(super) stretch: Vec<f64>,
-    pub(super) kinetic: Vec<f64>,
-    pub(super) elastic: Vec<f64>,
+    stretch: Vec<f64>,
+    kinetic: Vec<f64>,
+    elastic: Vec<f64>,
     /// Inner iterations of the step, none before the first.
-    pub(super) iterations: Vec<f64>,
+    iterations: Vec<f64>,
+    /// Localisation at the steps `readings`.
+    readings: Vec<SurfaceReading>,
+    /// Points under load.
+    loaded: usize,
+    /// The largest displacement at the end.
+    displacement: f64,
 }
 
 impl Course {
-    /// The surface stretch at the step nearest to a time.
-    pub(super) fn stretch_at(&self, t: f64) -> f64 {
-        self.at(t, &self.stretch)
+    /// The deck of the case with changes.
+    fn of(case: &Case<'_>, changes: &[String]) -> Result<Rc<Self>, RunError> {
+        let readings = match case.flag("readings") {
+            true => &READINGS[..],
+            false => &[],
+        };
+        let [file, set] = [case.text("deck")?, format!("{:?}", case.texts("set")?)];
+        case.once(
+            format!("course {file} {set} {changes:?} {readings:?}"),
+            || Self::run(case, changes, readings),
+        )
     }
 
-    pub(super) fn at(&self, t: f64, values: &[f64]) -> f64 {
+    fn run(case: &Case<'_>, changes: &[String], readings: &[u64]) -> Result<Self, RunError> {
+        let assembly = build(&deck(case, changes)?, &Resources::default())?;
+        let surface = assembly.surface.clone();
+        let measure = surface.clone().map(SurfaceMeasure::new);
+        let mut simulation = assembly.simulation()?;
+        let mut course = Self::default();
+        course.see(&simulation, measure.as_ref());
+        let mut trouble = None;
+        let look = |course: &mut Self, run: &Simulation| -> Result<(), RunError> {
+            course.see(run, measure.as_ref());
+            let step = run.state().step;
+            let (Some(measure), true) = (&measure, readings.contains(&step)) else {
+                return Ok(());
+            };
+            course.readings.push(measure.read(&run.snapshot()));
+            let Some(path) = case.context.figure(&format!("energy-{step}-ms.png")) else {
+                return Ok(());
+            };
+            let picture = PictureOf {
+                title: "elastic energy density, p = 5".into(),
+                surface: surface.clone(),
+                ..PictureOf::new(Field::StrainEnergyDensity)
+            };
+            Ok(picture.draw(&run.snapshot(), path)?)
+        };
+        simulation
+            .run(|run| match look(&mut course, run) {
+                Ok(()) => Control::Continue,
+                Err(error) => {
+                    trouble = Some(error);
+                    Control::Stop
+                }
+            })
+            .map_err(RunError::Simulation)?;
+        // The loop does not ask after the last step.
+        course.see(&simulation, measure.as_ref());
+        let loads = simulation.system().loads().iter();
+        course.loaded = loads.map(|load| load.points.len()).sum();
+        let u = simulation.state().u.iter();
+        course.displacement = u.fold(0.0, |most: f64, x| most.max(x.abs()));
+        trouble.map_or(Ok(course), Err)
+    }
+
+    fn see(&mut self, run: &Simulation, measure: Option<&SurfaceMeasure>) {
+        let energies = run.snapshot().energies();
+        self.t.push(run.state().t);
+        let stretch = measure.map_or(f64::NAN, |measure| measure.stretch(&run.state().u));
+        self.stretch.push(stretch);
+        self.kinetic.push(energies.kinetic);
+        self.elastic.push(energies.elastic);
+        if run.state().step > 0 {
+            let inner = run.integrator().inner_iterations().unwrap_or_default();
+            self.iterations.push(inner.last as f64);
+        }
+    }
+
+    /// At the step nearest to a time.
+    fn at(&self, t: f64, values: &[f64]) -> f64 {
         let after = self.t.partition_point(|&x| x < t - 1e-9);
         values[after.min(values.len() - 1)]
     }
 
-    pub(super) fn peak(&self) -> f64 {
-        self.stretch
-            .iter()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max)
-    }
-
     /// (max E − min E)/E(0)
-    pub(super) fn energy_spread(&self) -> f64 {
+    fn energy_spread(&self) -> f64 {
         let total = |k: usize| self.kinetic[k] + self.elastic[k];
         let (mut low, mut high) = (total(0), total(0));
         for k in 0..self.t.len() {
@@ -50,66 +117,71 @@ impl Course {
     }
 }
 
-/// Runs a preset with changes, and calls `look` after every step.
-pub(super) fn run(
-    preset: Preset,
-    changes: &[String],
-    mut look: impl FnMut(&Simulation) -> Result<(), RunError>,
-) -> Result<(Simulation, Course), RunError> {
-    let assembly = build(&preset.deck(changes)?, &Resources::default())?;
-    let measure = assembly.surface.clone().map(SurfaceMeasure::new);
-    let mut simulation = assembly.simulation()?;
-    let mut course = Course::default();
-    let mut note = |run: &Simulation| {
-        let energies = run.snapshot().energies();
-        course.t.push(run.state().t);
-        let stretch = measure
-            .as_ref()
-            .map_or(f64::NAN, |measure| measure.stretch(&run.state().u));
-        course.stretch.push(stretch);
-        course.kinetic.push(energies.kinetic);
-        course.elastic.push(energies.elastic);
-        if run.state().step > 0 {
-            let inner = run.integrator().inner_iterations().unwrap_or_default();
-            course.iterations.push(inner.last as f64);
-        }
-    };
-    note(&simulation);
-    let mut trouble = None;
-    simulation
-        .run(|run| {
-            note(run);
-            match look(run) {
-                Ok(()) => Control::Continue,
-                Err(error) => {
-                    trouble = Some(error);
-                    Control::Stop
-                }
-            }
-        })
-        .map_err(RunError::Simulation)?;
-    // The loop does not ask after the last step.
-    note(&simulation);
-    match trouble {
-        Some(error) => Err(error),
-        None => Ok((simulation, course)),
-    }
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// A chart of curves over time.
-pub(super) fn chart(
-    context: &Context<'_>,
-    name: &str,
-    title: &str,
-    axis: Axis,
-    curves: &[(String, &[f64], &[f64])],
-) -> Result<(), RunError> {
-    let Some(path) = context.figure(name) else {
-        return Ok(());
-    };
-    let mut chart = LineChart::new(Axis::new("t", "s"), axis).title(title);
-    for (label, t, values) in curves {
-        chart = chart.curve(Curve::line(label, t, values));
+/// The steps at which localisation is read where `readings` is set.
+const READINGS: [u64; 3] = [150, 300, 700];
+
+/// What is seen of a run: of its whole, of its second half, from the time `from` on, at the time `at`, and at the `reading` of this number.
+pub(super) fn run(case: &Case<'_>) -> Result<Found, RunError> {
+    let course = Course::of(case, &[])?;
+    let most = |values: &[f64], least: f64| values.iter().copied().fold(least, f64::max);
+    let half = &course.stretch[course.stretch.len() / 2..];
+    let middle = mean(half);
+    let square: Vec<f64> = half.iter().map(|x| (x - middle).powi(2)).collect();
+    let mut found = Found::from([
+        ("peak", most(&course.stretch, f64::NEG_INFINITY)),
+        ("spread", course.energy_spread()),
+        ("most iterations", most(&course.iterations, 0.0)),
+        ("mean iterations", mean(&course.iterations)),
+        ("mean of second half", middle),
+        ("variation", mean(&square).sqrt() / middle.abs()),
+        ("loaded", course.loaded as f64),
+    ])
+    .curve("stretch", &course.t, &course.stretch)
+    .curve("iterations", &course.t[1..], &course.iterations)
+    .labelled("energy", Some("kinetic".into()), &course.t, &course.kinetic)
+    .labelled("energy", Some("elastic".into()), &course.t, &course.elastic);
+    if let Some(t) = case.optional("at") {
+        let kinetic = course.at(t, &course.kinetic) / course.kinetic[0];
+        found = found
+            .value("stretch", course.at(t, &course.stretch))
+            .value("kinetic", kinetic);
     }
-    Ok(chart.write(path)?)
+    if let Some(from) = case.optional("from") {
+        let pairs = course.t.iter().zip(&course.stretch);
+        let late: Vec<f64> = pairs
+            .filter(|(t, _)| **t >= from)
+            .map(|(_, s)| *s)
+            .collect();
+        found = found.value("mean", mean(&late));
+    }
+    if let Some(number) = case.optional("reading") {
+        let reading = course.readings.get(number as usize);
+        found = found.value("localisation", reading.map(|reading| reading.localisation));
+        if let Some(reading) = reading {
+            found = found
+                .value("zones", reading.zones.len() as f64)
+                .value("share", 100.0 * reading.top_share);
+        }
+    }
+    Ok(found)
+}
+
+/// The spread of the energy over that with half the step `dt`.
+pub(super) fn half_step(case: &Case<'_>) -> Result<Found, RunError> {
+    let dt = case.number("dt")?;
+    let spread = |dt: f64| -> Result<f64, RunError> {
+        Ok(Course::of(case, &[format!("time.dt={dt}")])?.energy_spread())
+    };
+    let coarse = spread(dt)?;
+    Ok([("spread", coarse), ("ratio", coarse / spread(0.5 * dt)?)].into())
+}
+
+/// The displacement over that with the changes `weaker`.
+pub(super) fn linearity(case: &Case<'_>) -> Result<Found, RunError> {
+    let weaker = Course::of(case, &case.texts("weaker")?)?;
+    Ok((Course::of(case, &[])?.displacement / weaker.displacement).into())
 }

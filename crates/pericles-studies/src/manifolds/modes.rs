@@ -1,12 +1,77 @@
 //! The slowest vibration of a linear surface.
 
-use pericles::System;
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use pericles::cache::{Cache, Key};
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
-use pericles_run::RunError;
+use pericles::time::highest_frequency;
+use pericles::{Archive, System};
+use pericles_run::{Assembly, Resources, RunError, build};
+
+use crate::data::{Case, Found};
+use crate::decks::deck;
+
+/// Distances do not depend on α: they are found once for each mesh.
+#[derive(Default)]
+struct Kept(Mutex<HashMap<String, Archive>>);
+
+impl Kept {
+    fn arrays(&self) -> MutexGuard<'_, HashMap<String, Archive>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Cache for Kept {
+    fn load(&self, key: &Key) -> Option<Archive> {
+        self.arrays().get(&key.digest()).cloned()
+    }
+
+    fn store(&self, key: &Key, arrays: &Archive) {
+        self.arrays().insert(key.digest(), arrays.clone());
+    }
+}
+
+fn assembly(case: &Case<'_>) -> Result<Assembly, RunError> {
+    let kept = case.once("distances".into(), || Ok(Kept::default()))?;
+    let resources = Resources {
+        cache: &*kept,
+        ..Resources::default()
+    };
+    Ok(build(&deck(case, &[])?, &resources)?)
+}
+
+/// The lowest eigenvalue over that of the `continuum`, if one is given, and the period that belongs to it.
+pub(super) fn breathing(case: &Case<'_>) -> Result<Found, RunError> {
+    let eigenvalue = lowest_eigenvalue(&assembly(case)?.system)?;
+    let over = eigenvalue / case.optional("continuum").unwrap_or(1.0);
+    Ok([("eigenvalue", over), ("period", TAU / eigenvalue.sqrt())].into())
+}
+
+/// The estimate of the highest frequency.
+pub(super) fn highest(case: &Case<'_>) -> Result<Found, RunError> {
+    let assembly = assembly(case)?;
+    let omega = highest_frequency(&assembly.system, &assembly.state.u)?;
+    Ok(omega.estimate.into())
+}
+
+/// ∫ u·(−K u)/∫ |u|² of u = x, over that of the `continuum`.
+pub(super) fn quotient(case: &Case<'_>) -> Result<Found, RunError> {
+    let system = assembly(case)?.system;
+    let n = system.points();
+    let mut u = system.cloud().positions().to_vec();
+    u[n..].fill(0.0);
+    let mut force = vec![0.0; 3 * n];
+    system.operator().tangent_into(0.0, &u, &u, &mut force);
+    let areas = system.cloud().volumes();
+    let inner = |f: &[f64]| -> f64 { (0..n).map(|i| areas[i] * u[i] * f[i]).sum() };
+    Ok((-inner(&force) / inner(&u) / case.number("continuum")?).into())
+}
 
 /// The lowest eigenvalue ω² of −K/ρ for p = 2 on one component of the displacement that is orthogonal to translations: inverse iteration from the
 /// coordinate x. On a sphere it is that of u = x, y, z: the body breathes.
-pub(super) fn breathing(system: &System) -> Result<f64, RunError> {
+fn lowest_eigenvalue(system: &System) -> Result<f64, RunError> {
     let n = system.points();
     let areas = system.cloud().volumes();
     let mass: Vec<f64> = (0..n).map(|i| system.density().at(i) * areas[i]).collect();

@@ -3,27 +3,19 @@
 //! Schemes take turns on the same body; a time is the least of the rounds. S = M/(1 + (M − 1) φ) is the model of Runge–Kutta with two steps against the same method with the
 //! fine step everywhere. Velocity Verlet with the fine step everywhere is the harder measure: it needs M evaluations where RK4 with two steps needs 4 (1 + (M − 1) φ).
 
+use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
+use std::rc::Rc;
 use std::time::Instant;
 
 use pericles::operator::On;
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{Integrator, MultiTimeStep, Respa};
-use pericles_io::{Axis, Curve, LineChart};
 use pericles_run::RunError;
 
-use super::problem::{Method, PAPER, problem, tableau};
+use super::problem::{Method, Problem, tableau};
 use super::turns::{Bench, Turns};
-use crate::row::Row;
-use crate::study::{Context, Study};
-
-/// The study.
-pub(crate) const STUDY: Study = Study {
-    id: "multi-time-step/cost",
-    paper: PAPER,
-    title: "Evaluations and time of two time steps against the fine step everywhere",
-    run,
-};
+use crate::data::{Case, Found};
 
 /// Outline of a fine region.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,11 +26,8 @@ enum Outline {
 }
 
 impl Outline {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Box => "box",
-            Self::Ragged => "ragged",
-        }
+    fn of(case: &Case<'_>) -> Result<Self, RunError> {
+        case.one_of("outline", &[("box", Self::Box), ("ragged", Self::Ragged)])
     }
 
     /// About this fraction of the points, in the middle of the body.
@@ -65,228 +54,149 @@ impl Outline {
     }
 }
 
-fn run(context: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let two = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
-    let mut bench = one.install(|| Bench::new(&problem!("speed.toml")))?;
-    let mut rows = one.install(|| counts(&mut bench))?;
-    let mut curves = Vec::new();
-    for (outline, least) in [(Outline::Box, 0.80), (Outline::Ragged, 0.65)] {
-        for ratio in [4, 8] {
-            let mut points = Vec::new();
-            for fraction in [0.02, 0.06, 0.12, 0.25] {
-                let case = Case {
-                    outline,
-                    ratio,
-                    fraction,
-                    least,
-                };
-                let (found, speed_up) = one.install(|| case.rows(&mut bench))?;
-                rows.extend(found);
-                points.push((fraction, speed_up));
-            }
-            curves.push(SpeedUps {
-                outline,
-                ratio,
-                points,
-            });
-        }
-    }
-    let on_two = two.install(|| -> Result<Vec<Row>, RunError> {
-        let mut rows = Vec::new();
-        for ratio in [4, 8] {
-            rows.extend(on_two_threads(&mut bench, ratio)?);
-        }
-        Ok(rows)
+/// Does something with the body of the case on so many threads.
+fn on_threads<T: Send>(
+    case: &Case<'_>,
+    count: usize,
+    work: impl FnOnce(&mut Bench) -> Result<T, RunError> + Send,
+) -> Result<T, RunError> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
+    let shared: Rc<RefCell<Bench>> = case.once("bench".into(), || {
+        Ok(RefCell::new(Bench::new(Problem::of(case)?)?))
     })?;
-    rows.extend(on_two);
-    rows.extend(one.install(papers_case)?);
-    draw(context, &curves)?;
-    Ok(rows)
+    let bench = &mut *shared.borrow_mut();
+    threads.install(|| work(bench))
 }
 
-/// Counted evaluations over the model's, which must be one.
-fn counts(bench: &mut Bench) -> Result<Vec<Row>, RunError> {
+/// Counted evaluations of a scheme with the step ratio `ratio` over the model's, which must be one.
+pub(super) fn evaluations(case: &Case<'_>) -> Result<Found, RunError> {
     const STEPS: u32 = 3;
-    let n = bench.points();
-    let mut rows = Vec::new();
-    let fine = Outline::Ragged.points(bench.system.cloud(), 0.1);
-    let f = fine.len() as u64;
-    for ratio in [1, 4, 8] {
-        let m = u64::from(ratio);
-        for order in [3, 4] {
-            let options = bench.options(ratio, &fine);
-            let mut two = MultiTimeStep::new(&tableau(order)?, options, &bench.system)?;
-            let counted = bench.evaluations(&mut two, STEPS)?;
-            let model = u64::from(STEPS * order) * (n - f + m * f);
-            let name = Method::Two(order, ratio).name();
-            rows.push(
-                Row::new(
-                    format!("{name}: evaluations over the model's s (N_C + M N_F)"),
-                    "",
-                    Some(counted as f64 / model as f64),
+    let method = Method::of(case, "method")?;
+    on_threads(case, 1, |bench| {
+        let n = bench.points();
+        let fine = Outline::Ragged.points(bench.system.cloud(), 0.1);
+        let f = fine.len() as u64;
+        let (counted, model) = match method {
+            Method::Respa(ratio) => {
+                let regions = bench.options(ratio, &fine).fine;
+                let mut respa = Respa::new(ratio, regions, &bench.system)?;
+                respa.start(&mut bench.system, &mut bench.state);
+                let counted = bench.evaluations(&mut respa, STEPS)?;
+                let shared = respa.refinement().map_or(0, |report| report.border_points);
+                (
+                    counted,
+                    u64::from(STEPS) * (n - f + u64::from(ratio) * (f + shared)),
                 )
-                .within(1.0, 0.0),
-            );
-        }
-        let mut respa = Respa::new(ratio, bench.options(ratio, &fine).fine, &bench.system)?;
-        respa.start(&mut bench.system, &mut bench.state);
-        let counted = bench.evaluations(&mut respa, STEPS)?;
-        let shared = respa.refinement().map_or(0, |report| report.border_points);
-        let model = u64::from(STEPS) * (n - f + m * (f + shared));
-        rows.push(
-            Row::new(
-                format!(
-                    "{}: evaluations over the model's N_C + M (N_F + N_CB)",
-                    Method::Respa(ratio).name()
-                ),
-                "",
-                Some(counted as f64 / model as f64),
-            )
-            .within(1.0, 0.0),
-        );
-    }
-    // The force itself on a part of the body, for those who look for the reason of a lost share.
-    let mut out = vec![0.0; bench.state.u.len()];
-    let mut seconds = |on: On<'_>, bench: &mut Bench| {
-        let times = (0..9).map(|_| {
-            let began = Instant::now();
-            bench
-                .system
-                .free_acceleration(bench.state.t, &bench.state.u, &on, &mut out);
-            began.elapsed().as_secs_f64()
-        });
-        times.fold(f64::INFINITY, f64::min)
-    };
-    let whole = seconds(On::All, bench) / n as f64;
-    let part = seconds(On::Set(&fine), bench) / f as f64;
-    rows.push(Row::new(
-        "force on a ragged tenth of the body: time per point over that of the whole body",
-        "",
-        Some(part / whole),
-    ));
-    Ok(rows)
+            }
+            Method::Two(order, ratio) => {
+                let options = bench.options(ratio, &fine);
+                let mut two = MultiTimeStep::new(&tableau(order)?, options, &bench.system)?;
+                let counted = bench.evaluations(&mut two, STEPS)?;
+                (
+                    counted,
+                    u64::from(STEPS * order) * (n - f + u64::from(ratio) * f),
+                )
+            }
+            Method::Uniform(_) | Method::Verlet => return Ok(Found::default()),
+        };
+        Ok((counted as f64 / model as f64).into())
+    })
 }
 
-/// One point of the curves.
-struct Case {
-    outline: Outline,
-    ratio: u32,
-    fraction: f64,
-    /// The share of the model's speed-up that must be reached.
-    least: f64,
+/// The force itself on a part of the body, for those who look for the reason of a lost share: time per point over that of the whole body.
+pub(super) fn force_on_part(case: &Case<'_>) -> Result<Found, RunError> {
+    on_threads(case, 1, |bench| {
+        let fine = Outline::Ragged.points(bench.system.cloud(), 0.1);
+        let mut out = vec![0.0; bench.state.u.len()];
+        let mut seconds = |on: On<'_>| {
+            let times = (0..9).map(|_| {
+                let began = Instant::now();
+                let (t, u) = (bench.state.t, &bench.state.u);
+                bench.system.free_acceleration(t, u, &on, &mut out);
+                began.elapsed().as_secs_f64()
+            });
+            times.fold(f64::INFINITY, f64::min)
+        };
+        let part = seconds(On::Set(&fine)) / fine.len() as f64;
+        let whole = seconds(On::All) / bench.points() as f64;
+        Ok((part / whole).into())
+    })
 }
 
-impl Case {
-    /// The rows and the speed-up.
-    fn rows(&self, bench: &mut Bench) -> Result<(Vec<Row>, f64), RunError> {
-        let fine = self.outline.points(bench.system.cloud(), self.fraction);
-        let fraction = fine.len() as f64 / bench.points() as f64;
-        let m = f64::from(self.ratio);
-        let model = m / (1.0 + (m - 1.0) * fraction);
-        let turns = Turns::take(bench, self.ratio, &fine, [7, 2])?;
-        let speed_up = turns.uniform / turns.two;
-        let name = format!(
-            "{}, φ = {fraction:.3}, M = {}",
-            self.outline.name(),
-            self.ratio
-        );
-        let rows = vec![
-            Row::new(
-                format!("{name}: speed-up over the model's {model:.2}, at most 1"),
-                "",
-                // More than the model is no fault.
-                Some((speed_up / model).min(1.0)),
-            )
-            .within(1.0, 1.0 - self.least)
-            .note("RK4, one thread, 1e5 points; the independent code reached 0.56 … 0.80"),
-            Row::new(format!("{name}: speed-up"), "", Some(speed_up)),
-            Row::new(
-                format!("{name}: velocity Verlet with the fine step everywhere takes this share of the time"),
-                "",
-                Some(turns.verlet / turns.two),
-            )
-            .note("below 1: velocity Verlet is faster, with an error of second order"),
-            Row::new(
-                format!("{name}: r-RESPA, speed-up against velocity Verlet with the fine step everywhere"),
-                "",
-                Some(turns.verlet / turns.respa),
-            ),
-        ];
-        Ok((rows, speed_up))
-    }
+/// The fraction of fine points, and the times of schemes that took turns with a fine region of about this fraction.
+fn timed(case: &Case<'_>, fraction: f64) -> Result<Rc<(f64, Turns)>, RunError> {
+    let (outline, ratio) = (Outline::of(case)?, case.count("ratio")? as u32);
+    let threads = case.count("threads")?;
+    case.once(format!("{outline:?} {ratio} {fraction} {threads}"), || {
+        on_threads(case, threads, |bench| {
+            let fine = outline.points(bench.system.cloud(), fraction);
+            let share = fine.len() as f64 / bench.points() as f64;
+            Ok((share, Turns::take(bench, ratio, &fine, [7, 2])?))
+        })
+    })
 }
 
-fn on_two_threads(bench: &mut Bench, ratio: u32) -> Result<Vec<Row>, RunError> {
-    let fine = Outline::Box.points(bench.system.cloud(), 0.06);
-    let turns = Turns::take(bench, ratio, &fine, [7, 2])?;
-    Ok(vec![Row::new(
-        format!("box, φ = 0.06, M = {ratio}, two threads: speed-up"),
-        "",
-        Some(turns.uniform / turns.two),
-    )])
+fn model_of(ratio: f64, share: f64) -> f64 {
+    ratio / (1.0 + (ratio - 1.0) * share)
 }
 
-/// The pre-cracked plate of the paper, whose fine strip is a fifth of it.
-fn papers_case() -> Result<Vec<Row>, RunError> {
-    let problem = problem!("crack.toml");
-    let mut bench = Bench::new(&problem)?;
-    let assembly = problem.assembly(Method::Two(4, 4), &[])?;
-    let strip = assembly.sets.iter().find(|(name, _)| name == "strip");
-    let Some((_, fine)) = strip else {
-        return Ok(Vec::new());
-    };
-    let turns = Turns::take(&mut bench, 4, fine, [5, 20])?;
-    let speed_up = turns.uniform / turns.two;
-    Ok(vec![
-        Row::new("the paper's pre-cracked plate, M = 4: speed-up", "", Some(speed_up))
-            .printed(121.0 / 80.0)
-            .note("the paper prints 121 min and 80 min, for a fine region it does not give; at least that is asked for"),
-        Row::new(
-            "the paper's pre-cracked plate, M = 4: speed-up, at most 1.51",
-            "",
-            Some(speed_up.min(1.51)),
-        )
-        .within(1.51, 0.01),
-        Row::new(
-            "the paper's pre-cracked plate, M = 4: velocity Verlet with the fine step everywhere takes this share of the time",
-            "",
-            Some(turns.verlet / turns.two),
-        ),
-    ])
+/// The speed-up of a scheme with two steps.
+pub(super) fn speed_up(case: &Case<'_>) -> Result<Found, RunError> {
+    let timed = timed(case, case.number("fraction")?)?;
+    let model = model_of(case.number("ratio")?, timed.0);
+    let found = timed
+        .1
+        .ratios()
+        .value("share", timed.0)
+        .value("model", model);
+    // More than the model is no fault.
+    let reached = (timed.1.speed_up() / model).min(1.0);
+    Ok(found.value("over model", reached))
 }
 
-/// Speed-ups over the fraction of fine points.
-struct SpeedUps {
-    outline: Outline,
-    ratio: u32,
-    points: Vec<(f64, f64)>,
+/// The speed-ups over the fraction of fine points.
+pub(super) fn of_fractions(case: &Case<'_>) -> Result<Found, RunError> {
+    let fractions = case.numbers("fractions")?;
+    let times = fractions.iter().map(|&fraction| timed(case, fraction));
+    let speed_ups = times.map(|timed| Ok(timed?.1.speed_up()));
+    let speed_ups: Vec<f64> = speed_ups.collect::<Result<_, RunError>>()?;
+    Ok(Found::default().curve("speed-up", &fractions, &speed_ups))
 }
 
-fn draw(context: &Context<'_>, curves: &[SpeedUps]) -> Result<(), RunError> {
-    let Some(path) = context.figure("speed-up.png") else {
-        return Ok(());
-    };
-    let mut chart = LineChart::new(
-        Axis::new("fraction of fine points", ""),
-        Axis::new("speed-up", ""),
-    )
-    .title("RK4 with two steps against the fine step everywhere");
-    for SpeedUps {
-        outline,
-        ratio,
-        points,
-    } in curves
-    {
-        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-        let name = format!("{}, M = {ratio}", outline.name());
-        chart = chart.curve(Curve::line(name, &x, &y).with_markers());
-    }
+/// The model's curve.
+pub(super) fn model(case: &Case<'_>) -> Result<Found, RunError> {
+    let ratio = case.number("ratio")?;
     let x: Vec<f64> = (0..=50).map(|k| 0.005 * f64::from(k)).collect();
-    for m in [4.0, 8.0] {
-        let y: Vec<f64> = x.iter().map(|x| m / (1.0 + (m - 1.0) * x)).collect();
-        chart = chart.curve(Curve::line(format!("model, M = {m}"), &x, &y).dashed());
+    let y: Vec<f64> = x.iter().map(|&x| model_of(ratio, x)).collect();
+    Ok(Found::default().curve("model", &x, &y))
+}
+
+/// The speed-ups where the fine region is a set of the deck: the fraction of its points, the times at the deck's own step where `step` is set, and by how much a body with small cells everywhere is larger.
+pub(super) fn of_set(case: &Case<'_>) -> Result<Found, RunError> {
+    let (ratio, set) = (case.count("ratio")? as u32, case.text("points")?);
+    let [rounds, steps] = [case.count("rounds")? as u32, case.count("steps")? as u32];
+    let (problem, method) = (Problem::of(case)?, Method::of(case, "method")?);
+    let assembly = problem.assembly(method, &[])?;
+    let mut bench = Bench::new(problem)?;
+    if case.flag("own_step") {
+        bench.dt = assembly.dt;
     }
-    chart.write(path)?;
-    Ok(())
+    let fine = assembly.sets.iter().find(|(name, _)| *name == set);
+    let Some((_, fine)) = fine else {
+        return Ok(Found::default());
+    };
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let turns = one.install(|| Turns::take(&mut bench, ratio, fine, [rounds, steps]))?;
+    let report = assembly.integrator.refinement();
+    let (cells, large) = (assembly.cloud.len() as f64, assembly.cloud.spacing());
+    let [low, high] = assembly.cloud.bounds();
+    let everywhere = (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(ratio)).powi(2);
+    let most = case.optional("most").unwrap_or(f64::INFINITY);
+    let found = turns.ratios();
+    Ok(found
+        .value("share", fine.len() as f64 / cells)
+        .value("speed-up at most", turns.speed_up().min(most))
+        .value("r-RESPA at most", (turns.verlet / turns.respa).min(most))
+        .value("r-RESPA by model", report.map(|report| report.speed_up()))
+        .value("small cells everywhere", everywhere / cells))
 }

@@ -8,55 +8,49 @@ mod convergence;
 mod cost;
 mod crack;
 mod energy;
-mod inclusion;
 mod problem;
 mod stability;
 mod turns;
 mod two_grid;
 
-use crate::study::Study;
+use crate::study::{Topic, data};
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 9] = [
-    convergence::PLATE,
-    convergence::PLATE_NONLINEAR,
-    convergence::BLOCK,
-    crack::STUDY,
-    stability::STUDY,
-    energy::STUDY,
-    cost::STUDY,
-    inclusion::STUDY,
-    two_grid::STUDY,
-];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::row::Row;
-    use crate::study::Context;
-
-    /// Every study whose rows do not depend on the clock: all judged rows hold, and there are some.
-    #[test]
-    fn studies_hold() {
-        let context = Context::without_figures();
-        let studies: [&Study; 7] = [
-            &convergence::PLATE,
-            &convergence::PLATE_NONLINEAR,
-            &convergence::BLOCK,
-            &crack::STUDY,
-            &stability::STUDY,
-            &energy::STUDY,
-            &two_grid::STUDY,
-        ];
-        for study in studies {
-            let rows = (study.run)(&context).unwrap();
-            let wrong: Vec<&Row> = rows.iter().filter(|r| r.pass() == Some(false)).collect();
-            assert!(wrong.is_empty(), "{}: {wrong:#?}", study.id);
-            assert!(
-                rows.iter().any(|row| row.pass() == Some(true)),
-                "{}",
-                study.id
-            );
-        }
-    }
-}
+pub(super) const TOPIC: Topic = Topic {
+    studies: &[
+        data!("multi-time-step/plate"),
+        data!("multi-time-step/plate-nonlinear"),
+        data!("multi-time-step/block"),
+        data!("multi-time-step/crack"),
+        data!("multi-time-step/stability"),
+        data!("multi-time-step/energy"),
+        data!("multi-time-step/cost"),
+        data!("multi-time-step/inclusion"),
+        data!("multi-time-step/two-grid"),
+    ],
+    measures: &[
+        ("largest-displacement", convergence::largest_displacement),
+        ("error", convergence::error),
+        ("order", convergence::order),
+        ("equal-steps", convergence::equal_steps),
+        ("relative-error", crack::relative_error),
+        ("relative-order", crack::relative_order),
+        ("before-failure", crack::before_failure),
+        ("fine-step", crack::fine_step),
+        ("failure", crack::failure),
+        ("limit", stability::limit),
+        ("growth", stability::growth),
+        ("growth-rates", stability::rates),
+        ("kept", energy::kept),
+        ("evaluations", cost::evaluations),
+        ("force-on-part", cost::force_on_part),
+        ("speed-up", cost::speed_up),
+        ("speed-up-of-fractions", cost::of_fractions),
+        ("speed-up-model", cost::model),
+        ("speed-up-of-set", cost::of_set),
+        ("errors-of-set", convergence::errors_of_set),
+        ("patch-test", two_grid::patch_test),
+        ("frequencies", two_grid::frequencies),
+        ("conservation", two_grid::conservation),
+    ],
+};

@@ -1,41 +1,14 @@
 //! The problems of the studies, and the schemes they are solved by.
 
-use pericles::time::{Integrator, RungeKutta, Tableau};
+use std::f64::consts::PI;
+use std::rc::Rc;
+
+use pericles::time::{Integrator, RungeKutta, Tableau, VelocityVerlet};
 use pericles::{Control, Simulation};
-use pericles_deck::Deck;
 use pericles_run::{Assembly, Resources, RunError, build};
 
-/// The paper of the topic.
-pub(super) const PAPER: &str = "Liu et al. 2024, arXiv 2401.04966";
-
-/// A deck inside the library, with what decks cannot say.
-pub(super) struct Problem {
-    pub(super) file: &'static str,
-    pub(super) text: &'static str,
-    pub(super) prepare: fn(&mut Assembly),
-}
-
-/// A problem of `validation/multi-time-step/`, or of the examples.
-macro_rules! problem {
-    ($file:literal) => {
-        problem!($file, |_| ())
-    };
-    ($file:literal, $prepare:expr) => {
-        $crate::multi_time_step::problem::Problem {
-            file: $file,
-            text: include_str!(concat!("../../../../validation/multi-time-step/", $file)),
-            prepare: $prepare,
-        }
-    };
-    (example $file:literal, $prepare:expr) => {
-        $crate::multi_time_step::problem::Problem {
-            file: $file,
-            text: include_str!(concat!("../../../../examples/multi-time-step/", $file)),
-            prepare: $prepare,
-        }
-    };
-}
-pub(super) use problem;
+use crate::data::Case;
+use crate::decks::deck;
 
 /// A scheme with one or two time steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,17 +24,30 @@ pub(super) enum Method {
 }
 
 impl Method {
-    pub(super) fn name(self) -> String {
-        match self {
-            Self::Uniform(order) => format!("RK{order}"),
-            Self::Verlet => "velocity Verlet".into(),
-            Self::Two(order, ratio) => format!("RK{order} with two steps, M = {ratio}"),
-            Self::Respa(ratio) => format!("r-RESPA, M = {ratio}"),
+    /// The argument `name`, such as `RK4 with two steps, M = 8`.
+    pub(super) fn of(case: &Case<'_>, name: &'static str) -> Result<Self, RunError> {
+        const RATIOS: [u32; 5] = [1, 2, 3, 4, 8];
+        let mut all = vec![("velocity Verlet".to_owned(), Self::Verlet)];
+        for order in [3, 4] {
+            all.push((format!("RK{order}"), Self::Uniform(order)));
+            let two = |ratio| {
+                (
+                    format!("RK{order} with two steps, M = {ratio}"),
+                    Self::Two(order, ratio),
+                )
+            };
+            all.extend(RATIOS.map(two));
         }
+        all.extend(RATIOS.map(|ratio| (format!("r-RESPA, M = {ratio}"), Self::Respa(ratio))));
+        let all: Vec<(&str, Self)> = all
+            .iter()
+            .map(|(name, method)| (&name[..], *method))
+            .collect();
+        case.one_of(name, &all)
     }
 
     /// What it changes in a deck with two time steps.
-    pub(super) fn changes(self) -> Vec<String> {
+    fn changes(self) -> Vec<String> {
         match self {
             // The deck's own scheme gives way to one made from the model.
             Self::Uniform(_) | Self::Verlet => Vec::new(),
@@ -82,7 +68,28 @@ pub(super) fn tableau(order: u32) -> Result<Tableau, RunError> {
     })
 }
 
-impl Problem {
+/// The deck of a case, with what decks cannot say: the argument `start`.
+#[derive(Clone, Copy)]
+pub(super) struct Problem<'a> {
+    case: &'a Case<'a>,
+    start: fn(&mut Assembly),
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn of(case: &'a Case<'a>) -> Result<Self, RunError> {
+        let starts: [(&str, fn(&mut Assembly)); 5] = [
+            ("deck", |_| ()),
+            ("shaken", |assembly| shake(assembly, 0.0, 1.0)),
+            ("moving", |assembly| shake(assembly, 1.0, 1.0)),
+            ("moving and shaken", |assembly| shake(assembly, 1.0, 10.0)),
+            ("breathing", breathe),
+        ];
+        Ok(Self {
+            case,
+            start: case.one_of("start", &starts)?,
+        })
+    }
+
     pub(super) fn assembly(
         &self,
         method: Method,
@@ -90,17 +97,14 @@ impl Problem {
     ) -> Result<Assembly, RunError> {
         let mut all = method.changes();
         all.extend_from_slice(changes);
-        let mut assembly = build(
-            &Deck::parse(self.text, self.file, &all)?,
-            &Resources::default(),
-        )?;
-        (self.prepare)(&mut assembly);
+        let mut assembly = build(&deck(self.case, &all)?, &Resources::default())?;
+        (self.start)(&mut assembly);
         let one_step: Option<Box<dyn Integrator>> = match method {
-            Method::Uniform(order) => Some(Box::new(RungeKutta::new(
-                &tableau(order)?,
-                &assembly.system,
-            ))),
-            Method::Verlet => Some(Box::new(pericles::time::VelocityVerlet)),
+            Method::Uniform(order) => {
+                let tableau = tableau(order)?;
+                Some(Box::new(RungeKutta::new(&tableau, &assembly.system)))
+            }
+            Method::Verlet => Some(Box::new(VelocityVerlet)),
             _ => None,
         };
         if let Some(scheme) = one_step {
@@ -116,20 +120,71 @@ impl Problem {
         steps: u64,
         changes: &[String],
     ) -> Result<Simulation, RunError> {
-        let end = Deck::parse(self.text, self.file, changes)?.model.time.end;
+        let end = deck(self.case, changes)?.model.time.end;
         let mut all = vec![format!("time.dt={:?}", end / steps as f64)];
         all.extend_from_slice(changes);
         let mut simulation = self.assembly(method, &all)?.simulation()?;
-        finish(&mut simulation)?;
+        simulation
+            .run(|_| Control::Continue)
+            .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
         Ok(simulation)
+    }
+
+    /// The displacement at the end, computed once in a study.
+    pub(super) fn end(
+        &self,
+        method: Method,
+        steps: u64,
+        changes: &[String],
+    ) -> Result<Rc<End>, RunError> {
+        self.case
+            .once(format!("{method:?} {steps} {changes:?}"), || {
+                let run = self.run(method, steps, changes)?;
+                Ok(End {
+                    points: run.system().points(),
+                    u: run.state().u.clone(),
+                })
+            })
     }
 }
 
-pub(super) fn finish(simulation: &mut Simulation) -> Result<(), RunError> {
-    simulation
-        .run(|_| Control::Continue)
-        .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
-    Ok(())
+/// The end of a run.
+pub(super) struct End {
+    points: usize,
+    /// The displacement.
+    pub(super) u: Vec<f64>,
+}
+
+impl End {
+    /// u_x.
+    pub(super) fn x(&self) -> &[f64] {
+        &self.u[..self.points]
+    }
+}
+
+/// All modes, whatever the order of points.
+fn shake(assembly: &mut Assembly, mean: f64, swing: f64) {
+    for (k, v) in assembly.state.v.iter_mut().enumerate() {
+        *v = mean + swing * ((k * k) as f64).sin();
+    }
+}
+
+/// The grain of the inclusion breathes.
+fn breathe(assembly: &mut Assembly) {
+    const CENTRE: [f64; 2] = [0.06, 0.05];
+    const RADIUS: f64 = 8e-3;
+    let n = assembly.cloud.len();
+    let grain = assembly.sets.iter().find(|(name, _)| name == "grain");
+    for &i in grain.map_or(&[][..], |(_, points)| points) {
+        let i = i as usize;
+        let place = assembly.cloud.point(i);
+        let [x, y] = [place[0] - CENTRE[0], place[1] - CENTRE[1]];
+        let r = x.hypot(y);
+        let speed = (PI * r / RADIUS).sin();
+        let slope = if r > 0.0 { speed / r } else { 0.0 };
+        assembly.state.v[i] = slope * x;
+        assembly.state.v[n + i] = slope * y;
+    }
 }
 
 /// |a − b| over |b|, in the Euclidean norm.

@@ -12,6 +12,7 @@ use pericles_run::Assembly;
 use pericles_run::RunError;
 
 use super::problem::{Method, Problem, tableau};
+use crate::data::Found;
 
 /// A body with its state, on which schemes take turns.
 pub(super) struct Bench {
@@ -22,7 +23,7 @@ pub(super) struct Bench {
 
 impl Bench {
     /// The body of a problem; the coarse step is ω dt = 1.
-    pub(super) fn new(problem: &Problem) -> Result<Self, RunError> {
+    pub(super) fn new(problem: Problem<'_>) -> Result<Self, RunError> {
         let Assembly {
             mut system,
             mut state,
@@ -100,6 +101,21 @@ pub(super) struct Turns {
 }
 
 impl Turns {
+    /// RK4 with two steps against the fine step everywhere.
+    pub(super) fn speed_up(&self) -> f64 {
+        self.uniform / self.two
+    }
+
+    /// Times over each other.
+    pub(super) fn ratios(&self) -> Found {
+        [
+            ("speed-up", self.speed_up()),
+            ("Verlet", self.verlet / self.two),
+            ("r-RESPA", self.verlet / self.respa),
+        ]
+        .into()
+    }
+
     /// So many rounds of so many coarse steps each.
     pub(super) fn take(
         bench: &mut Bench,

@@ -1,43 +1,17 @@
-//! A body with smaller cells, and a smaller horizon, in its middle: what the interface does to a uniform strain, what is conserved, and what two time steps save.
+//! A body with smaller cells, and a smaller horizon, in its middle: what the interface does to a uniform strain, and what is conserved.
 
 use pericles::Control;
 use pericles::operator::On;
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::time::highest_frequency;
 use pericles_deck::Deck;
-use pericles_run::Assembly;
-use pericles_run::RunError;
+use pericles_run::{Assembly, RunError};
 
-use super::problem::{Method, PAPER, Problem, problem};
-use super::turns::{Bench, Turns};
-use crate::row::Row;
-use crate::study::{Context, Study};
+use super::problem::{Method, Problem};
+use crate::data::{Case, Found};
+use crate::decks::deck;
 
-/// The study.
-pub(crate) const STUDY: Study = Study {
-    id: "multi-time-step/two-grid",
-    paper: PAPER,
-    title: "A body on two grids: patch test, conservation, time",
-    run,
-};
-
-const RATIO: u32 = 3;
 const STRAIN: f64 = 1e-4;
-
-fn plate() -> Problem {
-    problem!("two-grid.toml")
-}
-
-fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let mut rows = Vec::new();
-    for cells in [1, 2] {
-        rows.extend(patch_test(cells)?);
-    }
-    rows.extend(frequencies()?);
-    rows.extend(conservation()?);
-    rows.extend(speed()?);
-    Ok(rows)
-}
 
 /// Whether a point lies further from the edges of its grid's part, and of the body, than a horizon of the large cells.
 struct Places {
@@ -79,12 +53,10 @@ impl Places {
     }
 }
 
-/// A uniform strain: the force it leaves, and the displacement that is in balance with the border held to it.
-fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
-    let spacing = 4e-3 / f64::from(finer);
-    let changes = [format!("body.spacing={spacing:?}")];
-    let deck = Deck::parse(plate().text, plate().file, &changes)?;
-    let assembly = plate().assembly(Method::Verlet, &changes)?;
+/// A uniform strain: the force it leaves over E e/δ, inside the grids, at their interface and at the body's surface, and the error of the displacement that is in balance with the border held to it.
+pub(super) fn patch_test(case: &Case<'_>) -> Result<Found, RunError> {
+    let assembly = Problem::of(case)?.assembly(Method::Verlet, &[])?;
+    let deck = deck(case, &[])?;
     let places = Places::of(&assembly, &deck);
     let (cloud, system) = (&assembly.cloud, &assembly.system);
     let n = cloud.len();
@@ -93,9 +65,8 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
         strained[i] = STRAIN * cloud.point(i)[0];
     }
     let mut force = vec![0.0; 2 * n];
-    system
-        .operator()
-        .add_force(0.0, &strained, On::All, &mut force);
+    let operator = system.operator();
+    operator.add_force(0.0, &strained, On::All, &mut force);
     // The force density over E e/δ, what a free surface would be pulled with.
     let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young());
     let scale = young * STRAIN / deck.model.body.horizon();
@@ -105,35 +76,19 @@ fn patch_test(finer: u32) -> Result<Vec<Row>, RunError> {
             .map(|i| force[i].hypot(force[n + i]) / scale)
             .fold(0.0, f64::max)
     };
-    let inside = largest(&|i| !places.interface[i] && !places.surface[i]);
-    let interface = largest(&|i| places.interface[i] && !places.surface[i]);
-    let surface = largest(&|i| places.surface[i]);
-    let error = balanced_error(&assembly, &strained, &places)?;
-    let name = format!("spacing {} mm", 1e3 * spacing);
-    Ok(vec![
-        Row::new(
-            format!("{name}: spurious force inside the grids over E e/δ"),
-            "",
-            Some(inside),
-        )
-        .within(0.0, 1e-9),
-        Row::new(
-            format!("{name}: spurious force at the interface over E e/δ"),
-            "",
-            Some(interface),
-        )
-        .note("a point at the interface sees large cells on one side and small ones on the other"),
-        Row::new(
-            format!("{name}: force at a free surface over E e/δ"),
-            "",
-            Some(surface),
+    Ok([
+        (
+            "inside",
+            largest(&|i| !places.interface[i] && !places.surface[i]),
         ),
-        Row::new(
-            format!("{name}: largest error of the displacement in balance over e L"),
-            "",
-            Some(error),
+        (
+            "interface",
+            largest(&|i| places.interface[i] && !places.surface[i]),
         ),
-    ])
+        ("surface", largest(&|i| places.surface[i])),
+        ("balanced", balanced_error(&assembly, &strained, &places)?),
+    ]
+    .into())
 }
 
 /// max |u − u_strained| over e L, where K u = 0 with the points near the border held at the uniform strain.
@@ -178,30 +133,18 @@ fn balanced_error(assembly: &Assembly, strained: &[f64], places: &Places) -> Res
 }
 
 /// How much shorter the stable step of the small cells is.
-fn frequencies() -> Result<Vec<Row>, RunError> {
-    let assembly = plate().assembly(Method::Respa(RATIO), &[])?;
+pub(super) fn frequencies(case: &Case<'_>) -> Result<Found, RunError> {
+    let assembly = Problem::of(case)?.assembly(Method::of(case, "method")?, &[])?;
     let whole = highest_frequency(&assembly.system, &assembly.state.u)?.estimate;
     let coarse = assembly.frequency.map(|frequency| frequency.estimate);
-    Ok(vec![
-        Row::new(
-            "highest frequency of the body over that which limits the coarse step",
-            "",
-            coarse.map(|coarse| whole / coarse),
-        )
-        .within_share(f64::from(RATIO), 0.15)
-        .note("the frequency goes with one over the horizon"),
-    ])
+    Ok(Found::default().value("value", coarse.map(|coarse| whole / coarse)))
 }
 
-/// A free body: momentum to round-off, energy within bounds.
-fn conservation() -> Result<Vec<Row>, RunError> {
+/// A free body at half the stable step: the change of momentum over momentum, and the largest change of energy in the second half over that in the first.
+pub(super) fn conservation(case: &Case<'_>) -> Result<Found, RunError> {
     const STEPS: u64 = 2000;
-    let mut assembly = plate().assembly(Method::Respa(RATIO), &[])?;
-    for (k, v) in assembly.state.v.iter_mut().enumerate() {
-        *v = 1.0 + ((k * k) as f64).sin();
-    }
+    let mut assembly = Problem::of(case)?.assembly(Method::of(case, "method")?, &[])?;
     assembly.steps = STEPS;
-    // Half the stable step.
     assembly.dt *= 0.5;
     let momentum = assembly.system.momentum(&assembly.state.v);
     let mut run = assembly.simulation()?;
@@ -217,57 +160,12 @@ fn conservation() -> Result<Vec<Row>, RunError> {
         Control::Continue
     })
     .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
-    let system = run.system();
-    let after = system.momentum(&run.state().v);
-    let apart = (0..3)
-        .map(|c| (after[c] - momentum[c]).powi(2))
-        .sum::<f64>()
-        .sqrt();
-    let size = momentum.iter().map(|p| p * p).sum::<f64>().sqrt();
-    Ok(vec![
-        Row::new("free body, r-RESPA: change of momentum over momentum", "", Some(apart / size))
-            .within(0.0, 1e-12),
-        Row::new(
-            "free body, r-RESPA: largest change of energy in the second half over that in the first",
-            "",
-            Some(worst[1] / worst[0]),
-        )
-        .within(0.55, 0.55),
-    ])
-}
-
-fn speed() -> Result<Vec<Row>, RunError> {
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    one.install(|| {
-        let assembly = plate().assembly(Method::Respa(RATIO), &[])?;
-        let mut bench = Bench::new(&plate())?;
-        bench.dt = assembly.dt;
-        let Some((_, fine)) = assembly.sets.iter().find(|(name, _)| name == "fine") else {
-            return Ok(Vec::new());
-        };
-        let turns = Turns::take(&mut bench, RATIO, fine, [5, 10])?;
-        let cells = assembly.cloud.len() as f64;
-        let large = assembly.cloud.spacing();
-        let [low, high] = assembly.cloud.bounds();
-        let everywhere =
-            (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(RATIO)).powi(2);
-        Ok(vec![
-            Row::new(
-                "fraction of points with the fine step",
-                "",
-                Some(fine.len() as f64 / cells),
-            ),
-            Row::new(
-                "r-RESPA: speed-up against velocity Verlet with the fine step, on the same points",
-                "",
-                Some(turns.verlet / turns.respa),
-            )
-            .note("by the clock, one thread, in turns"),
-            Row::new(
-                "points of the body with small cells everywhere over those of two grids",
-                "",
-                Some(everywhere / cells),
-            ),
-        ])
-    })
+    let after = run.system().momentum(&run.state().v);
+    let size = |p: &mut dyn Iterator<Item = f64>| p.map(|p| p.powi(2)).sum::<f64>().sqrt();
+    let apart = size(&mut (0..3).map(|c| after[c] - momentum[c]));
+    Ok([
+        ("momentum", apart / size(&mut momentum.iter().copied())),
+        ("energy", worst[1] / worst[0]),
+    ]
+    .into())
 }

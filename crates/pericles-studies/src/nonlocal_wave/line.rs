@@ -13,8 +13,10 @@ use pericles::time::{Implicit, ImplicitRule, Integrator, State, VelocityVerlet};
 use pericles::{Interrupt, PointScalar, System};
 use pericles_run::RunError;
 use pericles_waves::ForceForm;
-use pericles_waves::exact::ExactSolution;
+use pericles_waves::exact::{ExactSolution, LineSolution, TravellingPulse};
 use pericles_waves::{Trigonometric, TrigonometricOptions};
+
+use crate::data::{Case, Found};
 
 /// The medium: ρ = 1, C(ξ) = 4E/(l³√π) exp(−(ξ/l)²).
 #[derive(Debug, Clone, Copy)]
@@ -65,9 +67,40 @@ pub(super) enum Method {
     Gt(Option<f64>),
 }
 
-/// The exponents that the paper's numbers were made with.
-pub(super) const MT: Method = Method::Mt(Some(2.4));
-pub(super) const GT: Method = Method::Gt(Some(4.0));
+/// The methods by name, with the exponents that the paper's numbers were made with, and without.
+const METHODS: [(&str, Method); 6] = [
+    ("MSV", Method::Msv),
+    ("MT", Method::Mt(None)),
+    ("MT, A + h^2.4", Method::Mt(Some(2.4))),
+    ("MMI", Method::Mmi),
+    ("GT", Method::Gt(None)),
+    ("GT, A + h^4", Method::Gt(Some(4.0))),
+];
+
+impl Method {
+    /// The argument `method`.
+    pub(super) fn of(case: &Case<'_>) -> Result<Self, RunError> {
+        case.one_of("method", &METHODS)
+    }
+}
+
+/// The exact solution of the unit medium.
+pub(super) const LINE: LineSolution = LineSolution {
+    young: 1.0,
+    density: 1.0,
+    length: 1.0,
+    width: 1.0,
+    amplitude: 1.0,
+    centre: 0.0,
+};
+
+/// The local string.
+const STRING: TravellingPulse = TravellingPulse {
+    speed: 1.0,
+    width: 1.0,
+    amplitude: 1.0,
+    centre: 0.0,
+};
 
 /// Half the length of the piece of the line.
 const HALF: f64 = 10.0;
@@ -135,11 +168,11 @@ pub(super) fn integrator(
     })
 }
 
-/// u = exp(−(x/width)²), at rest.
-pub(super) fn pulse(cloud: &PointCloud, width: f64) -> State {
+/// u = exp(−x²), at rest.
+pub(super) fn pulse(cloud: &PointCloud) -> State {
     let mut state = State::at_rest(cloud.len());
     for (u, x) in state.u.iter_mut().zip(cloud.axis(0)) {
-        *u = (-(x / width).powi(2)).exp();
+        *u = (-x.powi(2)).exp();
     }
     state
 }
@@ -162,19 +195,14 @@ pub(super) fn march(
 }
 
 /// A solution at the nodes of a method for every step.
-pub(super) struct Reference {
-    pub(super) cloud: Arc<PointCloud>,
-    pub(super) dt: f64,
+struct Reference {
+    cloud: Arc<PointCloud>,
+    dt: f64,
     fields: Vec<Vec<f64>>,
 }
 
 impl Reference {
-    pub(super) fn new(
-        solution: &dyn ExactSolution,
-        cloud: &Arc<PointCloud>,
-        dt: f64,
-        steps: usize,
-    ) -> Self {
+    fn new(solution: &dyn ExactSolution, cloud: &Arc<PointCloud>, dt: f64, end: f64) -> Self {
         let field = |k: usize| {
             let mut field = vec![0.0; cloud.len()];
             solution.displacement_into(k as f64 * dt, cloud.axis(0), &mut field);
@@ -183,27 +211,21 @@ impl Reference {
         Self {
             cloud: Arc::clone(cloud),
             dt,
-            fields: (1..=steps).map(field).collect(),
+            fields: (1..=(end / dt).round() as usize).map(field).collect(),
         }
     }
 
     /// The largest difference of two solutions.
-    pub(super) fn distance(&self, other: &Self) -> f64 {
+    fn distance(&self, other: &Self) -> f64 {
         let pairs = self.fields.iter().zip(&other.fields);
         pairs.fold(0.0, |worst, (a, b)| largest(a, b, worst))
     }
 
     /// The largest error of a method.
-    pub(super) fn error(
-        &self,
-        medium: Medium,
-        method: Method,
-        h: f64,
-        width: f64,
-    ) -> Result<f64, RunError> {
+    fn error(&self, medium: Medium, method: Method, h: f64) -> Result<f64, RunError> {
         let mut system = system(&self.cloud, &medium.material())?;
         let mut integrator = integrator(method, h, &system)?;
-        let mut state = pulse(&self.cloud, width);
+        let mut state = pulse(&self.cloud);
         let mut worst = 0.0;
         let mut exact = self.fields.iter();
         let visit = |_: &System, state: &State| {
@@ -211,12 +233,13 @@ impl Reference {
                 worst = largest(&state.u, exact, worst);
             }
         };
+        let steps = self.fields.len();
         march(
             &mut system,
             &mut *integrator,
             &mut state,
             self.dt,
-            self.fields.len(),
+            steps,
             visit,
         )?;
         Ok(worst)
@@ -227,4 +250,62 @@ impl Reference {
 pub(super) fn largest(a: &[f64], b: &[f64], worst: f64) -> f64 {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     differences.fold(worst, f64::max)
+}
+
+/// The largest error of a method at spacing h over all nodes and steps; the step is h unless `dt` is given, the solution that of the medium unless `string` is set.
+fn error_at(case: &Case<'_>, h: f64) -> Result<f64, RunError> {
+    let (method, end) = (Method::of(case)?, case.number("end")?);
+    let dt = case.optional("dt").unwrap_or(h);
+    let medium = Medium {
+        young: case.optional("young").unwrap_or(1.0),
+        length: case.optional("length").unwrap_or(1.0),
+    };
+    let (string, gauss) = (case.flag("string"), matches!(method, Method::Gt(_)));
+    let key = format!("reference {medium:?} {string} {gauss} {h} {dt} {end}");
+    let reference = case.once(key, || {
+        let cloud = nodes(method, h)?;
+        let line = LineSolution {
+            young: medium.young,
+            length: medium.length,
+            ..LINE
+        };
+        let solution: &dyn ExactSolution = if string { &STRING } else { &line };
+        Ok(Reference::new(solution, &cloud, dt, end))
+    })?;
+    let key = format!("error {medium:?} {method:?} {string} {h} {dt} {end}");
+    case.once(key, || reference.error(medium, method, h))
+        .map(|error| *error)
+}
+
+/// Tables 1 to 3: the largest error.
+pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
+    let error = error_at(case, case.number("h")?)?;
+    Ok([("value", error), ("log10", error.log10())].into())
+}
+
+/// The order of the error from 2h to h.
+pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
+    let h = case.number("h")?;
+    Ok((error_at(case, 2.0 * h)? / error_at(case, h)?)
+        .log2()
+        .into())
+}
+
+/// Table 3: the distance of the exact solutions of the line and the string, looked for on a fine grid, and its order from twice the length.
+pub(super) fn local_limit(case: &Case<'_>) -> Result<Found, RunError> {
+    let [dt, end] = [case.number("dt")?, case.number("end")?];
+    let gap = |length: f64| {
+        case.once(format!("gap {length}"), || {
+            let cloud = nodes(Method::Msv, 0.01)?;
+            let exact = LineSolution { length, ..LINE };
+            let nonlocal = Reference::new(&exact, &cloud, dt, end);
+            Ok(nonlocal.distance(&Reference::new(&STRING, &cloud, dt, end)))
+        })
+    };
+    let length = case.number("length")?;
+    let found = Found::from(*gap(length)?);
+    match case.flag("order") {
+        true => Ok(found.value("order", (*gap(2.0 * length)? / *gap(length)?).log2())),
+        false => Ok(found),
+    }
 }

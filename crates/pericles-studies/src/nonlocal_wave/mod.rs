@@ -7,53 +7,42 @@
 //! Units: E = ρ = 1 and lengths in those of the start unless a row says otherwise. Errors are the largest over all nodes and steps.
 
 mod bar;
-mod convergence;
 mod cost;
 mod energy;
-mod figures;
-mod limit;
 mod line;
-mod long_waves;
 mod nonlinear;
-mod paper;
 mod spectral;
 
-use crate::study::Study;
+use crate::study::{Topic, data};
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 9] = [
-    convergence::STUDY,
-    long_waves::STUDY,
-    limit::STUDY,
-    spectral::STUDY,
-    bar::STUDY,
-    energy::STUDY,
-    figures::STUDY,
-    nonlinear::STUDY,
-    cost::STUDY,
-];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::row::Row;
-    use crate::study::Context;
-
-    /// All judged rows hold, and there are some.
-    #[test]
-    fn studies_hold() {
-        let context = Context::without_figures();
-        let mut wrong: Vec<(&str, Row)> = Vec::new();
-        for study in &STUDIES {
-            let rows = (study.run)(&context).unwrap();
-            assert!(
-                rows.iter().any(|row| row.pass() == Some(true)),
-                "{}",
-                study.id
-            );
-            let failed = rows.into_iter().filter(|row| row.pass() == Some(false));
-            wrong.extend(failed.map(|row| (study.id, row)));
-        }
-        assert!(wrong.is_empty(), "{wrong:#?}");
-    }
-}
+pub(super) const TOPIC: Topic = Topic {
+    studies: &[
+        data!("nonlocal-wave/table-1"),
+        data!("nonlocal-wave/table-2"),
+        data!("nonlocal-wave/table-3"),
+        data!("nonlocal-wave/table-4"),
+        data!("nonlocal-wave/table-5"),
+        data!("nonlocal-wave/energy"),
+        data!("nonlocal-wave/figures"),
+        data!("nonlocal-wave/nonlinear"),
+        data!("nonlocal-wave/cost"),
+    ],
+    measures: &[
+        ("error", line::error),
+        ("order", line::order),
+        ("local-limit", line::local_limit),
+        ("spectral-error", spectral::error),
+        ("spectral-period", spectral::period),
+        ("bar-error", bar::error),
+        ("energy", energy::energy),
+        ("inequality", energy::inequality),
+        ("pulse", energy::pulse_on_line),
+        ("treatment", nonlinear::treatment),
+        ("scheme", nonlinear::scheme),
+        ("series", nonlinear::series),
+        ("linearisation", nonlinear::linearisation),
+        ("cost", cost::cost),
+        ("million-points", cost::million_points),
+    ],
+};

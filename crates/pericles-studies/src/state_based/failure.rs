@@ -1,141 +1,73 @@
 //! What it costs to tear a linear peridynamic solid: halves pulled apart, and cracks along the planes of its lattice.
 
 use pericles::family::VolumeCorrection;
-use pericles::kernel::InfluenceFunction;
 use pericles::material::{
-    BondFailure, CrackPlane, FractureCalibration, LinearSolid, LinearSolidConstants,
-    StateInfluence, StressState, StretchDefinition,
+    BondFailure, CrackPlane, FractureCalibration, LinearSolid, LinearSolidConstants, StressState,
+    StretchDefinition,
 };
 use pericles_run::RunError;
 
 use super::separation::energy_spent;
 use super::stencil::{bonds, weighted_volume};
-use super::{influence_words, solid, state_words};
+use super::{influence_of, solid, state_of};
+use crate::data::{Case, Found};
 use crate::row::Row;
-use crate::study::{Context, Study};
-
-/// The study.
-pub(super) const STUDY: Study = Study {
-    id: "state-based/failure",
-    paper: "Foster, Silling & Chen 2011, Int. J. Multiscale Comput. Eng. 9",
-    title: "Fracture energy of linear peridynamic solids: rigid separation, planes of the lattice",
-    run,
-};
 
 /// The fracture energy asked for, J/m².
 const G0: f64 = 1e-3;
 
-/// Poisson's ratios of the table.
-const RATIOS: [f64; 4] = [0.1, 0.25, 1.0 / 3.0, 0.4];
-
-fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let mut rows = Vec::new();
-    for (state, spacings, values) in separations() {
-        for ((words, failure), values) in criteria(FractureCalibration::Continuum)
-            .into_iter()
-            .zip(values)
-        {
-            for (nu, expected) in RATIOS.into_iter().zip(values) {
-                let spent = energy_spent(state, spacings, nu, failure)?;
-                let state = state_words(state);
-                let case =
-                    format!("halves pulled apart: {state}, m = {spacings}, {words}, ν = {nu:.2}");
-                let found = spent.map(|spent| spent / G0);
-                rows.push(Row::new(case, "", found).within_share(expected, 0.02));
-            }
-        }
-    }
-    rows.extend(planes()?);
-    Ok(rows)
-}
-
-/// The three definitions of the critical stretch, and the bond energy.
-fn criteria(calibration: FractureCalibration) -> [(&'static str, BondFailure); 4] {
+/// The argument `criterion`: a definition of the critical stretch, or the bond energy.
+fn failure_of(case: &Case<'_>, calibration: FractureCalibration) -> Result<BondFailure, RunError> {
     let stretch = |definition| BondFailure::Stretch {
         fracture_energy: G0,
         definition,
         calibration,
     };
-    [
+    let energy = BondFailure::BondEnergy {
+        fracture_energy: G0,
+        calibration,
+    };
+    let criteria = [
         ("stretch (bond)", stretch(StretchDefinition::Bond)),
         ("stretch (closing)", stretch(StretchDefinition::Closing)),
         ("stretch (iso)", stretch(StretchDefinition::Isotropic)),
-        (
-            "bond energy",
-            BondFailure::BondEnergy {
-                fracture_energy: G0,
-                calibration,
-            },
-        ),
-    ]
+        ("bond energy", energy),
+    ];
+    case.one_of("criterion", &criteria)
 }
 
-/// Energy spent over G₀ with w = 1 and whole volumes, by criterion and Poisson's ratio, to the two or three digits of the table.
-fn separations() -> [(StressState, usize, [[f64; 4]; 4]); 2] {
-    [
-        (
-            StressState::Spatial,
-            3,
-            [
-                [0.92, 1.032, 1.18, 1.47],
-                [1.08, 1.032, 0.99, 0.93],
-                [3.74, 1.032, 0.59, 0.37],
-                [1.105, 1.104, 1.104, 1.105],
-            ],
-        ),
-        (
-            StressState::PlaneStrain,
-            6,
-            [
-                [0.90, 0.992, 1.11, 1.35],
-                [1.04, 0.992, 0.95, 0.89],
-                [2.38, 0.992, 0.61, 0.39],
-                [0.997, 0.998, 0.997, 0.997],
-            ],
-        ),
-    ]
+/// Energy spent over G₀ by pulling halves apart, with w = 1 and whole volumes.
+pub(super) fn separation(case: &Case<'_>) -> Result<Found, RunError> {
+    let failure = failure_of(case, FractureCalibration::Continuum)?;
+    let spent = energy_spent(
+        state_of(case)?,
+        case.count("m")?,
+        case.number("nu")?,
+        failure,
+    )?;
+    Ok(Found::default().value("value", spent.map(|spent| spent / G0)))
 }
 
-/// Limits calibrated on the lattice: the mean over the planes is the energy asked for, and that of each plane the sum over the layers of points beside it.
-fn planes() -> Result<Vec<Row>, RunError> {
-    let lattice = criteria(FractureCalibration::Lattice);
-    let [_, closing, _, energy] = lattice;
-    let mut rows = Vec::new();
-    for state in [StressState::PlaneStrain, StressState::Spatial] {
-        for spacings in [3, 4, 5] {
-            let gaussian = InfluenceFunction::Gaussian {
-                length: 0.5 * spacings as f64,
-                cutoff: None,
-            };
-            for influence in [
-                StateInfluence::Function(InfluenceFunction::Constant),
-                StateInfluence::Function(InfluenceFunction::Conical),
-                StateInfluence::Function(gaussian),
-                StateInfluence::Isotropic,
-            ] {
-                for (words, failure) in [closing, energy] {
-                    let state_word = state_words(state);
-                    let of = influence_words(&influence);
-                    let case = format!("{state_word}, m = {spacings}, {of}, {words}");
-                    let material = LinearSolid {
-                        failure,
-                        ..solid(0.2, spacings, influence.clone(), VolumeCorrection::None)
-                    };
-                    let sides = vec![1.0; state.dimension()];
-                    match material.constants_on(&sides, 1.0, state) {
-                        Ok(constants) => {
-                            rows.extend(of_planes(&case, &material, &constants, state))
-                        }
-                        // Weights that are negative near the horizon.
-                        Err(refused) => {
-                            rows.push(Row::new(case, "", None).note(format!("refused: {refused}")));
-                        }
-                    }
-                }
-            }
-        }
-    }
-    Ok(rows)
+/// Rows of limits calibrated on the lattice: the mean over the planes is the energy asked for, and that of each plane the sum over the layers of points beside it.
+pub(super) fn planes(case: &Case<'_>) -> Result<Found, RunError> {
+    let (state, name) = (state_of(case)?, case.text("name")?);
+    let failure = failure_of(case, FractureCalibration::Lattice)?;
+    let material = LinearSolid {
+        failure,
+        ..solid(
+            0.2,
+            case.count("m")?,
+            influence_of(case)?,
+            VolumeCorrection::None,
+        )
+    };
+    let sides = vec![1.0; state.dimension()];
+    let rows = match material.constants_on(&sides, 1.0, state) {
+        Ok(constants) => of_planes(&name, &material, &constants, state),
+        // Weights that are negative near the horizon.
+        Err(refused) => vec![Row::new(name, "", None).note(format!("refused: {refused}"))],
+    };
+    Ok(rows.into())
 }
 
 fn of_planes(

@@ -6,16 +6,32 @@ mod separation;
 mod stencil;
 mod surface;
 
-use pericles::Result;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{BondFailure, GivenConstants, LinearSolid, StateInfluence, StressState};
 use pericles::space::{Grid, PointCloud, Shape};
+use pericles_run::RunError;
 
-use crate::study::Study;
+use crate::data::Case;
+use crate::study::{Topic, data};
 
 /// The studies of this topic.
-pub(super) const STUDIES: [Study; 3] = [lattice::STUDY, surface::STUDY, failure::STUDY];
+pub(super) const TOPIC: Topic = Topic {
+    studies: &[
+        data!("state-based/lattice"),
+        data!("state-based/surface"),
+        data!("state-based/failure"),
+    ],
+    measures: &[
+        ("shear", lattice::shear),
+        ("isotropic-function", lattice::isotropic),
+        ("stable-step", lattice::stable_step),
+        ("highest-frequency", lattice::periodic_body),
+        ("bar", surface::bar),
+        ("separation", failure::separation),
+        ("planes", failure::planes),
+    ],
+};
 
 /// A solid with E = 10 Pa and ρ = 1 kg/m³ on cells of 1 m, with a horizon of so many spacings and a millionth more, that does not break.
 fn solid(
@@ -44,7 +60,7 @@ fn horizon(spacings: usize) -> f64 {
 }
 
 /// A box of cells of 1 m.
-fn cells(counts: &[usize]) -> Result<PointCloud> {
+fn cells(counts: &[usize]) -> pericles::Result<PointCloud> {
     let grid = Grid {
         shape: Shape::Box {
             origin: [0.0; 3],
@@ -57,55 +73,44 @@ fn cells(counts: &[usize]) -> Result<PointCloud> {
     grid.points()
 }
 
-fn state_words(state: StressState) -> &'static str {
-    match state {
-        StressState::Spatial => "3D",
-        StressState::PlaneStrain => "plane strain",
-        StressState::PlaneStress => "plane stress",
-        StressState::Uniaxial => "bar",
+/// The argument `state`.
+fn state_of(case: &Case<'_>) -> Result<StressState, RunError> {
+    let states = [
+        ("3D", StressState::Spatial),
+        ("plane strain", StressState::PlaneStrain),
+        ("plane stress", StressState::PlaneStress),
+    ];
+    case.one_of("state", &states)
+}
+
+/// The argument `function`; the length of a Gaussian is half the horizon of so many spacings.
+fn function_of(case: &Case<'_>) -> Result<InfluenceFunction, RunError> {
+    let gaussian = InfluenceFunction::Gaussian {
+        length: 0.5 * case.number("m")?,
+        cutoff: None,
+    };
+    let functions = [
+        ("w = 1", InfluenceFunction::Constant),
+        ("w = δ/r", InfluenceFunction::Inverse),
+        ("w = 1 − r/δ", InfluenceFunction::Conical),
+        ("Gaussian", gaussian),
+    ];
+    case.one_of("function", &functions)
+}
+
+/// The argument `function`, which may be `isotropic`.
+fn influence_of(case: &Case<'_>) -> Result<StateInfluence, RunError> {
+    match &case.text("function")?[..] {
+        "isotropic" => Ok(StateInfluence::Isotropic),
+        _ => function_of(case).map(StateInfluence::Function),
     }
 }
 
-fn function_words(function: &InfluenceFunction) -> &'static str {
-    match function {
-        InfluenceFunction::Constant => "w = 1",
-        InfluenceFunction::Inverse => "w = δ/r",
-        InfluenceFunction::Conical => "w = 1 − r/δ",
-        InfluenceFunction::Gaussian { .. } => "Gaussian",
-        _ => "another function",
-    }
-}
-
-fn influence_words(influence: &StateInfluence) -> &'static str {
-    match influence {
-        StateInfluence::Function(function) => function_words(function),
-        StateInfluence::Isotropic => "isotropic",
-    }
-}
-
-fn correction_words(correction: VolumeCorrection) -> &'static str {
-    match correction {
-        VolumeCorrection::None => "whole volumes",
-        _ => "partial volumes",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::row::Row;
-    use crate::study::Context;
-
-    #[test]
-    fn studies_hold() {
-        let context = Context::without_figures();
-        for study in &STUDIES {
-            let rows = (study.run)(&context).unwrap();
-            let failed: Vec<Row> = rows
-                .into_iter()
-                .filter(|row| row.pass() == Some(false))
-                .collect();
-            assert!(failed.is_empty(), "{}: {failed:#?}", study.id);
-        }
-    }
+/// The argument `volumes`.
+fn correction_of(case: &Case<'_>) -> Result<VolumeCorrection, RunError> {
+    let corrections = [
+        ("whole volumes", VolumeCorrection::None),
+        ("partial volumes", VolumeCorrection::Linear),
+    ];
+    case.one_of("volumes", &corrections)
 }

@@ -2,79 +2,32 @@
 
 use std::sync::Arc;
 
-use pericles::family::VolumeCorrection;
-use pericles::kernel::InfluenceFunction;
-use pericles::material::{LinearSolid, SolidSurface, StateInfluence, Strains, StressState};
+use pericles::material::{LinearSolid, SolidSurface, Strains, StressState};
 use pericles::operator::{BondForm, Force, LinearSolidBody, On};
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles_run::RunError;
 
-use super::{cells, correction_words, influence_words, solid};
-use crate::row::Row;
-use crate::study::{Context, Study};
+use super::{cells, correction_of, influence_of, solid};
+use crate::data::{Case, Found};
 
-/// The study.
-pub(super) const STUDY: Study = Study {
-    id: "state-based/surface",
-    paper: "Madenci & Oterkus 2014; Le & Bobaru 2018, Comput. Mech. 61",
-    title: "Young's modulus of a bar of a linear peridynamic solid, bare and with corrected surfaces",
-    run,
-};
-
-/// A bar: Poisson's ratio, spacings of the horizon, influence, partial volumes, cells along its length, E/E₀ without correction, and with the factor of pair forces.
-type Case = (
-    f64,
-    usize,
-    StateInfluence,
-    VolumeCorrection,
-    usize,
-    f64,
-    f64,
-);
-
-fn cases() -> [Case; 9] {
-    let (none, linear) = (VolumeCorrection::None, VolumeCorrection::Linear);
-    let constant = || StateInfluence::Function(InfluenceFunction::Constant);
-    let conical = || StateInfluence::Function(InfluenceFunction::Conical);
-    let isotropic = || StateInfluence::Isotropic;
-    [
-        (1.0 / 3.0, 3, constant(), linear, 40, 1.039, 1.007),
-        (1.0 / 3.0, 3, constant(), linear, 80, 1.011, 0.999),
-        (0.2, 3, constant(), linear, 40, 1.035, 1.006),
-        (0.2, 3, constant(), linear, 80, 1.010, 1.000),
-        (0.2, 3, conical(), linear, 40, 1.032, 1.007),
-        (0.2, 3, conical(), linear, 80, 1.012, 1.002),
-        (0.2, 3, isotropic(), none, 40, 1.049, 1.011),
-        (0.4, 3, isotropic(), none, 40, 1.057, 1.016),
-        (0.4, 4, isotropic(), none, 40, 1.066, 1.019),
+/// Young's modulus over that of the material of a bar `count` cells long: bare, with corrected surfaces, and inside the lattice.
+pub(super) fn bar(case: &Case<'_>) -> Result<Found, RunError> {
+    let (count, correction) = (case.count("count")?, correction_of(case)?);
+    let material = solid(
+        case.number("nu")?,
+        case.count("m")?,
+        influence_of(case)?,
+        correction,
+    );
+    Ok([
+        ("bare", measured(count, &material, SolidSurface::None)?),
+        (
+            "corrected",
+            measured(count, &material, SolidSurface::Energy)?,
+        ),
+        ("inside", interior(&material)?),
     ]
-}
-
-fn run(_: &Context<'_>) -> Result<Vec<Row>, RunError> {
-    let mut rows = Vec::new();
-    for (nu, spacings, influence, correction, count, bare, of_pairs) in cases() {
-        let case = format!(
-            "E/E₀ of a bar of {count} × {} cells, ν = {nu:.2}, m = {spacings}, {}, {}",
-            count / 2,
-            influence_words(&influence),
-            correction_words(correction)
-        );
-        let material = solid(nu, spacings, influence, correction);
-        let found = measured(count, &material, SolidSurface::None)?;
-        rows.push(Row::new(format!("{case}, bare"), "", Some(found)).within(bare, 2e-3));
-        let found = measured(count, &material, SolidSurface::Energy)?;
-        let inside = interior(&material)?;
-        // The bounds were chosen after seeing the results; where A = 0 the condition of the correction is met exactly.
-        let bound = if nu == 1.0 / 3.0 { 2e-3 } else { 0.02 };
-        rows.push(
-            Row::new(format!("{case}, corrected"), "", Some(found))
-                .within_share(inside, bound)
-                .note(format!(
-                    "judged by the interior of the lattice: the factor stands in the energy, so that forces keep a potential; a factor of pair forces, which have none, gives {of_pairs:.3}"
-                )),
-        );
-    }
-    Ok(rows)
+    .into())
 }
 
 const STATE: StressState = StressState::PlaneStress;

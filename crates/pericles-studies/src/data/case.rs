@@ -1,0 +1,238 @@
+//! Functions that the data name: their arguments and results.
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+use pericles_run::RunError;
+use toml::{Table, Value};
+
+use super::template;
+use crate::context::Context;
+use crate::row::Row;
+
+/// A function and the name by which data call it.
+pub(crate) type Measure = (&'static str, fn(&Case<'_>) -> Result<Found, RunError>);
+
+/// What the functions of a study computed for each other, by name.
+pub(super) type Shared = RefCell<BTreeMap<String, Rc<dyn Any>>>;
+
+/// One place of the axes: the arguments of a function.
+pub(crate) struct Case<'a> {
+    arguments: &'a Table,
+    /// What the study is run with.
+    pub(crate) context: &'a Context<'a>,
+    shared: &'a Shared,
+    asked: RefCell<BTreeSet<String>>,
+}
+
+impl<'a> Case<'a> {
+    pub(super) fn new(arguments: &'a Table, context: &'a Context<'a>, shared: &'a Shared) -> Self {
+        Self {
+            arguments,
+            context,
+            shared,
+            asked: RefCell::default(),
+        }
+    }
+
+    /// The arguments that the function has asked for.
+    pub(super) fn into_asked(self) -> BTreeSet<String> {
+        self.asked.into_inner()
+    }
+
+    fn get(&self, name: &str) -> Option<&'a Value> {
+        self.asked.borrow_mut().insert(name.to_owned());
+        self.arguments.get(name)
+    }
+
+    fn lacks(&self, kind: &'static str, name: &str) -> RunError {
+        let place = "the study's data give it in `with` or `axes`";
+        RunError::unknown(kind, name, self.arguments.keys(), place)
+    }
+
+    /// Whether this is given.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.get(name).is_some()
+    }
+
+    /// A number, if it is given.
+    pub(crate) fn optional(&self, name: &str) -> Option<f64> {
+        self.get(name).and_then(number)
+    }
+
+    /// A number.
+    pub(crate) fn number(&self, name: &str) -> Result<f64, RunError> {
+        self.optional(name)
+            .ok_or_else(|| self.lacks("number", name))
+    }
+
+    /// A natural number.
+    pub(crate) fn count(&self, name: &str) -> Result<usize, RunError> {
+        let count = self.number(name)?;
+        if count >= 0.0 && count.fract() == 0.0 {
+            return Ok(count as usize);
+        }
+        Err(self.lacks("natural number", name))
+    }
+
+    /// Whether this is given and true.
+    pub(crate) fn flag(&self, name: &str) -> bool {
+        self.get(name).and_then(Value::as_bool).unwrap_or(false)
+    }
+
+    /// A list of numbers, or a single one.
+    pub(crate) fn numbers(&self, name: &str) -> Result<Vec<f64>, RunError> {
+        let numbers = match self.get(name) {
+            Some(Value::Array(all)) => all.iter().map(number).collect(),
+            other => other.and_then(number).map(|one| vec![one]),
+        };
+        numbers.ok_or_else(|| self.lacks("list of numbers", name))
+    }
+
+    fn expanded(&self, text: &str) -> Result<String, RunError> {
+        let known = |name: &str| {
+            self.asked.borrow_mut().insert(name.to_owned());
+            template::argument(self.arguments, name)
+        };
+        template::expand(text, &known).map_err(|name| self.lacks("argument", &name))
+    }
+
+    /// A text in which names of arguments are replaced.
+    pub(crate) fn text(&self, name: &str) -> Result<String, RunError> {
+        let text = self.get(name).and_then(Value::as_str);
+        self.expanded(text.ok_or_else(|| self.lacks("text", name))?)
+    }
+
+    /// A list of texts in which names of arguments are replaced; empty if it is not given.
+    pub(crate) fn texts(&self, name: &str) -> Result<Vec<String>, RunError> {
+        let all = self.get(name).and_then(Value::as_array);
+        let texts = all.into_iter().flatten().filter_map(Value::as_str);
+        texts.map(|text| self.expanded(text)).collect()
+    }
+
+    /// What a text stands for.
+    pub(crate) fn one_of<T: Clone>(
+        &self,
+        name: &'static str,
+        all: &[(&str, T)],
+    ) -> Result<T, RunError> {
+        let text = self.text(name)?;
+        let found = all.iter().find(|(word, _)| *word == text);
+        found.map(|(_, value)| value.clone()).ok_or_else(|| {
+            let words = all.iter().map(|(word, _)| *word);
+            let allowed = words.clone().collect::<Vec<_>>().join(", ");
+            RunError::unknown(name, &text, words, &format!("allowed: {allowed}"))
+        })
+    }
+
+    /// What is computed once in a study; `key` says with which arguments.
+    pub(crate) fn once<T: 'static>(
+        &self,
+        key: String,
+        compute: impl FnOnce() -> Result<T, RunError>,
+    ) -> Result<Rc<T>, RunError> {
+        let known = self.shared.borrow().get(&key).cloned();
+        if let Some(known) = known.and_then(|known| known.downcast().ok()) {
+            return Ok(known);
+        }
+        let made = Rc::new(compute()?);
+        let kept: Rc<dyn Any> = made.clone();
+        self.shared.borrow_mut().insert(key, kept);
+        Ok(made)
+    }
+}
+
+pub(super) fn number(value: &Value) -> Option<f64> {
+    value.as_float().or(value.as_integer().map(|n| n as f64))
+}
+
+/// A curve of the figures.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    pub(super) name: &'static str,
+    pub(super) label: Option<String>,
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+}
+
+/// What a function found.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    /// Numbers by name; none where what they measure did not happen.
+    values: BTreeMap<String, Option<f64>>,
+    /// Texts by name, for labels and notes.
+    texts: BTreeMap<String, String>,
+    /// Curves.
+    pub(super) curves: Vec<Drawn>,
+    /// Whole rows, where their number is known to the function only.
+    pub(super) rows: Vec<Row>,
+}
+
+impl Found {
+    /// With a number.
+    pub(crate) fn value(mut self, name: impl Into<String>, value: impl Into<Option<f64>>) -> Self {
+        self.values.insert(name.into(), value.into());
+        self
+    }
+
+    /// With a text.
+    pub(crate) fn text(mut self, name: &str, text: impl Into<String>) -> Self {
+        self.texts.insert(name.into(), text.into());
+        self
+    }
+
+    /// With a curve, whose label the data give.
+    pub(crate) fn curve(self, name: &'static str, x: &[f64], y: &[f64]) -> Self {
+        self.labelled(name, None, x, y)
+    }
+
+    /// With a curve that may have a label of its own.
+    pub(crate) fn labelled(
+        mut self,
+        name: &'static str,
+        label: Option<String>,
+        x: &[f64],
+        y: &[f64],
+    ) -> Self {
+        let (x, y) = (x.to_vec(), y.to_vec());
+        self.curves.push(Drawn { name, label, x, y });
+        self
+    }
+
+    /// A number of this name, if there is one.
+    pub(super) fn number(&self, name: &str) -> Option<Option<f64>> {
+        self.values.get(name).copied()
+    }
+
+    /// A number or text of this name.
+    pub(super) fn shown(&self, name: &str) -> Option<Value> {
+        let number = self.values.get(name).copied().flatten().map(Value::Float);
+        number.or_else(|| self.texts.get(name).cloned().map(Value::String))
+    }
+}
+
+impl From<Vec<Row>> for Found {
+    fn from(rows: Vec<Row>) -> Self {
+        Self {
+            rows,
+            ..Self::default()
+        }
+    }
+}
+
+/// The number called `value`.
+impl From<f64> for Found {
+    fn from(value: f64) -> Self {
+        Self::default().value("value", value)
+    }
+}
+
+/// Numbers with their names.
+impl<const N: usize> From<[(&str, f64); N]> for Found {
+    fn from(values: [(&str, f64); N]) -> Self {
+        let put = |found: Self, (name, value)| found.value(name, value);
+        values.into_iter().fold(Self::default(), put)
+    }
+}

@@ -1,0 +1,269 @@
+//! From the data of a study to its rows and figures.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use pericles_io::{Axis, Curve, LineChart};
+use pericles_run::RunError;
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::case::{Case, Found, Measure, Shared, number};
+use super::format::{Figure, Rows, StudyData, Style, When};
+use super::template;
+use crate::context::Context;
+use crate::row::Row;
+
+/// Computes the rows of a study and draws its figures.
+///
+/// # Errors
+/// Names that the data use and nothing has, figures that cannot be written, and what can go wrong with a run.
+pub(crate) fn rows(
+    data: &StudyData,
+    measures: &'static [Measure],
+    context: &Context<'_>,
+) -> Result<Vec<Row>, RunError> {
+    let mut expansion = Expansion {
+        measures,
+        context,
+        figures: &data.figure,
+        shared: Shared::default(),
+        known: Vec::new(),
+        charts: Vec::new(),
+        rows: Vec::new(),
+    };
+    for rows in &data.row {
+        expansion.add(rows, &Place::default())?;
+    }
+    for (file, chart) in &expansion.charts {
+        if let Some(path) = context.figure(file) {
+            chart.write(path)?;
+        }
+    }
+    Ok(expansion.rows)
+}
+
+/// A result, with the arguments that its function asked for.
+struct Known {
+    measure: String,
+    asked: BTreeMap<String, Option<Value>>,
+    found: Rc<Found>,
+}
+
+struct Expansion<'a> {
+    measures: &'static [Measure],
+    context: &'a Context<'a>,
+    figures: &'a [Figure],
+    shared: Shared,
+    known: Vec<Known>,
+    charts: Vec<(String, LineChart)>,
+    rows: Vec<Row>,
+}
+
+/// A place of axes: its number on each, and the arguments there.
+#[derive(Debug, Default, Clone)]
+struct Place {
+    index: Vec<usize>,
+    arguments: Table,
+}
+
+impl Place {
+    /// The places of an axis inside this one.
+    fn along(&self, axis: &BTreeMap<String, Vec<Value>>, full: bool) -> Vec<Self> {
+        let count = axis.values().map(Vec::len).min().unwrap_or(0);
+        let place = |k: usize| {
+            let mut place = self.clone();
+            place.index.push(k);
+            for (name, column) in axis {
+                place.arguments.insert(name.clone(), column[k].clone());
+            }
+            let when = place.arguments.remove("when");
+            let when = when.map_or(Some(When::Always), |when| When::deserialize(when).ok());
+            when.is_some_and(|when| when.holds(full)).then_some(place)
+        };
+        (0..count).filter_map(place).collect()
+    }
+
+    /// The entry of a list of lists here; a list of one entry holds for all places of its axis.
+    fn entry<'a>(&self, cells: Option<&'a Value>) -> Option<&'a Value> {
+        let enter = |cells: &'a Value, k: &usize| match cells {
+            Value::Array(list) if list.len() == 1 => list.first(),
+            Value::Array(list) => list.get(*k),
+            single => Some(single),
+        };
+        self.index.iter().try_fold(cells?, enter)
+    }
+}
+
+impl Expansion<'_> {
+    /// Adds the rows of one entry of the data.
+    fn add(&mut self, rows: &Rows, around: &Place) -> Result<(), RunError> {
+        if !rows.when.holds(self.context.full) {
+            return Ok(());
+        }
+        let mut start = around.clone();
+        start.arguments.extend(rows.with.clone());
+        let mut places = vec![start];
+        for axis in &rows.axes {
+            let along = |place: &Place| place.along(axis, self.context.full);
+            places = places.iter().flat_map(along).collect();
+        }
+        for place in &places {
+            for inner in &rows.row {
+                self.add(&inner.within(rows), place)?;
+            }
+            if rows.row.is_empty() {
+                self.add_row(rows, place)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn add_row(&mut self, row: &Rows, place: &Place) -> Result<(), RunError> {
+        let name = row.measure.as_deref().unwrap_or_default();
+        let found = self.found(name, &place.arguments)?;
+        self.draw(&row.draw, place, &found)?;
+        let Some(label) = &row.label else {
+            self.rows.extend(found.rows.iter().cloned());
+            return Ok(());
+        };
+        let text = |text: &str| expanded(text, place, &found);
+        let value = text(row.value.as_deref().unwrap_or("value"))?;
+        let computed = found.number(&value);
+        let computed = computed.ok_or_else(|| unknown("result", &value))?;
+        let number = |cells: &Option<Value>| number_of(place.entry(cells.as_ref()), place, &found);
+        let mut made = Row::new(text(label)?, row.unit.clone().unwrap_or_default(), computed);
+        made.printed = number(&row.printed)?;
+        made.expected = match &row.expected {
+            Some(Value::String(name)) if name == "printed" => made.printed,
+            expected => number(expected)?,
+        };
+        made.absolute = row.absolute.is_some() && made.expected.is_some();
+        let tolerance = row.absolute.as_ref().or(row.relative.as_ref()).cloned();
+        if made.expected.is_some() {
+            made.tolerance = number(&tolerance)?.unwrap_or_default();
+        }
+        if let Some(Value::String(note)) = place.entry(row.note.as_ref()) {
+            made.note = text(note)?;
+        }
+        self.rows.push(made);
+        Ok(())
+    }
+
+    /// The result of a function, which runs once for the same arguments.
+    fn found(&mut self, name: &str, arguments: &Table) -> Result<Rc<Found>, RunError> {
+        let same = |known: &&Known| {
+            let mut asked = known.asked.iter();
+            let now = |name: &str| template::argument(arguments, name);
+            known.measure == name && asked.all(|(name, value)| now(name) == *value)
+        };
+        if let Some(known) = self.known.iter().find(same) {
+            return Ok(Rc::clone(&known.found));
+        }
+        let measure = self.measures.iter().find(|(known, _)| *known == name);
+        let (_, measure) = measure.ok_or_else(|| unknown("measure", name))?;
+        let case = Case::new(arguments, self.context, &self.shared);
+        let found = Rc::new(measure(&case)?);
+        let asked = case.into_asked().into_iter();
+        self.known.push(Known {
+            measure: name.to_owned(),
+            asked: asked
+                .map(|name| {
+                    let value = template::argument(arguments, &name);
+                    (name, value)
+                })
+                .collect(),
+            found: Rc::clone(&found),
+        });
+        Ok(found)
+    }
+
+    fn draw(&mut self, names: &[String], place: &Place, found: &Found) -> Result<(), RunError> {
+        if self.context.figures.is_none() {
+            return Ok(());
+        }
+        for name in names {
+            let figure = self.figures.iter().find(|figure| figure.curves == *name);
+            let figure = figure.ok_or_else(|| unknown("figure", name))?;
+            let text = |text: &str| expanded(text, place, found);
+            let file = text(&figure.file)?;
+            let known = self.charts.iter().position(|(known, _)| *known == file);
+            let mut chart = match known {
+                Some(known) => self.charts.remove(known).1,
+                None => figure.chart(text(&figure.title)?),
+            };
+            for drawn in found.curves.iter().filter(|drawn| drawn.name == *name) {
+                let label = match &drawn.label {
+                    Some(label) => label.clone(),
+                    None => text(&figure.label)?,
+                };
+                chart = chart.curve(figure.curve(label, &drawn.x, &drawn.y));
+            }
+            self.charts
+                .insert(known.unwrap_or(self.charts.len()), (file, chart));
+        }
+        Ok(())
+    }
+}
+
+impl Figure {
+    fn chart(&self, title: String) -> LineChart {
+        let [x, y] = [&self.x, &self.y].map(|[name, unit]| Axis::new(name, unit));
+        let y = if self.logarithmic { y.logarithmic() } else { y };
+        let mut chart = LineChart::new(x, y);
+        if !title.is_empty() {
+            chart = chart.title(title);
+        }
+        if self.key_beside {
+            chart = chart.key_beside();
+        }
+        chart
+    }
+
+    fn curve(&self, label: String, x: &[f64], y: &[f64]) -> Curve {
+        match self.style {
+            Style::Line => Curve::line(label, x, y),
+            Style::Dashed => Curve::line(label, x, y).dashed(),
+            Style::Markers => Curve::line(label, x, y).with_markers(),
+            Style::Points => Curve::points(label, x, y),
+        }
+    }
+}
+
+fn unknown(kind: &'static str, name: &str) -> RunError {
+    RunError::unknown(kind, name, [""; 0], "the study's data name it")
+}
+
+/// An argument, in whose text names are replaced, or a result.
+fn shown(name: &str, place: &Place, found: &Found) -> Option<Value> {
+    match place.arguments.get(name) {
+        None => found.shown(name),
+        Some(Value::String(text)) => {
+            let inner = template::expand(text, &|other| shown(other, place, found));
+            inner.ok().map(Value::String)
+        }
+        Some(value) => Some(value.clone()),
+    }
+}
+
+/// A template with the arguments and the results of a place.
+fn expanded(text: &str, place: &Place, found: &Found) -> Result<String, RunError> {
+    template::expand(text, &|name| shown(name, place, found))
+        .map_err(|name| unknown("argument or result", &name))
+}
+
+/// The number that a cell holds, or names; none for NaN.
+fn number_of(cell: Option<&Value>, place: &Place, found: &Found) -> Result<Option<f64>, RunError> {
+    let Some(cell) = cell else {
+        return Ok(None);
+    };
+    let value = match cell {
+        Value::String(name) => match (place.arguments.get(name), found.number(name)) {
+            (Some(argument), _) => number(argument),
+            (None, Some(value)) => value,
+            _ => return Err(unknown("argument or result", name)),
+        },
+        cell => Some(number(cell).ok_or_else(|| unknown("number", &cell.to_string()))?),
+    };
+    Ok(value.filter(|value| !value.is_nan()))
+}

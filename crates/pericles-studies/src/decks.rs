@@ -1,0 +1,46 @@
+//! The decks of the studies.
+
+use pericles_deck::Deck;
+use pericles_run::RunError;
+
+use crate::data::Case;
+
+/// The decks in a list of files of the repository.
+macro_rules! decks {
+    ($($file:literal),* $(,)?) => {
+        [$(($file, include_str!(concat!("../../../", $file)))),*]
+    };
+}
+
+const DECKS: [(&str, &str); 15] = decks![
+    "examples/fracture/branching.toml",
+    "examples/multi-time-step/inclusion.toml",
+    "validation/dispersion-and-fracture/inclined.toml",
+    "validation/manifolds/paper-calibrated.toml",
+    "validation/manifolds/poles.toml",
+    "validation/manifolds/standard.toml",
+    "validation/multi-time-step/block.toml",
+    "validation/multi-time-step/clamped.toml",
+    "validation/multi-time-step/crack.toml",
+    "validation/multi-time-step/free.toml",
+    "validation/multi-time-step/plate-nonlinear.toml",
+    "validation/multi-time-step/plate.toml",
+    "validation/multi-time-step/pull.toml",
+    "validation/multi-time-step/speed.toml",
+    "validation/multi-time-step/two-grid.toml",
+];
+
+/// The deck of a case: the argument `deck` is a file of the repository or the text of a deck, and `set` a list of changes.
+pub(crate) fn deck(case: &Case<'_>, changes: &[String]) -> Result<Deck, RunError> {
+    let given = case.text("deck")?;
+    let (name, text) = match given.contains('\n') {
+        true => ("study.toml", &given[..]),
+        false => {
+            let name = given.rsplit('/').next().unwrap_or(&given);
+            (name, case.one_of("deck", &DECKS)?)
+        }
+    };
+    let mut all = case.texts("set")?;
+    all.extend_from_slice(changes);
+    Ok(Deck::parse(text, name, &all)?)
+}

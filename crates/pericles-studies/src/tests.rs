@@ -1,0 +1,111 @@
+//! Studies are found by name, their data name what there is, and the judged rows of the cheap ones hold.
+
+use super::*;
+
+fn hold(ids: &[&str]) {
+    let context = Context {
+        full: false,
+        figures: None,
+        tell: &|_| {},
+    };
+    for id in ids {
+        let rows = find(id).unwrap().run(&context).unwrap();
+        let failed: Vec<&Row> = rows.iter().filter(|r| r.pass() == Some(false)).collect();
+        assert!(failed.is_empty(), "{id}: {failed:#?}");
+        assert!(rows.iter().any(|row| row.pass() == Some(true)), "{id}");
+    }
+}
+
+/// Every study of a topic.
+fn hold_all_of(topic: &Topic) {
+    let ids: Vec<&str> = topic.studies.iter().map(|(id, _)| *id).collect();
+    hold(&ids);
+}
+
+#[test]
+fn dispersion() {
+    hold(&[
+        "dispersion/one-dimensional",
+        "dispersion/two-dimensional",
+        "dispersion/three-dimensional",
+        "dispersion/influence",
+        "dispersion/critical-stretch",
+    ]);
+}
+
+#[test]
+fn manifolds() {
+    hold(&[
+        "manifolds/geodesics",
+        "manifolds/figure-2",
+        "manifolds/convergence",
+    ]);
+}
+
+/// Every study whose rows do not depend on the clock.
+#[test]
+fn multi_time_step() {
+    hold(&[
+        "multi-time-step/plate",
+        "multi-time-step/plate-nonlinear",
+        "multi-time-step/block",
+        "multi-time-step/crack",
+        "multi-time-step/stability",
+        "multi-time-step/energy",
+        "multi-time-step/two-grid",
+    ]);
+}
+
+#[test]
+fn nonlocal_wave() {
+    hold_all_of(&nonlocal_wave::TOPIC);
+}
+
+#[test]
+fn numerics() {
+    hold_all_of(&numerics::TOPIC);
+}
+
+#[test]
+fn state_based() {
+    hold_all_of(&state_based::TOPIC);
+}
+
+#[test]
+fn studies_are_found_by_name_only() {
+    for study in studies() {
+        assert_eq!(find(study.id).ok().map(|s| s.id), Some(study.id));
+    }
+    let Err(RunError::Unknown { hint, .. }) = find("fracture/branch") else {
+        panic!("found");
+    };
+    assert!(hint.contains("fracture/branching"), "{hint}");
+    let Err(RunError::Unknown { hint, .. }) = find("zzz") else {
+        panic!("found");
+    };
+    assert!(!hint.contains("did you mean"), "{hint}");
+}
+
+#[test]
+fn one_failing_row_fails_the_study() {
+    let information = Row::new("a", "", Some(f64::NAN));
+    let holds = Row::new("b", "", Some(1.0)).within(1.0, 0.0);
+    let fails = Row::new("c", "", None).within(1.0, 1.0);
+    assert!(all_hold(&[]));
+    assert!(all_hold(&[information.clone(), holds.clone()]));
+    assert!(!all_hold(&[information, fails, holds]));
+}
+
+#[test]
+fn names_are_unique() {
+    for (k, study) in studies().enumerate() {
+        assert!(studies().take(k).all(|other| other.id != study.id));
+    }
+}
+
+#[test]
+fn data_name_measures_and_figures_that_exist() {
+    for study in studies() {
+        assert_eq!(study.unknown_names(), [""; 0], "{}", study.id);
+    }
+}
