@@ -4,10 +4,10 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pericles::Interrupt;
-use pericles::bench::Case;
 use pericles::family::pairs_within;
 use pericles::operator::{BondForm, On};
 use pericles::time::{Integrator, VelocityVerlet};
+use pericles_bench::Case;
 
 fn cases() -> Vec<(String, Case)> {
     let mut cases = Vec::new();

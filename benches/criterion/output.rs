@@ -3,11 +3,11 @@
 //! `cd benches/criterion && cargo bench --bench output`; throughput is in points.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use pericles::bench::Case;
 use pericles::observe::Observer;
 use pericles::operator::BondForm;
 use pericles::time::VelocityVerlet;
 use pericles::{Archive, Saved, Simulation};
+use pericles_bench::Case;
 use pericles_io::observers::FieldSeries;
 
 fn output(criterion: &mut Criterion) {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pericles::bench::{self, Case, Timing};
+use pericles_bench::{Case, Timing};
 use pericles_run::{RunError, machine};
 use serde::Serialize;
 
@@ -91,7 +91,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     }
     let mut timings = Vec::new();
     for case in &cases {
-        let timing = bench::run(case, ROUNDS)?;
+        let timing = pericles_bench::run(case, ROUNDS)?;
         if table {
             console::print(format_args!(
                 "{:<20} {:>8} {:>8} {:>10} {:>12} {:>8.3} {:>11.0} {:>6.1} {:>8.0}% {:>8.0}",

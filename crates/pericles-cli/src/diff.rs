@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use pericles::sum::max_norm;
 use pericles_io::{IoError, read_csv};
 use pericles_run::units::quantity;
 use pericles_run::{FieldFile, Results};
@@ -187,12 +188,7 @@ impl Tally {
 
     /// Adds values that share one size; `place` names the k-th of them.
     fn add(&mut self, a: &[f64], b: &[f64], place: impl Fn(usize) -> String) {
-        let finite = |values: &[f64]| {
-            values
-                .iter()
-                .filter(|x| x.is_finite())
-                .fold(0.0, |most: f64, x| most.max(x.abs()))
-        };
+        let finite = |values: &[f64]| max_norm(values.iter().filter(|x| x.is_finite()));
         let size = finite(a).max(finite(b));
         self.row.values += a.len().min(b.len());
         for (k, (&a, &b)) in a.iter().zip(b).enumerate() {

@@ -59,6 +59,7 @@ mod picture;
 mod points;
 mod result_body;
 mod rows;
+mod text_error;
 mod vtk;
 mod whole;
 mod xml;
@@ -74,12 +75,13 @@ pub use mesh::{
     parse_mesh, parse_surface, read_fields, read_mesh, read_surface,
 };
 pub use npz::NpzWriter;
-pub use outline::{OutlineError, parse_outline, read_outline};
+pub use outline::{parse_outline, read_outline};
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
 };
-pub use points::{PointsError, parse_points, read_points};
+pub use points::{parse_points, read_points};
 pub use result_body::{ResultBody, write_error};
-pub use rows::{RowsError, parse_rows, read_rows};
+pub use rows::{parse_rows, read_rows};
+pub use text_error::TextError;
 pub use vtk::{PvdSeries, VtkField, VtuCells, VtuFile};
 pub use xml::escaped;

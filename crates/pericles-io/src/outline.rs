@@ -1,44 +1,16 @@
 //! Outlines from text: a line `x y` for each corner, a blank line or `#` between polygons.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::IoError;
+use crate::TextError;
 use crate::points::words;
 use crate::whole::read_whole;
-
-/// Why a file gives no outline.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum OutlineError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Io(#[from] IoError),
-    /// A line that is no corner.
-    #[error("{}:{line}: {reason}", path.display())]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong, and what is allowed.
-        reason: String,
-    },
-    /// No corner at all.
-    #[error("{}: no corners; an outline has a line `x y` for each, and blank lines between polygons", path.display())]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
-}
 
 /// Reads the polygons of an outline, in the file's unit of length.
 ///
 /// # Errors
 /// A file that cannot be read or needs more than `memory` bytes; the first line that is not two finite numbers; a file without corners.
-pub fn read_outline(
-    path: impl AsRef<Path>,
-    memory: u64,
-) -> Result<Vec<Vec<[f64; 2]>>, OutlineError> {
+pub fn read_outline(path: impl AsRef<Path>, memory: u64) -> Result<Vec<Vec<[f64; 2]>>, TextError> {
     /// A corner takes sixteen bytes and has at least four characters; a list that grows has room for twice its length.
     const EXPANSION: u64 = 9;
     let path = path.as_ref();
@@ -52,17 +24,12 @@ pub fn read_outline(
 pub fn parse_outline(
     name: impl AsRef<Path>,
     content: &[u8],
-) -> Result<Vec<Vec<[f64; 2]>>, OutlineError> {
-    let path = || name.as_ref().to_path_buf();
+) -> Result<Vec<Vec<[f64; 2]>>, TextError> {
     let content = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
     let mut polygons: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut is_open = false;
     for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
-        let refused = |reason: String| OutlineError::Line {
-            path: path(),
-            line: k + 1,
-            reason,
-        };
+        let refused = |reason: String| TextError::line(&name, k + 1, reason);
         let line = std::str::from_utf8(line)
             .map_err(|_| refused("the line is not text in UTF-8".into()))?;
         let words = words(line);
@@ -96,7 +63,10 @@ pub fn parse_outline(
         }
     }
     match polygons.is_empty() {
-        true => Err(OutlineError::Empty { path: path() }),
+        true => Err(TextError::whole(
+            &name,
+            "no corners; an outline has a line `x y` for each, and blank lines between polygons",
+        )),
         false => Ok(polygons),
     }
 }

@@ -9,49 +9,12 @@
 //! Without a header the columns are `x y z block volume`, or, for bodies of fewer dimensions, also `x y block volume` and `x block volume`. Lengths are in m,
 //! volumes in m³. This is what PeriLab and Peridigm write.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use pericles::space::ListedPoints;
 
-use crate::IoError;
+use crate::TextError;
 use crate::whole::read_whole;
-
-/// Why a file gives no points.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PointsError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Io(#[from] IoError),
-    /// A line that holds something else than it should.
-    #[error("{}:{line}: {reason}", path.display())]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong, and what is allowed.
-        reason: String,
-    },
-    /// A mesh, which lists nodes and elements but no points with volumes.
-    #[error(
-        "{} is a mesh ({format}), not a list of points; write a line `x y z block volume` for each element, with its centre in m and its volume in m³ \
-         (Python's meshio reads most meshes), or use a closed surface of triangles as shape = \"surface\"",
-        path.display()
-    )]
-    Mesh {
-        /// The file.
-        path: PathBuf,
-        /// Which format.
-        format: &'static str,
-    },
-    /// A file without points.
-    #[error("{}: it holds no point; each point is a line `x y z block volume`", path.display())]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
-}
 
 /// Reads the points of a body of this dimension. Coordinates beyond it must be the same for all points; the body does not use them.
 ///
@@ -61,7 +24,7 @@ pub fn read_points(
     path: impl AsRef<Path>,
     dimension: usize,
     memory: u64,
-) -> Result<ListedPoints, PointsError> {
+) -> Result<ListedPoints, TextError> {
     /// A point takes 44 bytes, twice that while the list grows; the shortest line has ten.
     const EXPANSION: u64 = 10;
     let path = path.as_ref();
@@ -77,19 +40,20 @@ pub fn parse_points(
     name: impl AsRef<Path>,
     content: &[u8],
     dimension: usize,
-) -> Result<ListedPoints, PointsError> {
-    let path = || name.as_ref().to_path_buf();
+) -> Result<ListedPoints, TextError> {
     parse(content, dimension).map_err(|wrong| match (mesh_format(name.as_ref(), content), wrong) {
-        (Some(format), _) => PointsError::Mesh {
-            path: path(),
-            format,
-        },
-        (None, Some(Wrong { line, reason })) => PointsError::Line {
-            path: path(),
-            line,
-            reason,
-        },
-        (None, None) => PointsError::Empty { path: path() },
+        (Some(format), _) => TextError::whole(
+            name,
+            format!(
+                "this is a mesh ({format}), not a list of points; write a line `x y z block volume` for each element, with its centre in m and its volume in m³ \
+                 (Python's meshio reads most meshes), or use a closed surface of triangles as shape = \"surface\""
+            ),
+        ),
+        (None, Some(Wrong { line, reason })) => TextError::line(name, line, reason),
+        (None, None) => TextError::whole(
+            name,
+            "it holds no point; each point is a line `x y z block volume`",
+        ),
     })
 }
 
@@ -464,7 +428,7 @@ mod tests {
         ] {
             let error = parse_points(name, content.as_bytes(), 3).unwrap_err();
             let message = error.to_string();
-            let says = format!("{name} is a mesh ({format}), not a list of points");
+            let says = format!("{name}: this is a mesh ({format}), not a list of points");
             assert!(message.starts_with(&says), "{message}");
         }
         // A list of points may be called as it likes.

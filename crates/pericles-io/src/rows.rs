@@ -1,39 +1,10 @@
 //! Tables of numbers from text: a line for each row, `#` or `!` begins a comment, numbers are separated by commas or blanks.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::IoError;
+use crate::TextError;
 use crate::points::words;
 use crate::whole::read_whole;
-
-/// Why a file gives no table.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RowsError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    Io(#[from] IoError),
-    /// A line that holds something else than it should.
-    #[error("{}:{line}: {reason}", path.display())]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong, and what is allowed.
-        reason: String,
-    },
-    /// Too few rows.
-    #[error("{}: lines of numbers: {found}; needed: {needed}", path.display())]
-    TooFew {
-        /// The file.
-        path: PathBuf,
-        /// Rows in the file.
-        found: usize,
-        /// Rows needed.
-        needed: usize,
-    },
-}
 
 /// Reads a table of so many rows, with a column for each name; the numbers row by row.
 ///
@@ -45,7 +16,7 @@ pub fn read_rows(
     rows: usize,
     columns: &[&str],
     memory: u64,
-) -> Result<Vec<f64>, RowsError> {
+) -> Result<Vec<f64>, TextError> {
     /// A number takes eight bytes and has two characters with the blank behind it; a list that grows has room for twice its length.
     const EXPANSION: u64 = 9;
     let path = path.as_ref();
@@ -62,16 +33,11 @@ pub fn parse_rows(
     content: &[u8],
     rows: usize,
     columns: &[&str],
-) -> Result<Vec<f64>, RowsError> {
-    let path = || name.as_ref().to_path_buf();
+) -> Result<Vec<f64>, TextError> {
     let content = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
     let mut numbers = Vec::new();
     for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
-        let refused = |reason: String| RowsError::Line {
-            path: path(),
-            line: k + 1,
-            reason,
-        };
+        let refused = |reason: String| TextError::line(&name, k + 1, reason);
         let line = std::str::from_utf8(line).map_err(|_| {
             refused("this is no text in UTF-8; the numbers are given as text".into())
         })?;
@@ -104,11 +70,8 @@ pub fn parse_rows(
     }
     let found = numbers.len() / columns.len().max(1);
     if found < rows {
-        return Err(RowsError::TooFew {
-            path: path(),
-            found,
-            needed: rows,
-        });
+        let reason = format!("lines of numbers: {found}; needed: {rows}");
+        return Err(TextError::whole(&name, reason));
     }
     Ok(numbers)
 }
@@ -116,6 +79,7 @@ pub fn parse_rows(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::IoError;
 
     const COLUMNS: [&str; 2] = ["u_x", "v_x"];
 
@@ -165,7 +129,7 @@ mod tests {
         assert!(read_rows(&path, 2, &COLUMNS, 100).is_ok());
         let error = read_rows(&path, 2, &COLUMNS, 50).unwrap_err();
         assert!(
-            matches!(error, RowsError::Io(IoError::TooLarge { .. })),
+            matches!(error, TextError::Io(IoError::TooLarge { .. })),
             "{error}"
         );
     }

@@ -3,16 +3,12 @@
 //! `RAYON_NUM_THREADS=1 cargo bench -p pericles-manifold --bench surface`: CPU time per directed bond, and the rate at which the bonds are read, beside the rate at which
 //! this machine reads as many bytes and does nothing else. All cases are taken in turn, round after round, so that they meet the same load.
 
-#[path = "../../pericles/benches/clock/mod.rs"]
-mod clock;
-
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
-use clock::cpu_seconds;
-use pericles::bench::read;
 use pericles::operator::{Force, InstructionSet, On};
+use pericles_bench::{cpu_seconds, read};
 use pericles_manifold::force::{DisplacementBond, Exponent, HalfInteger, SurfaceBody};
 use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
 use pericles_manifold::surface::{AreaRule, Surface};

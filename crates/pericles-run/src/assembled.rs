@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use pericles::cache::{Cache, NoCache};
 use pericles_io::{
-    DiskCache, IoError, MeshError, OutlineError, PointsError, RowsError, read_mesh, read_outline,
-    read_points, read_rows, read_surface,
+    DiskCache, IoError, MeshError, TextError, read_mesh, read_outline, read_points, read_rows,
+    read_surface,
 };
 
 use crate::build::{Assembly, FileError, Resources, assemble, discretise};
@@ -109,38 +109,29 @@ impl Means {
 pub fn readers() -> Resources<'static> {
     Resources {
         cache: &NoCache,
-        read_surface: &|path, memory| {
-            read_surface(path, memory).map_err(|error| match &error {
-                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
-                _ => FileError::Wrong(error.to_string()),
-            })
-        },
+        read_surface: &|path, memory| read_surface(path, memory).map_err(mesh_fault),
         read_points: &|path, dimension, memory| {
-            read_points(path, dimension, memory).map_err(|error| match &error {
-                PointsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
-                _ => FileError::Wrong(error.to_string()),
-            })
+            read_points(path, dimension, memory).map_err(text_fault)
         },
-        read_mesh: &|path, memory| {
-            read_mesh(path, memory).map_err(|error| match &error {
-                MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
-                _ => FileError::Wrong(error.to_string()),
-            })
-        },
-        read_outline: &|path, memory| {
-            read_outline(path, memory).map_err(|error| match &error {
-                OutlineError::Io(IoError::TooLarge { .. }) => {
-                    FileError::TooLarge(error.to_string())
-                }
-                _ => FileError::Wrong(error.to_string()),
-            })
-        },
+        read_mesh: &|path, memory| read_mesh(path, memory).map_err(mesh_fault),
+        read_outline: &|path, memory| read_outline(path, memory).map_err(text_fault),
         read_table: &|path, rows, columns, memory| {
-            read_rows(path, rows, columns, memory).map_err(|error| match &error {
-                RowsError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
-                _ => FileError::Wrong(error.to_string()),
-            })
+            read_rows(path, rows, columns, memory).map_err(text_fault)
         },
         ..Resources::default()
+    }
+}
+
+fn mesh_fault(error: MeshError) -> FileError {
+    match &error {
+        MeshError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+        _ => FileError::Wrong(error.to_string()),
+    }
+}
+
+fn text_fault(error: TextError) -> FileError {
+    match &error {
+        TextError::Io(IoError::TooLarge { .. }) => FileError::TooLarge(error.to_string()),
+        _ => FileError::Wrong(error.to_string()),
     }
 }

@@ -137,7 +137,6 @@
 
 mod accounts;
 pub mod archive;
-pub mod bench;
 mod body;
 pub mod boundary;
 mod breaking;

@@ -213,6 +213,12 @@ impl SavedUnder for BinnedSum {
     }
 }
 
+/// The maximum norm max |xᵢ|, zero of no numbers; entries that are not a number are passed over.
+pub fn max_norm<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> f64 {
+    let sizes = numbers.into_iter().map(|x| x.abs());
+    sizes.fold(0.0, f64::max)
+}
+
 /// Σ term(i) for i < n, on all cores of this process.
 pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     BinnedSum::of(n, term).value()

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use pericles::operator::InstructionSet;
+use pericles::sum::max_norm;
 
 use crate::error::CliError;
 
@@ -50,7 +51,7 @@ pub(super) fn direction(text: &str) -> Result<Direction, String> {
     for (component, number) in vector.iter_mut().zip(numbers) {
         *component = number.trim().parse().map_err(|_| allowed.to_owned())?;
     }
-    let largest = vector.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let largest = max_norm(&vector);
     let length: f64 = vector.iter().map(|x| x * x).sum();
     if vector.iter().all(|x| x.is_finite()) && largest > 0.0 {
         if length == 0.0 || !length.is_finite() {

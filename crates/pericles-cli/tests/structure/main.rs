@@ -21,6 +21,7 @@ const LONGEST_FILE: usize = 500;
 /// The crates of the workspace, each with the crates of the workspace that it may depend on. A crate comes after its dependencies.
 const CRATES: &[(&str, &[&str])] = &[
     ("pericles", &[]),
+    ("pericles-bench", &["pericles"]),
     ("pericles-waves", &["pericles"]),
     ("pericles-manifold", &["pericles"]),
     ("pericles-dispersion", &["pericles"]),
@@ -79,6 +80,7 @@ const CRATES: &[(&str, &[&str])] = &[
         "pericles-cli",
         &[
             "pericles",
+            "pericles-bench",
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",

@@ -1,7 +1,11 @@
-//! A picture in memory: antialiased strokes and convex shapes, and the PNG file.
+//! A picture in memory: smoothed strokes and areas by `tiny-skia`, and the PNG file.
 
 use std::io::{self, Write};
 use std::path::Path;
+
+use tiny_skia::{
+    FillRule, LineCap, LineJoin, Paint, PathBuilder, PixmapMut, Rect, Stroke, StrokeDash, Transform,
+};
 
 use crate::{IoError, write_atomically};
 
@@ -14,12 +18,16 @@ pub(super) const INK: Rgb = [38, 38, 38];
 /// The sizes that are drawn, in pixels; a raster of the largest still fits into memory.
 pub(super) const SIZES: std::ops::RangeInclusive<u32> = 200..=16_000;
 
+/// Segments that are rasterised together. The time grows with the square of their number where they cross the same rows.
+const TOGETHER: usize = 500;
+
 /// Pixels in rows from the top; the pixel (i, j) covers the square from (i, j) to (i + 1, j + 1).
 #[derive(Debug, Clone)]
 pub(super) struct Bitmap {
     width: usize,
     height: usize,
-    rgb: Vec<u8>,
+    /// Red, green, blue, and 255.
+    rgba: Vec<u8>,
 }
 
 impl Bitmap {
@@ -27,7 +35,7 @@ impl Bitmap {
         Self {
             width,
             height,
-            rgb: vec![255; 3 * width * height],
+            rgba: vec![255; 4 * width * height],
         }
     }
 
@@ -43,8 +51,13 @@ impl Bitmap {
 
     #[cfg(test)]
     pub(super) fn pixel(&self, i: usize, j: usize) -> Rgb {
-        let at = 3 * (j * self.width + i);
-        [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
+        let at = 4 * (j * self.width + i);
+        [self.rgba[at], self.rgba[at + 1], self.rgba[at + 2]]
+    }
+
+    fn rgb(&self) -> Vec<u8> {
+        let pixels = self.rgba.chunks_exact(4);
+        pixels.flat_map(|pixel| &pixel[..3]).copied().collect()
     }
 
     /// Lays a colour over a pixel; pixels outside are left out.
@@ -55,18 +68,24 @@ impl Bitmap {
         if i >= self.width || j >= self.height {
             return;
         }
-        let at = 3 * (j * self.width + i);
+        let at = 4 * (j * self.width + i);
         if cover >= 1.0 {
-            self.rgb[at..at + 3].copy_from_slice(&colour);
+            self.rgba[at..at + 3].copy_from_slice(&colour);
             return;
         }
         let cover = cover.max(0.0);
-        for (old, new) in self.rgb[at..at + 3].iter_mut().zip(colour) {
+        for (old, new) in self.rgba[at..at + 3].iter_mut().zip(colour) {
             let mixed = f64::from(*old) * (1.0 - cover) + f64::from(new) * cover;
             *old = mixed.round() as u8;
         }
     }
 
+    /// The page that `tiny-skia` draws on; none without pixels.
+    fn page(&mut self) -> Option<PixmapMut<'_>> {
+        PixmapMut::from_bytes(&mut self.rgba, self.width as u32, self.height as u32)
+    }
+
+    /// Fills a rectangle with its sides rounded to whole pixels.
     pub(super) fn fill_rectangle(
         &mut self,
         from: (f64, f64),
@@ -74,93 +93,74 @@ impl Bitmap {
         colour: Rgb,
         cover: f64,
     ) {
-        for j in from.1.round() as i64..to.1.round() as i64 {
-            for i in from.0.round() as i64..to.0.round() as i64 {
-                self.blend(i, j, colour, cover);
-            }
+        let [left, top, right, bottom] = [from.0, from.1, to.0, to.1].map(|x| x.round() as f32);
+        let rectangle = Rect::from_ltrb(left, top, right, bottom);
+        if let (Some(rectangle), Some(mut page)) = (rectangle, self.page()) {
+            page.fill_rect(
+                rectangle,
+                &paint(colour, cover),
+                Transform::identity(),
+                None,
+            );
         }
     }
 
-    /// Strokes with round ends and joints. All are laid down in one go, so that where they overlap is not seen.
-    pub(super) fn stroke(&mut self, lines: &[Vec<(f64, f64)>], width: f64, colour: Rgb) {
-        let mut cover = vec![0_u8; self.width * self.height];
+    /// Strokes with round ends and joints; `dash` holds the lengths of dashes and gaps. A single point is a dot.
+    pub(super) fn stroke(
+        &mut self,
+        lines: &[Vec<(f64, f64)>],
+        width: f64,
+        dash: Option<[f64; 2]>,
+        colour: Rgb,
+    ) {
+        let dash = dash.map(|lengths| lengths.map(|length| length as f32).to_vec());
+        let stroke = Stroke {
+            width: width as f32,
+            line_cap: LineCap::Round,
+            line_join: LineJoin::Round,
+            dash: dash.and_then(|lengths| StrokeDash::new(lengths, 0.0)),
+            ..Stroke::default()
+        };
+        // The pattern of dashes runs on over the whole line.
+        let together = match stroke.dash {
+            Some(_) => usize::MAX,
+            None => TOGETHER,
+        };
+        let Some(mut page) = self.page() else {
+            return;
+        };
         for line in lines {
-            if let [point] = line[..] {
-                self.cover_segment(&mut cover, point, point, width);
-            }
-            for pair in line.windows(2) {
-                self.cover_segment(&mut cover, pair[0], pair[1], width);
-            }
-        }
-        for (at, &cover) in cover.iter().enumerate().filter(|(_, cover)| **cover > 0) {
-            let (i, j) = (at % self.width, at / self.width);
-            self.blend(i as i64, j as i64, colour, f64::from(cover) / 255.0);
-        }
-    }
-
-    fn cover_segment(&self, cover: &mut [u8], a: (f64, f64), b: (f64, f64), width: f64) {
-        let radius = width / 2.0;
-        let reach = radius + 1.0;
-        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let length_squared = dx * dx + dy * dy;
-        let rows = |y: f64| (y.max(0.0) as usize).min(self.height);
-        let columns = |x: f64| (x.max(0.0) as usize).min(self.width);
-        for j in rows(a.1.min(b.1) - reach)..rows(a.1.max(b.1) + reach + 1.0) {
-            let y = j as f64 + 0.5;
-            // The part of the segment that can reach this row
-            let (mut s, mut e) = (0.0, 1.0);
-            if dy != 0.0 {
-                let (first, last) = ((y - reach - a.1) / dy, (y + reach - a.1) / dy);
-                s = first.min(last).clamp(0.0, 1.0);
-                e = first.max(last).clamp(0.0, 1.0);
-            }
-            let (x0, x1) = (a.0 + s * dx, a.0 + e * dx);
-            for i in columns(x0.min(x1) - reach)..columns(x0.max(x1) + reach + 1.0) {
-                let x = i as f64 + 0.5;
-                let along = if length_squared > 0.0 {
-                    (((x - a.0) * dx + (y - a.1) * dy) / length_squared).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
-                let distance = (x - a.0 - along * dx).hypot(y - a.1 - along * dy);
-                let amount = ((radius + 0.5 - distance).clamp(0.0, 1.0) * 255.0).round() as u8;
-                let at = j * self.width + i;
-                cover[at] = cover[at].max(amount);
+            for first in (0..line.len().max(2) - 1).step_by(together) {
+                let end = first.saturating_add(together).saturating_add(1);
+                if let Some(path) = path(&line[first..end.min(line.len())]).finish() {
+                    let paint = paint(colour, 1.0);
+                    page.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
+                }
             }
         }
     }
 
     pub(super) fn fill_disc(&mut self, (x, y): (f64, f64), radius: f64, colour: Rgb) {
-        for j in (y - radius).floor() as i64 - 1..=(y + radius).ceil() as i64 {
-            for i in (x - radius).floor() as i64 - 1..=(x + radius).ceil() as i64 {
-                let distance = (i as f64 + 0.5 - x).hypot(j as f64 + 0.5 - y);
-                self.blend(i, j, colour, radius + 0.5 - distance);
-            }
-        }
+        let mut circle = PathBuilder::new();
+        circle.push_circle(x as f32, y as f32, radius as f32);
+        self.fill(circle, colour);
     }
 
-    /// A convex polygon, its corners clockwise on the screen.
-    pub(super) fn fill_convex(&mut self, corners: &[(f64, f64)], colour: Rgb) {
-        let bound = |pick: fn(&(f64, f64)) -> f64| {
-            corners
-                .iter()
-                .map(pick)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-                    (low.min(v), high.max(v))
-                })
-        };
-        let ((left, right), (top, bottom)) = (bound(|c| c.0), bound(|c| c.1));
-        for j in top.floor() as i64 - 1..=bottom.ceil() as i64 {
-            for i in left.floor() as i64 - 1..=right.ceil() as i64 {
-                let (x, y) = (i as f64 + 0.5, j as f64 + 0.5);
-                let outside = (0..corners.len()).map(|k| {
-                    let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-                    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-                    (dy * (x - a.0) - dx * (y - a.1)) / dx.hypot(dy)
-                });
-                let distance = outside.fold(f64::NEG_INFINITY, f64::max);
-                self.blend(i, j, colour, 0.5 - distance);
-            }
+    /// Fills a polygon.
+    pub(super) fn fill_polygon(&mut self, corners: &[(f64, f64)], colour: Rgb) {
+        self.fill(path(corners), colour);
+    }
+
+    fn fill(&mut self, path: PathBuilder, colour: Rgb) {
+        if let (Some(path), Some(mut page)) = (path.finish(), self.page()) {
+            let rule = FillRule::Winding;
+            page.fill_path(
+                &path,
+                &paint(colour, 1.0),
+                rule,
+                Transform::identity(),
+                None,
+            );
         }
     }
 
@@ -175,9 +175,28 @@ impl Bitmap {
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         let mut writer = encoder.write_header().map_err(encoding)?;
-        writer.write_image_data(&self.rgb).map_err(encoding)?;
+        writer.write_image_data(&self.rgb()).map_err(encoding)?;
         writer.finish().map_err(encoding)
     }
+}
+
+/// A line through places.
+fn path(places: &[(f64, f64)]) -> PathBuilder {
+    let mut path = PathBuilder::new();
+    for (k, &(x, y)) in places.iter().enumerate() {
+        if k == 0 {
+            path.move_to(x as f32, y as f32);
+        }
+        // To the first place as well: the only one makes a dot.
+        path.line_to(x as f32, y as f32);
+    }
+    path
+}
+
+fn paint([r, g, b]: Rgb, cover: f64) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(r, g, b, (255.0 * cover).round() as u8);
+    paint
 }
 
 /// What the encoder failed of, as an error of files.
@@ -206,9 +225,15 @@ mod tests {
         let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut rgb).unwrap();
         assert_eq!((info.width, info.height), (31, 17));
-        assert_eq!(rgb, bitmap.rgb);
+        assert_eq!(rgb, bitmap.rgb());
         assert_eq!(bitmap.pixel(3, 4), [200, 10, 30]);
         assert_eq!(bitmap.pixel(7, 4), WHITE);
+    }
+
+    /// The area that is black, in pixels.
+    fn inked(bitmap: &Bitmap) -> f64 {
+        let values = bitmap.rgb().into_iter();
+        values.map(|v| 1.0 - f64::from(v) / 255.0).sum::<f64>() / 3.0
     }
 
     #[test]
@@ -217,26 +242,64 @@ mod tests {
             let (dx, dy) = (60.0 * angle.cos(), 60.0 * angle.sin());
             let (a, b) = ((100.0 - dx, 100.0 - dy), (100.0 + dx, 100.0 + dy));
             let mut bitmap = Bitmap::white(200, 200);
-            bitmap.stroke(&[vec![a, (100.0, 100.0), b]], 4.0, [0, 0, 0]);
-            let dark: f64 = bitmap.rgb.iter().map(|&v| 1.0 - f64::from(v) / 255.0).sum();
+            bitmap.stroke(&[vec![a, (100.0, 100.0), b]], 4.0, None, [0, 0, 0]);
+            let dark = inked(&bitmap);
             // a rectangle of 120 × 4 and two half discs of radius 2
             let area = 120.0 * 4.0 + std::f64::consts::PI * 4.0;
-            assert!((dark / 3.0 - area).abs() < 0.02 * area, "{angle}: {dark}");
+            assert!((dark - area).abs() < 0.02 * area, "{angle}: {dark}");
         }
     }
 
     #[test]
     fn a_polygon_covers_its_area_and_nothing_outside_the_picture_is_touched() {
         let mut bitmap = Bitmap::white(40, 40);
-        bitmap.fill_convex(&[(10.0, 10.0), (30.0, 10.0), (20.0, 25.0)], [0, 0, 0]);
-        let dark: f64 = bitmap.rgb.iter().map(|&v| 1.0 - f64::from(v) / 255.0).sum();
-        assert!((dark / 3.0 - 150.0).abs() < 5.0, "{dark}");
-        bitmap.fill_convex(
+        bitmap.fill_polygon(&[(10.0, 10.0), (30.0, 10.0), (20.0, 25.0)], [0, 0, 0]);
+        let dark = inked(&bitmap);
+        assert!((dark - 150.0).abs() < 2.0, "{dark}");
+        bitmap.fill_polygon(
             &[(-50.0, -50.0), (90.0, -50.0), (90.0, 90.0), (-50.0, 90.0)],
             INK,
         );
         assert_eq!(bitmap.pixel(0, 39), INK);
-        bitmap.stroke(&[vec![(-1e9, 5.0), (1e9, 5.0)]], 3.0, [255, 0, 0]);
+        bitmap.stroke(&[vec![(-1e9, 5.0), (1e9, 5.0)]], 3.0, None, [255, 0, 0]);
         assert_eq!(bitmap.pixel(20, 5), [255, 0, 0]);
+    }
+
+    #[test]
+    fn dashes_dots_and_discs_cover_their_areas() {
+        let disc = std::f64::consts::PI * 9.0;
+        let area_of = |draw: &dyn Fn(&mut Bitmap)| {
+            let mut bitmap = Bitmap::white(120, 60);
+            draw(&mut bitmap);
+            inked(&bitmap)
+        };
+        let dot = area_of(&|page| page.stroke(&[vec![(50.0, 30.0)]], 6.0, None, [0, 0, 0]));
+        let filled = area_of(&|page| page.fill_disc((50.0, 30.0), 3.0, [0, 0, 0]));
+        assert!((dot - disc).abs() < 0.05 * disc, "{dot}");
+        assert!((filled - disc).abs() < 0.05 * disc, "{filled}");
+        // 100 = 2 × (20 + 18) + 20 + 4: three dashes with round ends, one of them round the corner
+        let line = vec![(10.0, 10.0), (60.0, 10.0), (60.0, 40.0), (80.0, 40.0)];
+        let dash = Some([20.0, 18.0]);
+        let dashed = area_of(&|page| page.stroke(&[line.clone()], 6.0, dash, [0, 0, 0]));
+        let area = 3.0 * (20.0 * 6.0 + disc);
+        assert!((dashed - area).abs() < 0.02 * area, "{dashed} {area}");
+    }
+
+    #[test]
+    fn long_lines_are_as_if_drawn_in_one_go() {
+        let line: Vec<_> = (0..=4 * TOGETHER)
+            .map(|k| {
+                (
+                    10.0 + 0.05 * k as f64,
+                    60.0 + 40.0 * (0.02 * k as f64).sin(),
+                )
+            })
+            .collect();
+        let mut whole = Bitmap::white(140, 120);
+        whole.stroke(&[line.clone()], 4.0, Some([1e6, 1.0]), [0, 0, 0]);
+        let mut pieces = Bitmap::white(140, 120);
+        pieces.stroke(&[line], 4.0, None, [0, 0, 0]);
+        let (whole, pieces) = (inked(&whole), inked(&pieces));
+        assert!((whole - pieces).abs() < 2e-3 * whole, "{whole} {pieces}");
     }
 }

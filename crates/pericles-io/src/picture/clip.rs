@@ -1,4 +1,4 @@
-//! Lines cut to a rectangle and into dashes, in pixels.
+//! Lines cut to a rectangle, in pixels: curves may leave their chart by any factor, beyond what a rasteriser's floats can tell apart or hold.
 
 use super::frame::Area;
 
@@ -69,41 +69,6 @@ pub(super) fn length_inside(line: &[(f64, f64)], area: Area) -> f64 {
         .sum()
 }
 
-/// Cuts a line into dashes; the round ends of a stroke take a part of the gaps.
-pub(super) fn dashes(line: &[(f64, f64)], length: f64) -> Vec<Vec<(f64, f64)>> {
-    let lengths = [length, 0.9 * length];
-    let mut pieces = Vec::new();
-    let mut piece: Vec<(f64, f64)> = line.first().copied().into_iter().collect();
-    let (mut drawing, mut left) = (true, lengths[0]);
-    for pair in line.windows(2) {
-        let (mut at, to) = (pair[0], pair[1]);
-        loop {
-            let rest = (to.0 - at.0).hypot(to.1 - at.1);
-            if rest <= left {
-                left -= rest;
-                if drawing {
-                    piece.push(to);
-                }
-                break;
-            }
-            let part = left / rest;
-            at = (at.0 + part * (to.0 - at.0), at.1 + part * (to.1 - at.1));
-            if drawing {
-                piece.push(at);
-                pieces.push(std::mem::take(&mut piece));
-            } else {
-                piece = vec![at];
-            }
-            drawing = !drawing;
-            left = lengths[usize::from(!drawing)];
-        }
-    }
-    if drawing {
-        pieces.push(piece);
-    }
-    pieces
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,12 +79,6 @@ mod tests {
         right: 10.0,
         bottom: 10.0,
     };
-
-    fn length(line: &[(f64, f64)]) -> f64 {
-        line.windows(2)
-            .map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1))
-            .sum()
-    }
 
     #[test]
     fn lines_are_cut_where_they_cross_the_border() {
@@ -141,18 +100,5 @@ mod tests {
         assert!(clipped(&[(-5.0, 5.0), (5.0, -6.0)], AREA).is_empty());
         assert_eq!(clipped(&[(5.0, 5.0)], AREA), vec![vec![(5.0, 5.0)]]);
         assert!(clipped(&[], AREA).is_empty());
-    }
-
-    #[test]
-    fn dashes_have_their_length_round_corners_too() {
-        let line = [(0.0, 0.0), (7.0, 0.0), (7.0, 30.0)];
-        let pieces = dashes(&line, 5.0);
-        assert!(
-            pieces[..pieces.len() - 1]
-                .iter()
-                .all(|piece| (length(piece) - 5.0).abs() < 1e-9)
-        );
-        // 37 = 3 × (5 + 4.5) + 5 + 3.5: four dashes
-        assert_eq!(pieces.len(), 4);
     }
 }

@@ -1,7 +1,6 @@
 //! Axes and curves of a chart, and how a curve is drawn.
 
 use super::bitmap::Rgb;
-use super::clip::dashes;
 use super::colour::CURVES;
 use super::drawing::Drawing;
 use super::frame::{Scale, Sizes, finite_range, widened};
@@ -145,7 +144,8 @@ pub(super) struct Pen {
     number: usize,
     colour: Rgb,
     width: f64,
-    dash: Option<f64>,
+    /// Lengths of dashes and of the gaps between them, of which the round ends take a part.
+    dash: Option<[f64; 2]>,
 }
 
 impl Pen {
@@ -155,16 +155,12 @@ impl Pen {
             number,
             colour: curve.colour.unwrap_or(CURVES[number % CURVES.len()]),
             width,
-            dash: curve.dashed.then_some(4.0 * width),
+            dash: curve.dashed.then_some([4.0 * width, 3.6 * width]),
         }
     }
 
     pub(super) fn stroke(&self, drawing: &mut Drawing, lines: Vec<Vec<(f64, f64)>>) {
-        let lines = match self.dash {
-            Some(length) => lines.iter().flat_map(|line| dashes(line, length)).collect(),
-            None => lines,
-        };
-        drawing.stroke(lines, self.width, self.colour);
+        drawing.stroke(lines, self.width, self.dash, self.colour);
     }
 
     /// A disc, square, diamond or triangle, in turn.
@@ -177,6 +173,6 @@ impl Pen {
             _ => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
         };
         let corners: Vec<_> = corners.iter().map(|c| (x + r * c.0, y + r * c.1)).collect();
-        drawing.fill_convex(corners, self.colour);
+        drawing.fill_polygon(corners, self.colour);
     }
 }

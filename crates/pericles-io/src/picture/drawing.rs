@@ -18,10 +18,12 @@ pub(super) enum Shape {
         /// 1 hides what lies below.
         cover: f64,
     },
-    /// Lines with round ends and joints, laid down in one go.
+    /// Lines with round ends and joints.
     Strokes {
         lines: Vec<Vec<Spot>>,
         width: f64,
+        /// Lengths of dashes and of the gaps between them.
+        dash: Option<[f64; 2]>,
         colour: Rgb,
     },
     Disc {
@@ -29,8 +31,10 @@ pub(super) enum Shape {
         radius: f64,
         colour: Rgb,
     },
-    /// Corners clockwise on the screen.
-    Convex { corners: Vec<Spot>, colour: Rgb },
+    Polygon {
+        corners: Vec<Spot>,
+        colour: Rgb,
+    },
     Text {
         text: String,
         place: Spot,
@@ -98,10 +102,17 @@ impl Drawing {
         }
     }
 
-    pub(super) fn stroke(&mut self, lines: Vec<Vec<Spot>>, width: f64, colour: Rgb) {
+    pub(super) fn stroke(
+        &mut self,
+        lines: Vec<Vec<Spot>>,
+        width: f64,
+        dash: Option<[f64; 2]>,
+        colour: Rgb,
+    ) {
         self.shapes.push(Shape::Strokes {
             lines,
             width,
+            dash,
             colour,
         });
     }
@@ -114,8 +125,8 @@ impl Drawing {
         });
     }
 
-    pub(super) fn fill_convex(&mut self, corners: Vec<Spot>, colour: Rgb) {
-        self.shapes.push(Shape::Convex { corners, colour });
+    pub(super) fn fill_polygon(&mut self, corners: Vec<Spot>, colour: Rgb) {
+        self.shapes.push(Shape::Polygon { corners, colour });
     }
 
     /// Sets a text; seen along its direction, the place is in the middle of its capitals.
@@ -144,14 +155,15 @@ impl Drawing {
                 Shape::Strokes {
                     lines,
                     width,
+                    dash,
                     colour,
-                } => bitmap.stroke(lines, *width, *colour),
+                } => bitmap.stroke(lines, *width, *dash, *colour),
                 Shape::Disc {
                     middle,
                     radius,
                     colour,
                 } => bitmap.fill_disc(*middle, *radius, *colour),
-                Shape::Convex { corners, colour } => bitmap.fill_convex(corners, *colour),
+                Shape::Polygon { corners, colour } => bitmap.fill_polygon(corners, *colour),
                 Shape::Text { text, place, style } => {
                     text::draw(&mut bitmap, text, *place, *style);
                 }

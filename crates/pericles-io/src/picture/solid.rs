@@ -8,6 +8,7 @@ use super::raster::{Face, Raster};
 use super::scene::Scene;
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
+use pericles::sum::max_norm;
 use pericles::units::quantity;
 
 const MARGIN: f64 = 0.03;
@@ -265,7 +266,7 @@ fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, siz
     for (c, [x, y, _]) in axes {
         let (name, colour) = AXES[c];
         let to = (from.0 + arm * x, from.1 - arm * y);
-        drawing.stroke(vec![vec![from, to]], 2.0 * sizes.line, colour);
+        drawing.stroke(vec![vec![from, to]], 2.0 * sizes.line, None, colour);
         let length = x.hypot(y);
         if length > 0.1 {
             let far = arm + 0.6 * sizes.tick_text / length;
@@ -318,7 +319,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 fn normalised(v: [f64; 3]) -> [f64; 3] {
     // Squares of the largest and smallest numbers are infinite and zero.
-    let largest = v.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let largest = max_norm(&v);
     let v = v.map(|c| c / largest);
     let length = dot(v, v).sqrt();
     v.map(|c| c / length)

@@ -51,11 +51,15 @@ impl Page {
             Shape::Strokes {
                 lines,
                 width,
+                dash,
                 colour,
             } => {
+                let dash = dash.map_or(String::new(), |[dash, gap]| {
+                    format!(" stroke-dasharray=\"{},{}\"", short(dash), short(gap))
+                });
                 let path: String = lines.iter().map(|line| course(line)).collect();
                 self.line(format_args!(
-                    "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>",
+                    "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"{dash}/>",
                     hex(*colour),
                     short(*width)
                 ));
@@ -71,7 +75,7 @@ impl Page {
                 short(*radius),
                 hex(*colour)
             )),
-            Shape::Convex { corners, colour } => {
+            Shape::Polygon { corners, colour } => {
                 let corners: Vec<String> = corners.iter().map(|&corner| spot(corner)).collect();
                 self.line(format_args!(
                     "<polygon points=\"{}\" fill=\"{}\"/>",
@@ -183,10 +187,11 @@ mod tests {
         drawing.stroke(
             vec![vec![(0.0, 0.0), (5.5, 7.125)], vec![(1.0, 1.0)]],
             2.0,
+            Some([8.0, 7.2]),
             black,
         );
         drawing.fill_disc((50.0, 60.0), 4.0, black);
-        drawing.fill_convex(vec![(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)], black);
+        drawing.fill_polygon(vec![(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)], black);
         drawing.text("a < b & c", (100.0, 50.0), Style::new(20.0, Align::End));
         drawing.text("up", (100.0, 50.0), Style::new(20.0, Align::Middle).up());
         drawing.cells(Raster::new(30, 20, 2), 5, 6);
@@ -194,6 +199,7 @@ mod tests {
         for part in [
             "<rect x=\"1\" y=\"2\" width=\"9\" height=\"18\" fill=\"#ff0080\" fill-opacity=\"0.5\"/>",
             "<path d=\"M0,0L5.5,7.13M1,1h0\"",
+            "stroke-dasharray=\"8,7.2\"",
             "<circle cx=\"50\" cy=\"60\" r=\"4\"",
             "<polygon points=\"0,0 9,0 0,9\"",
             "text-anchor=\"end\"",

@@ -2,6 +2,7 @@
 
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
+use pericles::sum::max_norm;
 use pericles::time::{Integrator, State};
 use pericles::{Need, PericlesError, System};
 use pericles_deck::{
@@ -165,8 +166,7 @@ impl Assembler<'_> {
     ) -> Result<Vec<(Side, EndReport)>, BuildError> {
         /// An initial field of this share at an end is worth a warning.
         const NOTABLE_FIELD: f64 = 1e-10;
-        let largest =
-            [&start.u, &start.v].map(|field| field.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
+        let largest = [&start.u, &start.v].map(max_norm);
         let mut reports = Vec::new();
         let mut sites = 0;
         for mut end in ends {

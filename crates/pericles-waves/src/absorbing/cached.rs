@@ -2,6 +2,7 @@
 
 use super::{GhostKernels, LatticeStencil, LatticeStep, contour_kernels};
 use pericles::cache::{Cache, Key};
+use pericles::sum::max_norm;
 use pericles::{Archive, Values};
 
 /// The kernels of [`contour_kernels`], from the cache if they are there, and checked: a set of arrays that does not satisfy its own equations is computed
@@ -53,7 +54,7 @@ fn holds(series: &[Vec<f64>], stencil: &LatticeStencil, dt: f64) -> bool {
             .map(|(x, y)| x * y)
             .sum()
     };
-    let largest = weights.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
+    let largest = max_norm(weights);
     (1..=reach).all(|k| {
         let sum: f64 = (0..reach - k)
             .map(|m| product(&series[m], &series[m + k]))

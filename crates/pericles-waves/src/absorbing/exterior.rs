@@ -3,6 +3,7 @@
 use super::history::History;
 use super::layer::NEGLIGIBLE;
 use super::{AbsorbingError, LatticeStencil};
+use pericles::sum::max_norm;
 
 /// The free motion w of the infinite lattice from the initial data beyond an end, zero in the body: the exterior's displacements are w + F * (u − w), for their difference from w starts
 /// from rest there.
@@ -41,9 +42,9 @@ impl FreeWave {
     ) -> std::result::Result<Self, AbsorbingError> {
         let reach = stencil.reach();
         for (field, body) in [u, v].into_iter().zip(body) {
-            let largest = field.iter().fold(body, |a: f64, x| a.max(x.abs()));
+            let largest = body.max(max_norm(field));
             let tail = &field[field.len().saturating_sub(reach)..];
-            let found = tail.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+            let found = max_norm(tail);
             if u.len() != v.len() || found > NEGLIGIBLE * largest {
                 let sites = field.len();
                 return Err(AbsorbingError::ExteriorData {

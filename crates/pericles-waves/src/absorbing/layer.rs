@@ -4,6 +4,7 @@ use super::{AbsorbingError, LatticeStencil};
 use pericles::System;
 use pericles::operator::On;
 use pericles::space::PointCloud;
+use pericles::sum::max_norm;
 use pericles::time::State;
 
 /// An end of a bar.
@@ -91,7 +92,7 @@ impl OuterLayer {
         let bonds = Bonds::new(system);
         let outermost = side.point(n, 0);
         let row = bonds.of(outermost);
-        let strongest = row.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
+        let strongest = max_norm(&row);
         // A weight that vanishes at the horizon, as the conical function's, may be there as round-off.
         let is_bond = |k: &usize| row[side.point(n, *k)].abs() > ALIKE * strongest;
         let reach = (1..n).rev().find(is_bond);
@@ -106,7 +107,7 @@ impl OuterLayer {
         let weights: Vec<f64> = (1..=reach).map(|k| row[side.point(n, k)]).collect();
         let stencil = LatticeStencil::new(&weights)?;
         let points: Vec<usize> = (0..reach).map(|depth| side.point(n, depth)).collect();
-        let scale = weights.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
+        let scale = max_norm(&weights);
         for (p, &i) in points.iter().enumerate() {
             let found = mass(i);
             let expected = mass(outermost);
@@ -186,7 +187,7 @@ impl OuterLayer {
         operator.tangent_into(0.0, &bonds.rest, &u, &mut tangent);
         let mut force = bonds.rest.clone();
         operator.add_force(0.0, &u, On::All, &mut force);
-        let scale = tangent.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let scale = max_norm(&tangent);
         let miss = |&i: &usize| (force[i] - tangent[i]).abs() > 1e-9 * scale;
         match self.points.iter().find(|i| miss(i)) {
             None => Ok(()),
@@ -218,7 +219,7 @@ impl OuterLayer {
 
     /// The largest value of a field in the layer over its largest in the body.
     fn share_of(&self, field: &[f64], cloud: &PointCloud) -> Result<f64, AbsorbingError> {
-        let largest = field.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let largest = max_norm(field);
         let outer = self.points.iter().copied();
         let worst = outer.max_by(|&i, &j| field[i].abs().total_cmp(&field[j].abs()));
         let Some((point, found)) = worst.map(|i| (i, field[i].abs())) else {

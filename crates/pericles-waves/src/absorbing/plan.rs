@@ -10,6 +10,7 @@ use super::{
     trapezoidal_kernels,
 };
 use pericles::cache::Cache;
+use pericles::sum::max_norm;
 
 /// Which lattice the ends stand for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -181,7 +182,7 @@ impl EndPlan {
 fn growth(stencil: &LatticeStencil, dt: f64, closed: &[Vec<f64>]) -> f64 {
     let steps = closed[0].len() - 1;
     let exact = green_functions(stencil, dt, steps, closed.len());
-    let largest = exact.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+    let largest = max_norm(exact.iter().flatten());
     let last = exact
         .iter()
         .zip(closed)

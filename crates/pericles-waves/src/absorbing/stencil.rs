@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::AbsorbingError;
+use pericles::sum::max_norm;
 
 /// u_n'' = Σ_{k=1..K} a_k (u_{n+k} − 2 u_n + u_{n−k}): a homogeneous lattice of any symmetric weights a_k (1/s²).
 ///
@@ -27,7 +28,7 @@ impl LatticeStencil {
                 return Err(AbsorbingError::WeightNotFinite { reach, weight });
             }
         }
-        let largest = weights.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
+        let largest = max_norm(weights);
         match weights.last() {
             None => return Err(AbsorbingError::EmptyStencil),
             // Round-off of a weight that should vanish, as the conical function's at the horizon.

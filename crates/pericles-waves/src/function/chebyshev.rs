@@ -6,6 +6,7 @@ use super::{MatrixFunction, Product, Term, WaveFunction, bessel_into};
 use pericles::Interrupt;
 use pericles::Result;
 use pericles::parallel::BLOCK;
+use pericles::sum::max_norm;
 
 /// g(A) x = Σ′ c_k T_k(Y) x with Y = 2A/λ − 1, for an operator whose eigenvalues lie in [0, λ].
 ///
@@ -67,7 +68,7 @@ impl Chebyshev {
             coefficients.resize(most + 1, 0.0);
             series(term.function, self.bound, &self.bessel, coefficients);
             coefficients[0] *= 0.5;
-            let largest = coefficients.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+            let largest = max_norm(&*coefficients);
             while coefficients.len() > 1
                 && coefficients[coefficients.len() - 1].abs() <= NEGLIGIBLE * largest
             {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::{MatrixFunction, Product, Term};
 use pericles::Interrupt;
-use pericles::sum::sum;
+use pericles::sum::{max_norm, sum};
 use pericles::{PericlesError, Result};
 
 /// g(A) x ≈ ‖x‖ Q g(T) e₁, T the projection of A on the Krylov space of x with the basis Q, orthonormal in the inner product Σ m_i x_i y_i.
@@ -82,7 +82,7 @@ impl MatrixFunction for Lanczos {
                 spoil(terms);
                 return Ok(());
             }
-            let scale = diagonal.iter().fold(0.0f64, |m, d: &f64| m.max(d.abs()));
+            let scale = max_norm(&diagonal);
             let whole = size <= 1e-14 * scale || self.basis.len() == x.len();
             if whole || diagonal.len().is_multiple_of(LOOK_EVERY) {
                 let weights = coefficients(&diagonal, &off, terms);
@@ -154,7 +154,7 @@ fn coefficients(diagonal: &[f64], off: &[f64], terms: &[Term<'_>]) -> Vec<Vec<f6
 }
 
 fn is_complete(weights: &[f64]) -> bool {
-    let largest = weights.iter().fold(0.0f64, |m, w| m.max(w.abs()));
+    let largest = max_norm(weights);
     let tail = &weights[weights.len().saturating_sub(2)..];
     weights.len() > 2 && tail.iter().all(|w| w.abs() <= ENOUGH * largest)
 }

@@ -104,6 +104,7 @@ impl<L: CubicBond, T: CubicFactor> PairForce for Treated<L, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sum::max_norm;
 
     /// ½ [f′(0) + f′(η)] η
     fn rule<L: PairForce>(xi: [f64; 3], eta: [f64; 3]) -> [f64; 3] {
@@ -111,20 +112,16 @@ mod tests {
         std::array::from_fn(|c| 0.5 * (rest[c] + place[c]))
     }
 
-    fn largest(a: [f64; 3]) -> f64 {
-        a.iter().fold(0.0, |m, x| m.max(x.abs()))
-    }
-
     fn treatments_are_what_they_say<L: CubicBond>(xi: [f64; 3], direction: [f64; 3]) {
         let scaled = |size: f64| direction.map(|x| size * x);
         let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|c| a[c] - b[c]) };
         let eta = scaled(0.3);
         let trapezoidal = Treated::<L, Trapezoidal>::force(xi, eta);
-        assert!(largest(minus(trapezoidal, rule::<L>(xi, eta))) < 1e-14);
+        assert!(max_norm(&minus(trapezoidal, rule::<L>(xi, eta))) < 1e-14);
         // What Taylor's polynomial leaves is of third order, and homogeneous: f₃.
         let rest = |size: f64| {
             let eta = scaled(size);
-            largest(minus(
+            max_norm(&minus(
                 L::force(xi, eta),
                 Treated::<L, SecondOrder>::force(xi, eta),
             ))
@@ -133,7 +130,7 @@ mod tests {
         let linear = |size: f64| {
             let eta = scaled(size);
             let first = L::tangent(xi, [0.0; 3], eta);
-            largest(minus(Treated::<L, SecondOrder>::force(xi, eta), first))
+            max_norm(&minus(Treated::<L, SecondOrder>::force(xi, eta), first))
         };
         assert!((linear(0.4) / linear(0.2) - 4.0).abs() < 1e-11);
     }

@@ -1,6 +1,7 @@
 //! Checks of sets of points and of arrays on points.
 
 use crate::error::{PericlesError, Result};
+use crate::sum::max_norm;
 
 /// Refuses a set that is not ascending, or that names a point that a body of `points` points does not have.
 ///
@@ -49,7 +50,7 @@ pub fn check_length(what: &'static str, length: usize, needed: usize) -> Result<
 pub(super) fn check_resolution(positions: &[f64], spacing: f64) -> Result<()> {
     /// As exact as a side must be a whole number of cells.
     const SHARE: f64 = 1e-6;
-    let farthest = positions.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let farthest = max_norm(positions);
     let resolution = f64::EPSILON * farthest;
     if resolution <= SHARE * spacing {
         return Ok(());

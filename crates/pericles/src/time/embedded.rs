@@ -11,6 +11,7 @@ use crate::error::{PericlesError, Result, positive};
 use crate::interrupt::Interrupt;
 use crate::operator::On;
 use crate::parallel::{BLOCK, for_each_chunk};
+use crate::sum::max_norm;
 use crate::system::System;
 
 /// The Dormand–Prince pair with local extrapolation: within each step of the run as many sub-steps as the tolerance asks for.
@@ -159,7 +160,7 @@ fn zero(array: &mut [f64]) {
 /// max |x|; infinite if an entry is not a number.
 fn largest(array: &[f64]) -> f64 {
     let of_chunk = |chunk: &[f64]| {
-        let max = chunk.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
+        let max = max_norm(chunk);
         if chunk.iter().all(|x| x.is_finite()) {
             max
         } else {

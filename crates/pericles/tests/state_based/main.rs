@@ -1,7 +1,7 @@
 //! Tests of state-based materials.
 
 mod bodies;
-#[path = "../../benches/clock/mod.rs"]
+#[path = "../../../pericles-bench/src/clock.rs"]
 mod clock;
 #[path = "../common/mod.rs"]
 mod common;

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::absorbing::{AbsorbingError, Side};
 use pericles::System;
+use pericles::sum::max_norm;
 
 /// A 2 × 2 matrix.
 pub(super) type Matrix = [[f64; 2]; 2];
@@ -57,7 +58,7 @@ impl StripLattice {
         let matrix = |from: &[Vec<f64>; 2], j: usize| -> Matrix {
             std::array::from_fn(|a| std::array::from_fn(|b| from[b][a * n + j]))
         };
-        let size = |m: &Matrix| m.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let size = |m: &Matrix| max_norm(m.iter().flatten());
         let own = response(columns[0][0]);
         let all = || columns.iter().flatten().filter(|&&j| j != columns[0][0]);
         let strongest = all().map(|&j| size(&matrix(&own, j))).fold(0.0, f64::max);

@@ -15,6 +15,7 @@ use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 
 use crate::operator::LatticeSprings;
+use crate::sum::max_norm;
 
 type Matrix = [[f64; 3]; 3];
 
@@ -265,7 +266,7 @@ fn largest_eigenvalue(m: &Matrix, dimension: usize) -> f64 {
 fn dominant_vector(matrix: &Matrix, dimension: usize) -> [f64; 3] {
     let mut power = *matrix;
     for _ in 0..30 {
-        let scale = power.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let scale = max_norm(power.iter().flatten());
         if scale == 0.0 {
             break;
         }

@@ -26,6 +26,7 @@ pub use scheme::Newmark;
 use crate::compatibility::{Need, Requirement};
 use crate::error::{PericlesError, Result};
 use crate::step_kind::StepKind;
+use crate::sum::max_norm;
 use crate::system::System;
 
 /// How the equation of a step is solved.
@@ -104,7 +105,7 @@ impl VelocityNorm {
         let scaled = match self {
             Self::Sum => domain.norm(x),
             Self::Weighted => domain.sum(x.len(), |k| volumes[k % n] * x[k] * x[k]).sqrt(),
-            Self::Largest => domain.max(x.iter().fold(0.0_f64, |most, x| most.max(x.abs()))),
+            Self::Largest => domain.max(max_norm(x)),
         };
         factor.abs() * scaled
     }

@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
-use crate::error::Result;
-use crate::family::VolumeCorrection;
-use crate::kernel::{Influence, InfluenceFunction};
-use crate::material::{
+use pericles::family::VolumeCorrection;
+use pericles::kernel::{Influence, InfluenceFunction};
+use pericles::material::{
     BondConstants, BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture,
     GivenConstants, LinearSolid, Modulus, PairLaw, StateInfluence, StressState,
 };
-use crate::operator::{BondBody, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody};
-use crate::scalar::PointScalar;
-use crate::space::{Grid, PointCloud, Shape};
-use crate::system::System;
-use crate::time::State;
+use pericles::operator::{
+    BondBody, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody,
+};
+use pericles::space::{Grid, PointCloud, Shape};
+use pericles::time::State;
+use pericles::{PointScalar, Result, System};
 
-use super::StoredList;
+use crate::StoredList;
 
 /// A problem to be timed.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ pub struct Case {
     pub critical_stretch: f64,
     /// Every point is moved off its lattice node, so that no two bonds are alike.
     pub moved: bool,
-    /// Not an operator of this library but the plain loop that it is set against: see [`StoredList`](super::StoredList).
+    /// Not an operator of the engine but the plain loop that it is set against: see [`StoredList`](crate::StoredList).
     pub scalar: bool,
     /// Bonds of a linear peridynamic solid in place of bond-based ones: two passes.
     pub state_based: bool,
@@ -236,7 +236,7 @@ impl Case {
     }
 
     /// Bonds of a point inside the body.
-    pub(super) fn family(&self) -> f64 {
+    pub(crate) fn family(&self) -> f64 {
         [6.0, 28.0, 122.0][self.cells.len() - 1]
     }
 }

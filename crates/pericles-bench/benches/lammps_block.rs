@@ -3,19 +3,15 @@
 //! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|grid-f32|list]` prints cells and force
 //! densities of a deformed block, `i j k fx fy fz` a line; `fracture CELLS STEPS [grid|grid-f32|list]` one line of JSON on a block torn in two.
 
-mod clock;
-
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use pericles::Interrupt;
-use pericles::bench::{Case, Timing, run, run_by_clock};
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::material::StressState;
 use pericles::operator::{BondBody, BondForm, On};
 use pericles::time::{Integrator, State, VelocityVerlet};
-
-use clock::cpu_seconds;
+use pericles_bench::{Case, Timing, cpu_seconds, run, run_by_clock};
 
 fn time(case: &Case, rounds: usize) -> pericles::Result<()> {
     let wall = run(case, rounds)?;

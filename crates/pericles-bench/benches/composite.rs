@@ -1,8 +1,6 @@
 //! Bodies whose bonds depend on their ends, and stress, on a stencil against a list: CPU time per directed bond of one thread, the forms in turn, medians.
 //!
-//! `cargo bench -p pericles --bench composite [CELLS]`, 32 cells a side by default.
-
-mod clock;
+//! `cargo bench -p pericles-bench --bench composite [CELLS]`, 32 cells a side by default.
 
 use std::sync::Arc;
 
@@ -18,7 +16,7 @@ use pericles::space::{Grid, PointCloud, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{PointScalar, Simulation, System};
 
-use clock::cpu_seconds;
+use pericles_bench::clock::cpu_seconds;
 
 const ROUNDS: usize = 15;
 

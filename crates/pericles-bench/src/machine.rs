@@ -3,10 +3,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::lanes::LANES;
-use crate::lanes::for_each_instruction_set;
-use crate::operator::InstructionSet;
-use crate::operator::prefetch::prefetch;
+use pericles::lanes::{LANES, Lanes, for_each_instruction_set};
+use pericles::operator::InstructionSet;
+use pericles::operator::prefetch::prefetch;
 
 /// Seconds that one multiply–add of eight numbers takes where none waits for another.
 ///
@@ -27,11 +26,7 @@ pub fn fma_seconds(set: InstructionSet) -> f64 {
 const CHAINS: usize = 12;
 
 #[inline(always)]
-fn multiply_add_body<T: crate::lanes::Lanes>(
-    repeats: usize,
-    factor: f64,
-    chains: &mut [f64; CHAINS],
-) {
+fn multiply_add_body<T: Lanes>(repeats: usize, factor: f64, chains: &mut [f64; CHAINS]) {
     let factor = T::splat(factor);
     let mut sums = [T::splat(0.0); CHAINS];
     for k in 0..CHAINS {
@@ -64,7 +59,7 @@ pub fn read(set: InstructionSet, numbers: &[f64]) -> f64 {
 }
 
 #[inline(always)]
-fn sum_numbers_body<T: crate::lanes::Lanes>(numbers: &[f64], sum: &mut f64) {
+fn sum_numbers_body<T: Lanes>(numbers: &[f64], sum: &mut f64) {
     const AHEAD: usize = 4 * ROW;
     let mut sums = [T::splat(0.0); ROW / LANES];
     for (row, part) in numbers.chunks_exact(ROW).enumerate() {

@@ -3,11 +3,8 @@
 //! Times are CPU times of one process that does nothing else, taken in turn with those of the plain loop on the same body, the best of several rounds; only their
 //! ratio counts. The bounds are half of what is measured on a quiet machine, so that they fail if loops lose their vector instructions and not if somebody else is busy.
 
-#[path = "../benches/clock/mod.rs"]
-mod clock;
-
-use pericles::bench::{Case, run_in_turn};
 use pericles::operator::InstructionSet;
+use pericles_bench::{Case, cpu_seconds, run_in_turn};
 
 #[test]
 #[cfg_attr(debug_assertions, ignore = "measures optimised loops: --release")]
@@ -30,7 +27,7 @@ fn the_operators_outrun_the_plain_loop() {
         .build()
         .expect("a thread");
     let timings = pool
-        .install(|| run_in_turn(&cases, 4, &clock::cpu_seconds))
+        .install(|| run_in_turn(&cases, 4, &cpu_seconds))
         .expect("the cases are sound");
     for body in timings.chunks(3) {
         let best: Vec<f64> = body.iter().map(|case| case.best_ns_per_bond).collect();

@@ -1,10 +1,10 @@
 //! The plain loop that fast operators are set against.
 
-use crate::family::pairs_within;
-use crate::material::{BondConstants, BondMaterial};
-use crate::parallel::{components, components_mut};
-use crate::space::PointCloud;
-use crate::time::State;
+use pericles::family::pairs_within;
+use pericles::material::{BondConstants, BondMaterial};
+use pericles::parallel::{components, components_mut};
+use pericles::space::PointCloud;
+use pericles::time::State;
 
 /// Bond-stretch peridynamics as it is usually written: for every entry of a family its neighbour's number, length at rest, stiffness c α κ V and whether it is
 /// intact, and a loop with root and division over them, on one thread.
@@ -128,8 +128,9 @@ impl StoredList {
 
 #[cfg(test)]
 mod tests {
-    use crate::bench::Case;
-    use crate::operator::On;
+    use crate::Case;
+    use pericles::operator::On;
+    use pericles::sum::max_norm;
 
     #[test]
     fn the_plain_loop_finds_the_forces_of_the_operators() {
@@ -145,7 +146,7 @@ mod tests {
             let (mut plain, mut fast) = (vec![0.0; state.u.len()], vec![0.0; state.u.len()]);
             list.break_and_force(&state.u, &mut plain);
             operator.add_force(0.0, &state.u, On::All, &mut fast);
-            let largest = fast.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            let largest = max_norm(&fast);
             for (a, b) in plain.iter().zip(&fast) {
                 // The plain loop takes the difference of two lengths.
                 assert!((a - b).abs() < 1e-10 * largest, "{name}: {a:e} {b:e}");

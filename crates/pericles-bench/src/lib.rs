@@ -8,7 +8,7 @@
 //! * the memory traffic that a step cannot do without, as GB/s.
 //!
 //! ```
-//! use pericles::bench::{Case, run};
+//! use pericles_bench::{Case, run};
 //! let case = Case::named("plate-512").unwrap();
 //! # let case = Case { cells: vec![16, 16], ..case };
 //! let result = run(&case, 3).unwrap();
@@ -17,18 +17,19 @@
 //! ```
 
 mod case;
+mod clock;
 mod machine;
 mod scalar;
 
 use std::time::Instant;
 
-use crate::error::Result;
-use crate::interrupt::Interrupt;
-use crate::lanes::LANES;
-use crate::operator::{BondForm, InstructionSet};
-use crate::time::{Integrator, VelocityVerlet};
+use pericles::lanes::LANES;
+use pericles::operator::{BondForm, InstructionSet};
+use pericles::time::{Integrator, VelocityVerlet};
+use pericles::{Interrupt, Result};
 
 pub use case::Case;
+pub use clock::cpu_seconds;
 pub use machine::{fma_seconds, read};
 pub use scalar::StoredList;
 
