@@ -146,6 +146,12 @@ def points():
     write("points", "commas", b"\x00# a bar\nx, block, volume\n0, 1, 1\n1.5, 1, 1 ! the end\n")
 
 
+def outline():
+    write("outline", "frame", "# a frame\n0 0\n4, 0\n4 3\n0 3 # last\n0 0\n\n1 1\n2 1\n2 2\n")
+    write("outline", "windows", "\ufeff0 0\r\n1e-3 0\r\n1e-3 2.5E-3\r\n")
+    write("outline", "crossed", "0 0\n1 1\n1 0\n0 1\n")
+
+
 def checkpoint():
     entry = {"name": "u", "type": "u8", "len": 4, "stored": 0, "crc32": 0, "codec": "shuffle+lz4"}
     # An LZ4 frame that holds its bytes as they are: header, one block marked as uncompressed, end mark.
@@ -219,7 +225,7 @@ def texts():
             write(target, f"{k}", bytes([k]) + bytes(range(1, 20)))
 
 
-for make in [obj, off, ply, stl, gmsh, abaqus, exodus, points, checkpoint, models, texts]:
+for make in [obj, off, ply, stl, gmsh, abaqus, exodus, points, outline, checkpoint, models, texts]:
     make()
 for kind in ["vtu", "vtp"]:
     vtk(kind)

@@ -75,8 +75,11 @@ cells = np.vstack([block.data for block in mesh.cells if block.type == "tetra"])
 cells = np.unique(cells, axis=0)
 plain = meshio.Mesh(mesh.points, [("tetra", cells)])
 meshio.write(folder / "meshio.vtu", plain)
-# meshio writes netCDF-4, which Pericles refuses with the command that converts it: written again as CDF-2 and CDF-5 here.
+# meshio writes netCDF-4, which Pericles refuses with the command that converts it: written again as CDF-1, CDF-2 and CDF-5 here.
 meshio.write(folder / "meshio.exo", plain, file_format="exodus")
+answer = subprocess.run([program, str(folder / "meshio.exo")], capture_output=True, text=True, check=True).stdout
+assert "refused" in answer and "nccopy -k cdf5" in answer, answer
+print("meshio.exo: netCDF-4, refused with the command that converts it")
 source = netCDF4.Dataset(folder / "meshio.exo")
 paths = [folder / "meshio.vtu"]
 for form in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"):
@@ -116,3 +119,20 @@ for name, mode, compressed in (("ascii", 0, True), ("binary", 1, True), ("append
     count, volume, _ = report(folder / f"vtk-{name}.vtu")
     assert count == 2 and abs(volume - 1.5) < 1e-14
     print(f"vtk-{name}.vtu: 2 points, volume as expected")
+
+# VTK's writer of Exodus: a block for each part of a multi-block data set, with two outputs of a field.
+blocks = vtk.vtkMultiBlockDataSet()
+for number, (kind, corners) in enumerate(((vtk.VTK_HEXAHEDRON, range(8)), (vtk.VTK_WEDGE, (1, 8, 2, 5, 9, 6)))):
+    block = vtk.vtkUnstructuredGrid()
+    block.SetPoints(points)
+    block.InsertNextCell(kind, len(corners), list(corners))
+    blocks.SetBlock(number, block)
+for name, data in (("grid", grid), ("blocks", blocks)):
+    writer = vtk.vtkExodusIIWriter()
+    writer.SetFileName(str(folder / f"vtk-{name}.exo"))
+    writer.SetInputData(data)
+    writer.Write()
+    count, volume, sets = report(folder / f"vtk-{name}.exo")
+    assert count == 2 and abs(volume - 1.5) < 1e-14, (count, volume)
+    assert sorted(points for points, _ in sets.values()) == [1, 1], sets
+    print(f"vtk-{name}.exo: 2 points in blocks {sorted(sets)}, volume as expected")

@@ -3,6 +3,7 @@ import sys
 from pathlib import Path
 
 import h5py
+import meshio
 import netCDF4
 import numpy as np
 import vtk
@@ -62,6 +63,15 @@ for ending, kind in (("64", np.float64), ("32", np.float32)):
         assert [s for _, s in sizes] == [10, 14], sizes
     print(f"Exodus {ending}: VTK {vtk.VTK_VERSION} and netCDF read all; blocks {sizes}; node sets",
           [reader.GetObjectName(vtk.vtkExodusIIReader.NODE_SET, s) for s in range(reader.GetNumberOfObjects(vtk.vtkExodusIIReader.NODE_SET))])
+
+    # meshio reads the first output only, and knows no volumes of spheres.
+    mesh = meshio.read(folder / f"run{ending}.exo", file_format="exodus")
+    check("points", mesh.points, positions)
+    check("damage", mesh.point_data["Damage"], damage(0))
+    check("displacement", mesh.point_data["Displacement"], displacement(0))
+    check("blocks", [len(block.data) for block in mesh.cells], [10, 14])
+    check("left", np.sort(mesh.point_sets["left"]), np.arange(6))
+    print(f"Exodus {ending}: meshio {meshio.__version__} reads points, blocks, sets and the fields of the first output")
 
     file = h5py.File(folder / f"run{ending}.vtkhdf")
     root = file["VTKHDF"]

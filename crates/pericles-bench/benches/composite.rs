@@ -16,7 +16,7 @@ use pericles::space::{Grid, PointCloud, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{PointScalar, Simulation, System};
 
-use pericles_bench::clock::cpu_seconds;
+use pericles_bench::cpu_seconds;
 
 const ROUNDS: usize = 15;
 

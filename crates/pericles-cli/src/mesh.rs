@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pericles_io::read_mesh;
 use pericles_mesh::fill::TriangleSurface;
-use pericles_mesh::{PointOptions, Problem, RawMesh, SetKind, Summary};
+use pericles_mesh::{CellKind, PointOptions, Problem, RawMesh, SetKind, Summary};
 use pericles_run::units::{count, quantity, significant};
 use serde::Serialize;
 
@@ -43,6 +43,9 @@ struct Results {
 struct Count {
     kind: String,
     count: usize,
+    /// The word for so many, for people.
+    #[serde(skip)]
+    word: String,
 }
 
 #[derive(Serialize)]
@@ -104,8 +107,8 @@ fn of_points(file: &Path, summary: Summary, unit: f64) -> Results {
         file: file.display().to_string(),
         unit,
         nodes: summary.nodes,
-        elements: counts(summary.kinds),
-        left_out: counts(summary.left_out),
+        elements: kinds(&summary.kinds),
+        left_out: types(summary.left_out),
         points: summary.points,
         in_no_group: summary.in_no_group,
         volume: summary.volume,
@@ -131,7 +134,7 @@ fn of_surface(file: &Path, mesh: &RawMesh, surface: &TriangleSurface, unit: f64)
         file: file.display().to_string(),
         unit,
         nodes: mesh.nodes.len(),
-        elements: counts(mesh.cells.counts()),
+        elements: kinds(&mesh.cells.counts()),
         left_out: Vec::new(),
         points: 0,
         in_no_group: 0,
@@ -143,9 +146,20 @@ fn of_surface(file: &Path, mesh: &RawMesh, surface: &TriangleSurface, unit: f64)
     }
 }
 
-fn counts<K: ToString>(all: Vec<(K, usize)>) -> Vec<Count> {
-    let one = |(kind, count): (K, usize)| Count {
+fn kinds(all: &[(CellKind, usize)]) -> Vec<Count> {
+    let one = |&(kind, count): &(CellKind, usize)| Count {
         kind: kind.to_string(),
+        count,
+        word: kind.word(count).to_owned(),
+    };
+    all.iter().map(one).collect()
+}
+
+/// Elements of types by their names in the file.
+fn types(all: Vec<(String, usize)>) -> Vec<Count> {
+    let one = |(kind, count): (String, usize)| Count {
+        word: kind.clone(),
+        kind,
         count,
     };
     all.into_iter().map(one).collect()
@@ -162,7 +176,7 @@ fn text(results: &Results) -> String {
     let kinds = |all: &[Count]| {
         let words = all
             .iter()
-            .map(|c| format!("{} {}", number(c.count), c.kind));
+            .map(|c| format!("{} {}", number(c.count), c.word));
         words.collect::<Vec<_>>().join(", ")
     };
     line("nodes", number(results.nodes));

@@ -49,7 +49,7 @@ fn a_mesh_is_described_for_scripts_in_si_units() {
     let output = succeed(place.path(), &format!("mesh {file} --unit mm"));
     let words = text(&output.stdout);
     assert!(
-        words.contains("tri") && words.contains("left (faces): 20 points"),
+        words.contains(" triangles") && words.contains("left (faces): 20 points"),
         "{words}"
     );
 }

@@ -144,7 +144,7 @@ pub use key_path::KeyPath;
 pub use material::{Material, MaterialModel, NamedMaterial};
 pub use model::{Body, Model, Solid};
 pub use output::{
-    Checkpoint, CrackOutput, FieldFormat, FragmentOutput, Output, Picture, Precision,
+    Checkpoint, CrackOutput, FieldBlocks, FieldFormat, FragmentOutput, Output, Picture, Precision,
 };
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};

@@ -80,6 +80,8 @@ const WRONG: &[Wrong] = &[
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\ndimension = 2\nplane = \"strain\"", (3, 1), "[body]", &["[body] lacks `unit`"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mmm\"\ndimension = 2\nplane = \"strain\"", (6, 8), "\"mmm\"", &["unknown unit `mmm`", "the unit of length of the file"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mm\"\ndimension = 1\nplane = \"strain\"", (7, 13), "1", &["out of range", "2 or 3"]),
+    wrong(BODY, "shape = \"outline\"\nfile = \"a.txt\"\nunit = \"mm\"\nspacing = 1e-4\nplane = \"strain\"\npositions = \"jittered\"\ncells = \"partial\"", (10, 1), "cells", &["`cells` has no place in [body]", "only points on a lattice have partial cells"]),
+    wrong("fields = { interval = \"0.5 us\" }", "fields = { blocks = \"sets\" }", (38, 21), "\"sets\"", &["unknown choice of blocks `sets`", "\"groups\"", "\"materials\""]),
     wrong(BODY, "shape = \"outline\"\npolygons = []\nspacing = 1e-4\nplane = \"strain\"", (5, 12), "[]", &["at least one polygon"]),
     // Expressions and tables.
     wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (23, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),

@@ -27,12 +27,13 @@ pub struct ResultBody {
 }
 
 impl ResultBody {
-    /// The body of a cloud with sets by name; `block` gives the name of a block by its number.
+    /// The body of a cloud with sets by name; `block` gives the number of the block of a point, `name` the name of a block by its number.
     pub fn new<'a>(
         title: impl Into<String>,
         cloud: &PointCloud,
         sets: impl IntoIterator<Item = (&'a str, &'a [u32])>,
-        block: impl Fn(u32) -> String,
+        block: impl Fn(usize) -> u32,
+        name: impl Fn(u32) -> String,
     ) -> Self {
         let numbering = Numbering::of(cloud);
         let in_files = |points: &mut dyn Iterator<Item = u32>| {
@@ -41,13 +42,13 @@ impl ResultBody {
             numbers
         };
         let all = 0..cloud.len() as u32;
-        let mut kinds: Vec<u32> = (0..cloud.len()).map(|i| cloud.block(i)).collect();
+        let mut kinds: Vec<u32> = (0..cloud.len()).map(&block).collect();
         kinds.sort_unstable();
         kinds.dedup();
         let blocks = kinds.into_iter().map(|kind| {
-            let mut members = all.clone().filter(|&i| cloud.block(i as usize) == kind);
+            let mut members = all.clone().filter(|&i| block(i as usize) == kind);
             PointList {
-                name: block(kind),
+                name: name(kind),
                 points: in_files(&mut members),
             }
         });

@@ -7,11 +7,11 @@ use pericles_mesh::{Format, PointOptions, Summary};
 
 fn report(path: &Path) -> Result<(), String> {
     let format = Format::of(path).ok_or("an unknown ending")?;
-    let content = std::fs::read(path).map_err(|error| error.to_string())?;
     let include = |name: &str| {
         std::fs::read(path.with_file_name(name)).map_err(|error| format!("{name}: {error}"))
     };
     let begin = Instant::now();
+    let content = std::fs::read(path).map_err(|error| error.to_string())?;
     let mesh = format
         .parse(&content, u64::MAX, &include)
         .map_err(|fault| fault.to_string())?;

@@ -43,6 +43,21 @@ impl CellKind {
         Hexahedron,
     ];
 
+    /// The word for so many cells of this kind: "triangle", "triangles".
+    pub fn word(self, count: usize) -> &'static str {
+        let [one, several] = match self {
+            Point => ["point", "points"],
+            Line => ["line", "lines"],
+            Triangle => ["triangle", "triangles"],
+            Quadrilateral => ["quadrilateral", "quadrilaterals"],
+            Tetrahedron => ["tetrahedron", "tetrahedra"],
+            Pyramid => ["pyramid", "pyramids"],
+            Wedge => ["wedge", "wedges"],
+            Hexahedron => ["hexahedron", "hexahedra"],
+        };
+        if count == 1 { one } else { several }
+    }
+
     /// Number of corners.
     pub fn corners(self) -> usize {
         match self {

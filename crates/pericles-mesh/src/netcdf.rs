@@ -151,7 +151,7 @@ impl<'a> NetCdf<'a> {
     pub(crate) fn new(content: &'a [u8]) -> Result<Self, Fault> {
         if content.starts_with(b"\x89HDF") {
             return Err(Fault::of_file(
-                "the file is netCDF-4 (HDF5); allowed: classic netCDF (CDF-1, CDF-2, CDF-5). Convert it: nccopy -k 64-bit-offset IN OUT",
+                "the file is netCDF-4 (HDF5); allowed: classic netCDF (CDF-1, CDF-2, CDF-5). Convert it: ncks -5 IN OUT, or nccopy -k cdf5 IN OUT",
             ));
         }
         let version = match content {

@@ -319,10 +319,23 @@ fn bad_meshes_are_refused_in_words() {
             count: 1
         }
     );
+    assert_eq!(
+        problem.to_string(),
+        "1 element(s) have no volume, the first of them element 812"
+    );
     let problem = refused(cube.clone(), CellKind::Quadrilateral, &[0, 1, 6, 7]);
     assert!(matches!(problem, Problem::NotPlane { .. }), "{problem}");
+    assert!(
+        problem
+            .to_string()
+            .contains("z from 0 to 1.75; a plane mesh must lie in a plane of constant z"),
+        "{problem}"
+    );
     let problem = refused(cube.clone(), CellKind::Line, &[0, 1]);
-    assert!(problem.to_string().contains("1 line only"), "{problem}");
+    assert!(
+        problem.to_string().contains("the mesh has 1 line only"),
+        "{problem}"
+    );
     let problem = refused(cube.clone(), CellKind::Tetrahedron, &[0, 1, 2, 8]);
     assert!(
         problem
@@ -351,13 +364,22 @@ fn bad_meshes_are_refused_in_words() {
         };
         let points = mesh.points(&options).unwrap();
         assert_eq!(!points.warnings.is_empty(), doubted, "{unit}");
-        assert!(points.check_sizes(3.0 * unit).is_none());
-        let problem = points.check_sizes(2.0 * unit).unwrap();
+        if let [warning] = &points.warnings[..] {
+            // The largest side of the box of the centroids and one element: the cube root of 11/8.
+            let words = warning.to_string();
+            let side = if unit < 1.0 {
+                "1.112e-4 m"
+            } else {
+                "1.112e5 m"
+            };
+            assert!(words.contains(side), "{words}");
+            assert!(words.contains("is the unit of the file right?"), "{words}");
+        }
+        assert!(points.check_sizes(3.0 * unit).is_empty());
+        let problems = points.check_sizes(2.0 * unit);
         assert!(
-            problem
-                .to_string()
-                .contains("fewer than 2 cells in a horizon"),
-            "{problem}"
+            matches!(&problems[..], [Problem::Coarse { .. }]),
+            "{problems:?}"
         );
     }
     let mut mesh = boxes(2, false);
@@ -375,4 +397,48 @@ fn bad_meshes_are_refused_in_words() {
         problem.to_string(),
         "the mesh has no block \"glue\"; it has steel"
     );
+}
+
+#[test]
+fn doubtful_sizes_are_reported_with_both_places() {
+    // A cube of side 1 and one of side 0.1, apart.
+    let mut mesh = RawMesh::default();
+    for (place, side) in [(0.0, 1.0), (2.0, 0.1)] {
+        let first = mesh.nodes.len() as u32;
+        for [x, y, z] in [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [1.0, 0.0, 1.0],
+            [1.0, 1.0, 1.0],
+            [0.0, 1.0, 1.0],
+        ] {
+            mesh.nodes.push([place + side * x, side * y, side * z]);
+        }
+        let corners: Vec<u32> = (first..first + 8).collect();
+        mesh.cells.push(CellKind::Hexahedron, &corners);
+    }
+    let points = mesh.points(&PointOptions::default()).unwrap();
+    let words: Vec<String> = points
+        .check_sizes(1.5)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(words.len(), 2, "{words:?}");
+    assert!(words[0].starts_with("fewer than 2 cells in a horizon of 1.5 m"));
+    assert!(words[1].contains("differ more than 8 : 1"));
+    for words in &words {
+        assert!(
+            words.contains("from 0.1 m at (2.05, 0.05, 0.05) to 1 m at (0.5, 0.5, 0.5)"),
+            "{words}"
+        );
+    }
+    assert_eq!(points.check_sizes(2.0).len(), 1);
+    mesh.nodes[8..].iter_mut().for_each(|x| {
+        *x = [2.0 + 5.0 * (x[0] - 2.0), 5.0 * x[1], 5.0 * x[2]];
+    });
+    let points = mesh.points(&PointOptions::default()).unwrap();
+    assert!(points.check_sizes(2.0).is_empty());
 }

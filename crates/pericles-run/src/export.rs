@@ -45,8 +45,8 @@ pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<us
     };
     let points = discretise(source.model(), &resources);
     let points = points.map_err(|error| source.refusal(error))?;
-    let title = source.model().title.clone().unwrap_or_default();
-    let body = result_body(title, &points.cloud, &points.sets, points.mesh.as_deref());
+    let mesh = points.mesh.as_deref();
+    let body = result_body(source.model(), &points.cloud, &points.sets, mesh);
     let first = first.read()?;
     if first.points.len() != 3 * body.volumes.len() {
         let reason = format!(

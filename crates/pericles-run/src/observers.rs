@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pericles::Simulation;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
-use pericles_deck::{ALL, FieldFormat, Model, Picture, Precision, Scheme};
+use pericles_deck::{ALL, FieldBlocks, FieldFormat, Model, Picture, Precision, Scheme};
 use pericles_io::observers::{
     Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, FragmentCourse, History,
     InnerColumns, PictureOf, Pictures, Probes, Reactions, ResultFile, ResultFormat, SurfaceCourse,
@@ -153,8 +153,7 @@ fn add_fields(
     }
     let single = output.precision == Precision::Single;
     let mut one_file = |name: &str, format: ResultFormat| {
-        let title = model.title.clone().unwrap_or_default();
-        let points = result_body(title, &body.cloud, &body.sets, body.mesh.as_deref());
+        let points = result_body(model, &body.cloud, &body.sets, body.mesh.as_deref());
         let path = folder.file(name);
         let file = ResultFile::new(path, format, Arc::new(points), &output.names, single);
         simulation.observe(output.fields, Box::new(file));
@@ -192,19 +191,56 @@ fn add_fields(
     Ok(names)
 }
 
-/// A body as files of results describe it: blocks are the groups of a mesh, or the blocks of listed points.
+/// A body as files of results describe it, with the blocks that the model asks for.
 pub fn result_body(
-    title: String,
+    model: &Model,
     cloud: &PointCloud,
     sets: &Sets,
     mesh: Option<&MeshBody>,
 ) -> ResultBody {
     let named = sets.iter().filter(|(name, _)| name != ALL);
     let named = named.map(|(name, points)| (name.as_str(), points.as_slice()));
-    ResultBody::new(title, cloud, named, |block| {
-        let group = mesh.and_then(|mesh| mesh.block_name(block));
-        group.map_or_else(|| format!("block_{block}"), String::from)
-    })
+    let title = model.title.clone().unwrap_or_default();
+    match (model.output.blocks, model.body.solid()) {
+        (FieldBlocks::Materials, Some(solid)) => {
+            let own = solid.material.name();
+            let (numbers, names) = material_blocks(model, own, cloud, sets);
+            let name = |block: u32| names[block as usize - 1].to_owned();
+            ResultBody::new(title, cloud, named, |i| numbers[i], name)
+        }
+        _ => {
+            let name = |block: u32| {
+                let group = mesh.and_then(|mesh| mesh.block_name(block));
+                group.map_or_else(|| format!("block_{block}"), String::from)
+            };
+            ResultBody::new(title, cloud, named, |i| cloud.block(i), name)
+        }
+    }
+}
+
+/// The material of each point by its number, counted from 1, and the names of the materials, that of the body first.
+fn material_blocks<'m>(
+    model: &'m Model,
+    own: &'m str,
+    cloud: &PointCloud,
+    sets: &Sets,
+) -> (Vec<u32>, Vec<&'m str>) {
+    let others = model.materials.iter().map(|other| other.name.as_str());
+    let names: Vec<&str> = std::iter::once(own).chain(others).collect();
+    let mut numbers = vec![1; cloud.len()];
+    for assignment in &model.assignments {
+        let material = assignment.material.as_deref();
+        let Some(place) = names.iter().position(|name| Some(*name) == material) else {
+            continue;
+        };
+        let is_assigned = |name: &String| assignment.sets.contains(name);
+        for (_, points) in sets.iter().filter(|(name, _)| is_assigned(name)) {
+            for &i in points {
+                numbers[i as usize] = place as u32 + 1;
+            }
+        }
+    }
+    (numbers, names)
 }
 
 /// Adds the pictures that a model asks for; their files, relative to the folder.

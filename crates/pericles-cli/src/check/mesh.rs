@@ -17,7 +17,7 @@ pub(super) fn mesh(assembly: &Assembly) -> Vec<Line> {
     let kinds: Vec<String> = summary
         .kinds
         .iter()
-        .map(|(kind, number)| format!("{} {kind}", count(*number as u64)))
+        .map(|(kind, number)| format!("{} {}", count(*number as u64), kind.word(*number)))
         .collect();
     let outside = match summary.in_no_group {
         0 => String::new(),

@@ -31,7 +31,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
         .collect();
     let positions = positions::read(&table);
     let random = positions.is_some_and(|positions| positions.are_random());
-    let cells = cells(&table, boundary.as_ref(), random);
+    let cells = cells(&table, random);
     table.finish();
     read.frame.cells = !random && cells == Some(FilledCells::Whole);
     read.shape = (|| {
@@ -90,12 +90,11 @@ fn polygons(table: &Table<'_>) -> Option<Boundary> {
         .map(Boundary::Polygons)
 }
 
-fn cells(table: &Table<'_>, boundary: Option<&Boundary>, random: bool) -> Option<FilledCells> {
-    let closed = matches!(boundary, Some(Boundary::Surface { open: false, .. }));
-    if boundary.is_some() && (random || !closed) {
+fn cells(table: &Table<'_>, random: bool) -> Option<FilledCells> {
+    if random {
         table.forbid(
             "cells",
-            "only a lattice in a closed surface of triangles has partial cells",
+            "only points on a lattice have partial cells: leave `positions` out, or `cells`",
         );
         return Some(FilledCells::Whole);
     }

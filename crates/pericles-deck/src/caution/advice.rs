@@ -70,6 +70,9 @@ impl Subject for Caution {
             Self::NoSupport { .. } => {
                 "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
             }
+            Self::Unbalanced { .. } => {
+                "they accelerate and never come to rest: hold points by [[prescribe]], or balance the loads"
+            }
             Self::ProbeOutside { .. } => "the nearest point is read instead",
             Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
             Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
@@ -137,6 +140,7 @@ impl Subject for Caution {
             Self::LoadedArea(_) => "which area?",
             Self::LoadOnHeld { .. } => "held",
             Self::NoSupport { .. } => "loose parts",
+            Self::Unbalanced { .. } => "not in balance",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",

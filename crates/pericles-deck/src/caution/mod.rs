@@ -210,6 +210,24 @@ pub enum Caution {
         /// One of them, m.
         place: Vec<f64>,
     },
+    /// A static body of which a part is moved by loads that are not in balance.
+    #[error(
+        "the loads on {points} of {of} points, such as that at {} m, have {} that no support takes",
+        spot(place),
+        net(*force, *moment)
+    )]
+    Unbalanced {
+        /// Points of the part.
+        points: usize,
+        /// All points.
+        of: usize,
+        /// One of them, m.
+        place: Vec<f64>,
+        /// The net force, N.
+        force: Option<f64>,
+        /// The net moment about the centre of the part, N m.
+        moment: Option<f64>,
+    },
     /// A probe away from the body.
     #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
     ProbeOutside {
@@ -392,4 +410,12 @@ fn share(part: usize, whole: usize) -> String {
     } else {
         format!("{part} of the {whole} points of this load are")
     }
+}
+
+/// A net force (N) and moment (N m).
+fn net(force: Option<f64>, moment: Option<f64>) -> String {
+    let force = force.map(|force| format!("a net force of {}", quantity(force, "N")));
+    let moment = moment.map(|moment| format!("a net moment of {}", quantity(moment, "N m")));
+    let both: Vec<String> = force.into_iter().chain(moment).collect();
+    both.join(" and ")
 }

@@ -71,9 +71,8 @@ impl Check {
                 }
             }
         }
-        let closed = matches!(filled.boundary, Boundary::Surface { open: false, .. });
-        let right = filled.cells == FilledCells::Whole || closed && !filled.positions.are_random();
-        let allowed = "allowed: \"whole\", except for a lattice in a closed surface of triangles";
+        let right = filled.cells == FilledCells::Whole || !filled.positions.are_random();
+        let allowed = "allowed: \"whole\" with random positions";
         self.within(right, key.key("cells"), "partial", allowed);
         self.holes(key, &filled.holes);
         self.positions(key, filled.positions);

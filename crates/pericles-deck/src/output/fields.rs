@@ -25,12 +25,24 @@ impl FieldFormat {
     }
 }
 
+/// What the blocks of a file with blocks are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FieldBlocks {
+    /// The groups of a mesh, or the blocks of listed points.
+    #[default]
+    Groups,
+    /// The materials of the points.
+    Materials,
+}
+
 /// `[output] fields`.
 pub(super) struct Fields {
     pub(super) schedule: Schedule,
     pub(super) names: Vec<Field>,
     pub(super) formats: Vec<FieldFormat>,
     pub(super) cells: bool,
+    pub(super) blocks: FieldBlocks,
 }
 
 /// When field files are written, which fields, and how.
@@ -46,6 +58,7 @@ pub(super) fn fields(
             names: usual,
             formats: FieldFormat::usual(),
             cells: false,
+            blocks: FieldBlocks::Groups,
         });
     }
     let table = table.table_or_empty("fields")?;
@@ -64,12 +77,21 @@ pub(super) fn fields(
         );
         Some(false)
     };
+    let blocks = table.choice_or_first(
+        "blocks",
+        "choice of blocks",
+        &[
+            ("groups", FieldBlocks::Groups),
+            ("materials", FieldBlocks::Materials),
+        ],
+    );
     table.finish();
     Some(Fields {
         schedule: schedule?,
         names: names?,
         formats: formats?,
         cells: cells?,
+        blocks: blocks?,
     })
 }
 

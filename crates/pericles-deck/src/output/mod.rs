@@ -2,7 +2,7 @@
 
 mod fields;
 
-pub use fields::FieldFormat;
+pub use fields::{FieldBlocks, FieldFormat};
 
 use pericles::observe::{Field, Schedule};
 use pericles::space::Point;
@@ -29,6 +29,9 @@ pub struct Output {
     /// Whether fields are also written on the cells of a mesh.
     #[serde(default)]
     pub cells: bool,
+    /// What the blocks of Exodus files are.
+    #[serde(default)]
+    pub blocks: FieldBlocks,
     /// When a row is added to the tables of energies, probes and reactions.
     #[serde(with = "crate::form")]
     pub history: Schedule,
@@ -58,6 +61,7 @@ impl Default for Output {
             names: Field::USUAL.to_vec(),
             formats: FieldFormat::usual(),
             cells: false,
+            blocks: FieldBlocks::Groups,
             history: Schedule::Count(200),
             extremes: Vec::new(),
             cracks: None,
@@ -194,12 +198,14 @@ pub(crate) fn read(
         names,
         formats,
         cells,
+        blocks,
     } = fields?;
     Some(Output {
         fields: schedule,
         names,
         formats,
         cells,
+        blocks,
         history: history?,
         extremes: extremes?,
         cracks: cracks?,

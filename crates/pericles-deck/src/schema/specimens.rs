@@ -266,7 +266,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     ),
     specimen(BAR, &["body={ shape = 'points', file = 'cloud.txt', spacing = 1 }"]),
     specimen(BAR, &["body={ shape = 'mesh', file = 'a.msh', unit = 'mm' }", "sets.grip={ near_faces = { faces = 'left', depth = 1 } }", "load=[{ set = 'right', pressure = 1 }]"]),
-    specimen(BAR, &["body={ shape = 'mesh', file = 'a.msh', unit = 'mm', spacing = 'auto', blocks = ['steel'] }", "output.fields={ cells = true, format = 'exodus' }"]),
+    specimen(BAR, &["body={ shape = 'mesh', file = 'a.msh', unit = 'mm', spacing = 'auto', blocks = ['steel'] }", "output.fields={ cells = true, format = 'exodus', blocks = 'materials' }"]),
     specimen(
         BAR,
         &["body={ shape = 'mesh', file = 'a.msh', unit = 'mm', spacing = 1, dimension = 2, plane = 'stress', thickness = 1, blocks = 'steel' }", "sets.grip={ near_faces = { faces = 'left', cells = 1 } }", "load=[{ set = 'right', pressure = { expression = 'x' } }]", "output.fields={ format = ['vtu', 'vtkhdf'] }"],
@@ -275,6 +275,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["body={ shape = 'solid', file = 'a.stl', unit = 'mm', spacing = 1, open = true, hole = [{ all = true }] }"]),
     specimen(BAR, &["body={ shape = 'solid', file = 'a.stl', unit = 'mm', spacing = 1, cells = 'partial' }"]),
     specimen(BAR, &["body={ shape = 'outline', polygons = [[[0, 0], [9, 0], [0, 9]]], spacing = 1, plane = 'stress', positions = 'jittered', jitter = 0.2, seed = 2 }"]),
+    specimen(BAR, &["body={ shape = 'outline', file = 'a.txt', unit = 'mm', spacing = 1, plane = 'stress', cells = 'partial' }"]),
     specimen(BAR, &["body={ shape = 'outline', file = 'a.txt', unit = 'mm', spacing = 1, plane = 'strain', thickness = 1, positions = 'blue-noise' }"]),
     specimen(BAR, &["body.positions='jittered'"]),
     specimen(BAR, &["body={ shape = 'points', file = 'cloud.txt', spacing = 1, dimension = 2, plane = 'stress', thickness = 1 }"]),

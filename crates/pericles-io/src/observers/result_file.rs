@@ -1,7 +1,7 @@
 //! Fields on the points over time in one file.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::{Archive, Result, Saved, Values};
@@ -9,6 +9,7 @@ use pericles_mesh::results::{
     ExodusLayout, ExodusWriter, FieldSpec, VtkHdfLayout, VtkHdfWriter, WriteError,
 };
 
+use super::background::Background;
 use super::fields::columns;
 use super::table::misfit;
 use crate::error::IoError;
@@ -28,13 +29,18 @@ pub enum ResultFormat {
 
 /// Fields on the points in one file that grows output by output, in the user's numbering of the points. A killed run leaves a whole file of the outputs before; a resumed one
 /// continues it to the same bytes.
+///
+/// Outputs are written by a thread of their own while the run goes on, one at a time.
 pub struct ResultFile {
     path: PathBuf,
     format: ResultFormat,
     body: Arc<ResultBody>,
     wanted: Vec<Field>,
     is_single: bool,
-    writer: Option<Writer>,
+    writer: Option<Arc<Mutex<Writer>>>,
+    /// Outputs so far, the one under way among them.
+    outputs: usize,
+    background: Background,
 }
 
 enum Writer {
@@ -43,10 +49,18 @@ enum Writer {
 }
 
 impl Writer {
-    fn outputs(&self) -> usize {
+    fn append(&mut self, time: f64, values: &[&[f64]]) -> std::result::Result<(), WriteError> {
         match self {
-            Self::Exodus(writer) => writer.outputs(),
-            Self::VtkHdf(writer) => writer.outputs(),
+            Self::Exodus(writer) => writer.append(time, &[], values),
+            Self::VtkHdf(writer) => writer.append(time, values),
+        }
+    }
+
+    /// Brings what was written to the disk.
+    fn sync(&self) -> std::io::Result<()> {
+        match self {
+            Self::Exodus(writer) => writer.sync(),
+            Self::VtkHdf(writer) => writer.sync(),
         }
     }
 }
@@ -67,6 +81,8 @@ impl ResultFile {
             wanted: wanted.to_vec(),
             is_single,
             writer: None,
+            outputs: 0,
+            background: Background::default(),
         }
     }
 
@@ -128,33 +144,41 @@ impl ResultFile {
         }
     }
 
-    fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), WriteError> {
-        if self.writer.is_none() {
-            self.writer = Some(self.open(0)?);
-        }
+    fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
+        let failed = |error| write_error(&self.path, error);
+        let writer = match &self.writer {
+            Some(writer) => Arc::clone(writer),
+            None => {
+                let writer = self.open(0).map_err(failed)?;
+                Arc::clone(self.writer.insert(Arc::new(Mutex::new(writer))))
+            }
+        };
         let numbering = &self.body.numbering;
-        let arrays: Vec<_> = self
+        let arrays: Vec<Vec<f64>> = self
             .wanted
             .iter()
             .flat_map(|&field| columns(field, snapshot))
-            .map(|(_, _, array)| numbering.apply(array))
+            .map(|(_, _, array)| numbering.apply(array).into_owned())
             .collect();
-        let values: Vec<&[f64]> = arrays.iter().map(|array| &**array).collect();
-        let time = snapshot.state().t;
-        match &mut self.writer {
-            Some(Writer::Exodus(writer)) => writer.append(time, &[], &values),
-            Some(Writer::VtkHdf(writer)) => writer.append(time, &values),
-            None => Ok(()),
-        }
+        let (time, path) = (snapshot.state().t, self.path.clone());
+        self.background.start(move || {
+            let values: Vec<&[f64]> = arrays.iter().map(Vec::as_slice).collect();
+            let mut writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
+            let written = writer.append(time, &values);
+            written.map_err(|error| write_error(&path, error))
+        })?;
+        self.outputs += 1;
+        Ok(())
     }
 
-    /// Brings what was written to the disk.
+    /// Waits for the output under way and brings all of them to the disk.
     fn sync(&self) -> std::result::Result<(), IoError> {
-        let synced = match &self.writer {
-            Some(Writer::Exodus(writer)) => writer.sync(),
-            Some(Writer::VtkHdf(writer)) => writer.sync(),
-            None => Ok(()),
+        self.background.settle()?;
+        let Some(writer) = &self.writer else {
+            return Ok(());
         };
+        let writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
+        let synced = writer.sync();
         synced.map_err(|error| IoError::writing(&self.path, error))
     }
 
@@ -171,8 +195,7 @@ impl Observer for ResultFile {
         for field in &self.wanted {
             snapshot.check(*field)?;
         }
-        let written = self.write(snapshot);
-        Ok(written.map_err(|error| write_error(&self.path, error))?)
+        Ok(self.write(snapshot)?)
     }
 
     fn settle(&self) -> std::result::Result<(), ObserveError> {
@@ -188,7 +211,10 @@ impl Saved for ResultFile {
     fn save(&self, archive: &mut Archive) {
         let key = self.key();
         let Self {
-            writer,
+            outputs,
+            // Opened again.
+            writer: _,
+            background: _,
             // Given again.
             path: _,
             format: _,
@@ -196,17 +222,18 @@ impl Saved for ResultFile {
             wanted: _,
             is_single: _,
         } = self;
-        let outputs = writer.as_ref().map_or(0, Writer::outputs);
-        archive.put(key, Values::U64(vec![outputs as u64]));
+        archive.put(key, Values::U64(vec![*outputs as u64]));
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut outputs = 0;
         archive.u64_into(self.key(), std::slice::from_mut(&mut outputs))?;
+        self.outputs = outputs as usize;
         self.writer = (outputs > 0)
             .then(|| self.open(outputs as usize))
             .transpose()
-            .map_err(|error| misfit(write_error(&self.path, error)))?;
+            .map_err(|error| misfit(write_error(&self.path, error)))?
+            .map(|writer| Arc::new(Mutex::new(writer)));
         Ok(())
     }
 }

@@ -4,13 +4,15 @@
 //! |---|---|
 //! | nodes of a lattice inside a closed surface, exactly | [`fill`] |
 //! | the same of a surface with holes, by the winding number | [`fill_open`] |
-//! | parts of cells, for cells on the boundary | [`fill_partially`] |
+//! | parts of cells, for cells on the boundary | [`fill_partially`], [`fill_open_partially`] |
 //! | nodes of a plane lattice inside polygons | [`Outline::fill`] |
+//! | parts of plane cells | [`Outline::fill_partially`] |
 //!
 //! Results do not depend on the number of threads.
 
 mod columns;
 mod lattice;
+mod open_parts;
 mod outline;
 mod partial;
 mod rows;
@@ -19,6 +21,7 @@ mod winding;
 
 pub use columns::fill;
 pub use lattice::{Filled, Lattice};
+pub use open_parts::fill_open_partially;
 pub use outline::Outline;
 pub use partial::{PartialCells, fill_partially};
 pub use surface::TriangleSurface;

@@ -14,7 +14,7 @@ const LINES: usize = 4;
 /// Cells below this part give their volume to their nearest neighbours.
 const LEAST: f64 = 0.1;
 
-/// Cells of a lattice with the part of each that is inside a surface.
+/// Cells of a lattice with the part of each that is inside a surface or an outline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartialCells {
     /// The lattice.
@@ -117,7 +117,7 @@ fn add_length(lattice: &Lattice, cells: &mut [f64], low: f64, high: f64) {
 }
 
 /// The cells that are kept, with the volumes of those that are not.
-fn gathered(lattice: Lattice, parts: &[f64]) -> PartialCells {
+pub(super) fn gathered(lattice: Lattice, parts: &[f64]) -> PartialCells {
     let [nx, ny, nz] = lattice.counts;
     let place = |[i, j, k]: [usize; 3]| (j * nx + i) * nz + k;
     let cells = || {

@@ -174,8 +174,16 @@ fn solid_angle(corners: &[[f64; 3]; 3], point: [f64; 3]) -> f64 {
 /// # Errors
 /// A lattice with too many nodes.
 pub fn fill_open(surface: &TriangleSurface, spacing: [f64; 3]) -> Result<Filled, FillError> {
+    fill_by_winding(surface, &WindingTree::new(surface), spacing)
+}
+
+/// [`fill_open`] with a tree of the surface.
+pub(super) fn fill_by_winding(
+    surface: &TriangleSurface,
+    tree: &WindingTree,
+    spacing: [f64; 3],
+) -> Result<Filled, FillError> {
     let lattice = Lattice::around(surface.bounds(), spacing)?;
-    let tree = WindingTree::new(surface);
     let enclosed = surface.signed_volume();
     let outward = if enclosed < 0.0 { -1.0 } else { 1.0 };
     let [nx, _, nz] = lattice.counts;

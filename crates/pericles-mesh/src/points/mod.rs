@@ -102,20 +102,26 @@ impl MeshPoints {
         [least, most]
     }
 
-    /// Whether the sizes of the elements suit a horizon (m): the largest at most half of it, and none below an eighth of the largest.
-    pub fn check_sizes(&self, horizon: f64) -> Option<Problem> {
+    /// What is doubtful of the sizes of the elements with a horizon (m): the largest should be at most half of it, and none below an eighth of the largest.
+    pub fn check_sizes(&self, horizon: f64) -> Vec<Problem> {
         let [least, most] = self.extremes();
         let at = |point: usize| ElementSize {
             size: self.sizes[point],
             position: self.positions[point],
         };
-        let coarse = self.sizes[most] > 0.5 * horizon;
-        let graded = self.sizes[least] < self.sizes[most] / 8.0;
-        (coarse || graded).then(|| Problem::Sizes {
-            smallest: at(least),
-            largest: at(most),
-            horizon,
-        })
+        let (smallest, largest) = (at(least), at(most));
+        let mut problems = Vec::new();
+        if largest.size > 0.5 * horizon {
+            problems.push(Problem::Coarse {
+                smallest,
+                largest,
+                horizon,
+            });
+        }
+        if smallest.size < largest.size / 8.0 {
+            problems.push(Problem::Graded { smallest, largest });
+        }
+        problems
     }
 }
 

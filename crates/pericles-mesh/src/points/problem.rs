@@ -23,7 +23,7 @@ impl fmt::Display for ElementSize {
 
 /// A number with four digits.
 fn short(x: f64) -> String {
-    if x == 0.0 || (1e-3..1e4).contains(&x.abs()) {
+    if x == 0.0 || (0.99995e-3..1e4).contains(&x.abs()) {
         let digits = 3 - x.abs().max(1e-3).log10().floor() as i32;
         let text = format!("{x:.*}", digits.clamp(0, 6) as usize);
         return match text.contains('.') {
@@ -49,7 +49,9 @@ fn list(names: &[String]) -> String {
 }
 
 fn kind_list(counts: &[(CellKind, usize)]) -> String {
-    let words = counts.iter().map(|(kind, count)| format!("{count} {kind}"));
+    let words = counts
+        .iter()
+        .map(|(kind, count)| format!("{count} {}", kind.word(*count)));
     match counts {
         [] => "no elements (Gmsh saves only elements in physical groups once there is a group: add the volume to one, or set Mesh.SaveAll)".to_owned(),
         _ => words.collect::<Vec<_>>().join(", ") + " only",
@@ -117,15 +119,25 @@ pub enum Problem {
         /// The largest z.
         high: f64,
     },
-    /// Elements too large for the horizon, or too different in size. A warning.
-    #[error("elements from {smallest} to {largest}: fewer than 2 cells in a horizon of {} m, or sizes that differ more than 8 : 1; refine the mesh or make it more uniform", short(*horizon))]
-    Sizes {
+    /// Elements larger than half the horizon. A warning.
+    #[error("fewer than 2 cells in a horizon of {} m: the elements have sizes from {smallest} to {largest}; refine the mesh, or choose a horizon of at least twice the largest size", short(*horizon))]
+    Coarse {
         /// The smallest element.
         smallest: ElementSize,
         /// The largest element.
         largest: ElementSize,
         /// The horizon, m.
         horizon: f64,
+    },
+    /// Elements too different in size. A warning.
+    #[error(
+        "the elements have sizes from {smallest} to {largest}, which differ more than 8 : 1; make the mesh more uniform"
+    )]
+    Graded {
+        /// The smallest element.
+        smallest: ElementSize,
+        /// The largest element.
+        largest: ElementSize,
     },
     /// A body of unlikely size. A warning.
     #[error("the largest side of the mesh is {} m: is the unit of the file right?", short(*side))]

@@ -95,6 +95,7 @@ pub fn assemble(
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
     assembler.refuse_lost_values(&system, &steps)?;
+    assembler.judge_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
     let stops = assembler.stops(&system, sets)?;
     let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);
     let Discretisation {

@@ -7,7 +7,7 @@ use pericles_deck::{
 };
 use pericles_mesh::fill::{
     FillError, Filled, Lattice, Outline, PartialCells, TriangleSurface, WindingTree, fill,
-    fill_open, fill_partially,
+    fill_open, fill_open_partially, fill_partially,
 };
 
 use super::assembler::Assembler;
@@ -44,6 +44,14 @@ impl Enclosure {
             Self::Surface(surface) => fill(surface, [spacing; 3]),
             Self::Open(surface) => fill_open(surface, [spacing; 3]),
             Self::Outline(outline) => outline.fill([spacing; 2]),
+        }
+    }
+
+    fn fill_partially(&self, spacing: f64) -> Result<PartialCells, FillError> {
+        match self {
+            Self::Surface(surface) => fill_partially(surface, [spacing; 3]),
+            Self::Open(surface) => fill_open_partially(surface, [spacing; 3]),
+            Self::Outline(outline) => outline.fill_partially([spacing; 2]),
         }
     }
 
@@ -98,9 +106,9 @@ impl Assembler<'_> {
             tolerance: 1e-9 * spacing,
         };
         let refused = |error| self.no_fill(shape, error);
-        if let (FilledCells::Partial, Enclosure::Surface(surface)) = (shape.cells, &enclosure) {
-            let cells = fill_partially(surface, [spacing; 3]).map_err(refused)?;
-            return partial_points(&cells, &holes)
+        if shape.cells == FilledCells::Partial {
+            let cells = enclosure.fill_partially(spacing).map_err(refused)?;
+            return partial_points(&cells, &holes, shape.section)
                 .cloud(dimension, shape.section)
                 .map_err(|error| at("body.spacing", error));
         }
@@ -241,14 +249,15 @@ fn on_lattice(
     PointCloud::on_lattice(dimension, origin, nodes, shape.section)
 }
 
-/// Cells as points with the volumes of their parts.
-fn partial_points(cells: &PartialCells, holes: &Holes<'_>) -> ListedPoints {
+/// Cells as points with the volumes of their parts, of an outline times the thickness `section`.
+fn partial_points(cells: &PartialCells, holes: &Holes<'_>, section: f64) -> ListedPoints {
     let mut listed = ListedPoints::default();
     for (&cell, &part) in cells.cells.iter().zip(&cells.parts) {
         let place = cells.lattice.position(cell);
         if !holes.contain(place) {
             listed.positions.push(place);
-            listed.volumes.push(part * cells.lattice.cell_volume());
+            let volume = part * cells.lattice.cell_volume() * section;
+            listed.volumes.push(volume);
             listed.blocks.push(1);
         }
     }

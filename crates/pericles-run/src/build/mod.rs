@@ -5,6 +5,7 @@ mod area;
 mod assemble;
 mod assembler;
 mod assembly;
+mod balance;
 mod body;
 mod boundary;
 mod breaking;

@@ -14,7 +14,7 @@ use super::constants::MaterialConstants;
 use super::refusal::HORIZON;
 
 impl Assembler<'_> {
-    /// Warns of loads on points that cannot follow them, and of static pieces that nothing holds.
+    /// Warns of loads on points that cannot follow them, and of bodies in pieces.
     pub(super) fn judge_conditions(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
         self.judge_held_loads(system, warnings);
         let Some(solid) = self.model.body.solid() else {
@@ -23,9 +23,8 @@ impl Assembler<'_> {
         if solid.shape.is_refined() {
             return;
         }
-        if matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
-            self.judge_support(solid, system, warnings);
-        } else {
+        // Supports of static bodies are judged with their loads.
+        if !matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
             self.judge_pieces(solid, system, warnings);
         }
     }
@@ -143,28 +142,6 @@ impl Assembler<'_> {
         }
     }
 
-    fn judge_support(&self, solid: &Solid, system: &System, warnings: &mut Vec<ModelWarning>) {
-        let cloud = system.cloud();
-        let Some(piece) = self.pieces(solid, cloud) else {
-            return;
-        };
-        let mut supported = vec![false; cloud.len()];
-        for motion in system.motions() {
-            for &i in &motion.points {
-                supported[piece[i as usize]] = true;
-            }
-        }
-        let loose: Vec<usize> = (0..cloud.len()).filter(|&i| !supported[piece[i]]).collect();
-        if let Some(&first) = loose.first() {
-            let caution = Caution::NoSupport {
-                points: loose.len(),
-                of: cloud.len(),
-                place: place(cloud, first),
-            };
-            warnings.push(Remark::new("time.scheme", caution));
-        }
-    }
-
     /// Warns of bodies that are in pieces before they break. Only what was cut, has holes or is listed can be, and larger bodies are not looked at.
     fn judge_pieces(&self, solid: &Solid, system: &System, warnings: &mut Vec<ModelWarning>) {
         /// Finding bonds takes as long as some steps of the run.
@@ -195,7 +172,7 @@ impl Assembler<'_> {
     }
 
     /// The piece of each point, named by its first point: what bonds join at the start.
-    fn pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) -> Option<Vec<usize>> {
+    pub(super) fn pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) -> Option<Vec<usize>> {
         let material = &solid.material;
         // What is wrong with families and cracks has been refused when the operator was made.
         let horizon = self.largest_horizon(solid);

@@ -370,8 +370,19 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         mesh.nodes.iter_mut().for_each(|x| x[2] = 0.0);
         mesh
     };
-    says(MESH, &flat, &["deck.toml:4:8", "no volume"]);
-    says(MESH, &cube(), &["deck.toml:4:8", "plane of constant z"]);
+    says(
+        MESH,
+        &flat,
+        &[
+            "deck.toml:4:8",
+            "48 element(s) have no volume, the first of them element 1",
+        ],
+    );
+    says(
+        MESH,
+        &cube(),
+        &["deck.toml:4:8", "z from 0 to 8", "plane of constant z"],
+    );
     let error = built_of(MESH, |path| {
         Err(format!("{}: not there", path.display()).into())
     });
@@ -392,10 +403,34 @@ fn unusual_meshes_are_warned_about() {
     let mesh = block([8, 3, 2], false);
     assert_eq!(warnings(MESH, &mesh), "");
     let coarse = warnings(&MESH.replace("\"3 mm\"", "\"1.5 mm\""), &mesh);
-    assert!(
-        coarse.contains("fewer than 2 cells in a horizon"),
-        "{coarse}"
-    );
+    // All elements are equal: the first is named twice.
+    for part in [
+        "deck.toml:4:8",
+        "fewer than 2 cells in a horizon of 0.0015 m",
+        "sizes from 0.001 m at (5e-4, 5e-4, 5e-4) to 0.001 m at (",
+        "refine the mesh",
+    ] {
+        assert!(coarse.contains(part), "{part}: {coarse}");
+    }
+    let graded = {
+        // The last layer of elements a tenth as thick along all axes: 0.1 mm beside 1 mm.
+        let mut mesh = mesh.clone();
+        let first = mesh.nodes.len() as u32;
+        for k in 0..8 {
+            let corner = [k & 1, k >> 1 & 1, k >> 2];
+            mesh.nodes.push(corner.map(|x| 20.0 + 0.1 * f64::from(x)));
+        }
+        let corners = [0, 1, 3, 2, 4, 5, 7, 6].map(|k| first + k);
+        mesh.cells.push(CellKind::Hexahedron, &corners);
+        warnings(MESH, &mesh)
+    };
+    for part in [
+        "deck.toml:4:8",
+        "sizes from 1e-4 m at (0.02005, 0.02005, 0.02005) to 0.001 m at (",
+        "differ more than 8 : 1",
+    ] {
+        assert!(graded.contains(part), "{part}: {graded}");
+    }
     let metres = MESH
         .replace("unit = \"mm\"", "unit = \"um\"")
         .replace("\"3 mm\"", "\"3 um\"")
@@ -403,6 +438,17 @@ fn unusual_meshes_are_warned_about() {
         .replace("0.007", "0.000007");
     let tiny = warnings(&metres, &mesh);
     assert!(tiny.contains("is the unit of the file right?"), "{tiny}");
+    // 8 m, in kilometres: fine in metres, doubtful beyond 100 m.
+    let huge = MESH
+        .replace("unit = \"mm\"", "unit = \"km\"")
+        .replace("\"3 mm\"", "\"3 km\"")
+        .replace("2.1 mm", "2.1 km")
+        .replace("0.007", "7000");
+    let huge = warnings(&huge, &mesh);
+    assert!(
+        huge.contains("the largest side of the mesh is 8000 m: is the unit of the file right?"),
+        "{huge}"
+    );
 }
 
 const SOLID: &str = r#"
@@ -436,6 +482,11 @@ fn a_filled_cube_is_the_block_on_the_same_lattice() {
         &cube(),
     );
     assert_eq!(partial.cloud.len(), 512);
+    let both = SOLID.replace("unit =", "cells = \"partial\"\nopen = true\nunit =");
+    let both = built(&both, &cube());
+    assert_eq!(both.cloud.len(), 512);
+    let whole = |volume: &f64| (volume / 1e-9 - 1.0).abs() < 1e-12;
+    assert!(both.cloud.volumes().iter().all(whole));
     let open = built(&SOLID.replace("unit =", "open = true\nunit ="), &cube());
     assert_eq!(open.cloud.len(), 512);
 }
@@ -488,6 +539,17 @@ fn polygons_surround_plane_bodies() {
         "shape = \"plate\"\nplane = \"stress\"\nthickness = \"2 mm\"\nsize = [\"8 mm\", \"4 mm\"]\nhole = [{ box = { min = [\"2 mm\", \"1 mm\"], max = [\"4 mm\", \"3 mm\"] } }]",
     );
     compare_forces(&ours, &super::build(&plate));
+    // Partial cells with the volume of their part: 8.5 mm in 9 cells of 1 mm, of which the outer ones are three quarters.
+    let partial = outline
+        .replace("\"8 mm\"", "\"8.5 mm\"")
+        .replace("plane =", "cells = \"partial\"\nplane =");
+    let partial = super::build(&partial);
+    let volume: f64 = partial.cloud.volumes().iter().sum();
+    let exact = (8.5 * 4.0 - 2.0 * 2.0) * 2e-9;
+    assert!((volume / exact - 1.0).abs() < 1e-12, "{volume} {exact}");
+    let first = partial.cloud.nearest([0.25e-3, 0.5e-3, 0.0]);
+    assert!((partial.cloud.volumes()[first] / 1.5e-9 - 1.0).abs() < 1e-12);
+    assert!(partial.cloud.lattice().is_none());
     // The same from a file.
     let file = SOLID.replace(
         "shape = \"solid\"\nfile = \"cube.stl\"",
@@ -568,4 +630,80 @@ fn a_surface_of_triangles_cuts_as_its_plane_does() {
     let plane = cracked(&format!("polygon = {corners}")).unwrap_or_else(|e| panic!("{e}"));
     assert!(plane.precut_bonds > 1000);
     assert_eq!(file.precut_bonds, plane.precut_bonds);
+}
+
+#[test]
+fn blocks_of_result_files_are_groups_or_materials() {
+    let mesh = block([8, 3, 2], false);
+    let material = "horizon = \"3 mm\"\n[materials.glue]\ndensity = 1200\nyoungs_modulus = \"3 GPa\"\n[[assign]]\nset = \"far\"\nmaterial = \"glue\"";
+    let groups = MESH.replace("horizon = \"3 mm\"", material);
+    let materials = groups.clone() + "[output]\nfields = { blocks = \"materials\" }\n";
+    for (text, expected) in [
+        (groups, [("left half", 24), ("right half", 24)]),
+        (materials, [("default", 42), ("glue", 6)]),
+    ] {
+        let model = Deck::parse(&text, "deck.toml", &[]).unwrap().model;
+        let body = built(&text, &mesh);
+        let sets = &body.sets;
+        let result = pericles_run::result_body(&model, &body.cloud, sets, body.mesh.as_deref());
+        let found: Vec<(&str, usize)> = result
+            .blocks
+            .iter()
+            .map(|block| (block.name.as_str(), block.points.len()))
+            .collect();
+        assert_eq!(found, expected);
+        let mut all: Vec<u32> = result
+            .blocks
+            .iter()
+            .flat_map(|b| b.points.clone())
+            .collect();
+        all.sort_unstable();
+        assert_eq!(all, (0..48).collect::<Vec<u32>>());
+    }
+}
+
+#[test]
+fn loads_that_no_support_balances_are_reported_with_their_size() {
+    let warnings = |text: &str, mesh: &RawMesh| {
+        let body = built(text, mesh);
+        let lines: Vec<String> = body.warnings.iter().map(|warning| warning.line()).collect();
+        lines.join("\n")
+    };
+    // 8 × 3 × 2 mm of bricks, 1 MPa at both ends: in balance, but loose.
+    let pulled = MESH
+        .split("[[load]]\nset = \"grip\"")
+        .next()
+        .unwrap()
+        .to_owned();
+    let at_rest = pulled.clone() + "[time]\nscheme = \"relaxation\"\nload_steps = 2\n";
+    let bricks = block([8, 3, 2], false);
+    let loose = warnings(&at_rest, &bricks);
+    assert!(
+        loose.contains("48 of 48 points") && loose.contains("joined to no support"),
+        "{loose}"
+    );
+    // Tetrahedra: the centroids of those that own a face are a quarter of an edge apart along y and along z between the ends, 6 N · 0.25 mm about each axis.
+    let tetrahedra = block([8, 3, 2], true);
+    let turned = warnings(&at_rest, &tetrahedra);
+    assert!(
+        turned.contains("the loads on 288 of 288 points")
+            && turned.contains("have a net moment of 2.12 mN m that")
+            && !turned.contains("a net force")
+            && !turned.contains("joined to no support"),
+        "{turned}"
+    );
+    // One pull only: 1 MPa on 3 × 2 mm², through the middle.
+    let force = "a net force of 6.00 N that no support takes";
+    let one = at_rest.replace("traction = [\"-1 MPa\", 0, 0]", "traction = [0, 0, 0]");
+    let moved = warnings(&one, &bricks);
+    assert!(moved.contains(force), "{moved}");
+    // A support across the pull does not take it; one along it does.
+    let held = |velocity: &str| {
+        let held = format!("[[prescribe]]\nset = \"left half\"\nvelocity = [{velocity}]\n[time]");
+        warnings(&one.replace("[time]", &held), &bricks)
+    };
+    assert!(held("\"free\", 0, 0").contains(force));
+    let quiet = held("0, \"free\", \"free\"");
+    assert!(!quiet.contains("no support"), "{quiet}");
+    assert!(!held("0, 0, 0").contains("no support"));
 }
