@@ -244,6 +244,7 @@ fn conditions_time_and_output_arrive() {
             names: Field::USUAL.to_vec(),
             formats: vec![FieldFormat::Vtu],
             cells: false,
+            blocks: FieldBlocks::Groups,
             history: Schedule::Every(20),
             extremes: Vec::new(),
             energy_bound: None,
