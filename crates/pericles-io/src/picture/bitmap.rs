@@ -21,6 +21,15 @@ pub(super) const SIZES: std::ops::RangeInclusive<u32> = 200..=16_000;
 /// Segments that are rasterised together. The time grows with the square of their number where they cross the same rows.
 const TOGETHER: usize = 500;
 
+/// How lines are drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pen {
+    pub(super) width: f64,
+    pub(super) colour: Rgb,
+    /// Lengths of dashes and of the gaps between them, of which the round ends take a part.
+    pub(super) dash: Option<[f64; 2]>,
+}
+
 /// Pixels in rows from the top; the pixel (i, j) covers the square from (i, j) to (i + 1, j + 1).
 #[derive(Debug, Clone)]
 pub(super) struct Bitmap {
@@ -105,27 +114,18 @@ impl Bitmap {
         }
     }
 
-    /// Strokes with round ends and joints; `dash` holds the lengths of dashes and gaps. A single point is a dot.
-    pub(super) fn stroke(
-        &mut self,
-        lines: &[Vec<(f64, f64)>],
-        width: f64,
-        dash: Option<[f64; 2]>,
-        colour: Rgb,
-    ) {
-        let dash = dash.map(|lengths| lengths.map(|length| length as f32).to_vec());
+    /// Strokes with round ends and joints. A single point is a dot.
+    pub(super) fn stroke(&mut self, lines: &[Vec<(f64, f64)>], pen: Pen) {
+        let dash = (pen.dash).map(|lengths| lengths.map(|length| length as f32).to_vec());
         let stroke = Stroke {
-            width: width as f32,
+            width: pen.width as f32,
             line_cap: LineCap::Round,
             line_join: LineJoin::Round,
             dash: dash.and_then(|lengths| StrokeDash::new(lengths, 0.0)),
             ..Stroke::default()
         };
         // The pattern of dashes runs on over the whole line.
-        let together = match stroke.dash {
-            Some(_) => usize::MAX,
-            None => TOGETHER,
-        };
+        let together = pen.dash.map_or(TOGETHER, |_| usize::MAX);
         let Some(mut page) = self.page() else {
             return;
         };
@@ -133,7 +133,7 @@ impl Bitmap {
             for first in (0..line.len().max(2) - 1).step_by(together) {
                 let end = first.saturating_add(together).saturating_add(1);
                 if let Some(path) = path(&line[first..end.min(line.len())]).finish() {
-                    let paint = paint(colour, 1.0);
+                    let paint = paint(pen.colour, 1.0);
                     page.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
                 }
             }
@@ -230,6 +230,15 @@ mod tests {
         assert_eq!(bitmap.pixel(7, 4), WHITE);
     }
 
+    fn pen(width: f64, dash: Option<[f64; 2]>) -> Pen {
+        let colour = [0, 0, 0];
+        Pen {
+            width,
+            colour,
+            dash,
+        }
+    }
+
     /// The area that is black, in pixels.
     fn inked(bitmap: &Bitmap) -> f64 {
         let values = bitmap.rgb().into_iter();
@@ -242,7 +251,7 @@ mod tests {
             let (dx, dy) = (60.0 * angle.cos(), 60.0 * angle.sin());
             let (a, b) = ((100.0 - dx, 100.0 - dy), (100.0 + dx, 100.0 + dy));
             let mut bitmap = Bitmap::white(200, 200);
-            bitmap.stroke(&[vec![a, (100.0, 100.0), b]], 4.0, None, [0, 0, 0]);
+            bitmap.stroke(&[vec![a, (100.0, 100.0), b]], pen(4.0, None));
             let dark = inked(&bitmap);
             // a rectangle of 120 × 4 and two half discs of radius 2
             let area = 120.0 * 4.0 + std::f64::consts::PI * 4.0;
@@ -261,8 +270,8 @@ mod tests {
             INK,
         );
         assert_eq!(bitmap.pixel(0, 39), INK);
-        bitmap.stroke(&[vec![(-1e9, 5.0), (1e9, 5.0)]], 3.0, None, [255, 0, 0]);
-        assert_eq!(bitmap.pixel(20, 5), [255, 0, 0]);
+        bitmap.stroke(&[vec![(-1e9, 5.0), (1e9, 5.0)]], pen(3.0, None));
+        assert_eq!(bitmap.pixel(20, 5), [0, 0, 0]);
     }
 
     #[test]
@@ -273,14 +282,14 @@ mod tests {
             draw(&mut bitmap);
             inked(&bitmap)
         };
-        let dot = area_of(&|page| page.stroke(&[vec![(50.0, 30.0)]], 6.0, None, [0, 0, 0]));
+        let dot = area_of(&|page| page.stroke(&[vec![(50.0, 30.0)]], pen(6.0, None)));
         let filled = area_of(&|page| page.fill_disc((50.0, 30.0), 3.0, [0, 0, 0]));
         assert!((dot - disc).abs() < 0.05 * disc, "{dot}");
         assert!((filled - disc).abs() < 0.05 * disc, "{filled}");
         // 100 = 2 × (20 + 18) + 20 + 4: three dashes with round ends, one of them round the corner
         let line = vec![(10.0, 10.0), (60.0, 10.0), (60.0, 40.0), (80.0, 40.0)];
         let dash = Some([20.0, 18.0]);
-        let dashed = area_of(&|page| page.stroke(&[line.clone()], 6.0, dash, [0, 0, 0]));
+        let dashed = area_of(&|page| page.stroke(std::slice::from_ref(&line), pen(6.0, dash)));
         let area = 3.0 * (20.0 * 6.0 + disc);
         assert!((dashed - area).abs() < 0.02 * area, "{dashed} {area}");
     }
@@ -296,9 +305,9 @@ mod tests {
             })
             .collect();
         let mut whole = Bitmap::white(140, 120);
-        whole.stroke(&[line.clone()], 4.0, Some([1e6, 1.0]), [0, 0, 0]);
+        whole.stroke(std::slice::from_ref(&line), pen(4.0, Some([1e6, 1.0])));
         let mut pieces = Bitmap::white(140, 120);
-        pieces.stroke(&[line], 4.0, None, [0, 0, 0]);
+        pieces.stroke(&[line], pen(4.0, None));
         let (whole, pieces) = (inked(&whole), inked(&pieces));
         assert!((whole - pieces).abs() < 2e-3 * whole, "{whole} {pieces}");
     }

@@ -1,6 +1,6 @@
 //! Axes and curves of a chart, and how a curve is drawn.
 
-use super::bitmap::Rgb;
+use super::bitmap::{Pen, Rgb};
 use super::colour::CURVES;
 use super::drawing::Drawing;
 use super::frame::{Scale, Sizes, finite_range, widened};
@@ -140,39 +140,36 @@ impl Curve {
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pen {
+pub(super) struct Look {
     number: usize,
-    colour: Rgb,
-    width: f64,
-    /// Lengths of dashes and of the gaps between them, of which the round ends take a part.
-    dash: Option<[f64; 2]>,
+    pen: Pen,
 }
 
-impl Pen {
+impl Look {
     pub(super) fn of(number: usize, curve: &Curve, sizes: &Sizes) -> Self {
         let width = 2.0 * sizes.line;
-        Self {
-            number,
-            colour: curve.colour.unwrap_or(CURVES[number % CURVES.len()]),
+        let pen = Pen {
             width,
+            colour: curve.colour.unwrap_or(CURVES[number % CURVES.len()]),
             dash: curve.dashed.then_some([4.0 * width, 3.6 * width]),
-        }
+        };
+        Self { number, pen }
     }
 
     pub(super) fn stroke(&self, drawing: &mut Drawing, lines: Vec<Vec<(f64, f64)>>) {
-        drawing.stroke(lines, self.width, self.dash, self.colour);
+        drawing.stroke(lines, self.pen);
     }
 
     /// A disc, square, diamond or triangle, in turn.
     pub(super) fn mark(&self, drawing: &mut Drawing, (x, y): (f64, f64)) {
-        let r = 2.0 * self.width;
+        let (r, colour) = (2.0 * self.pen.width, self.pen.colour);
         let corners: &[(f64, f64)] = match self.number % 4 {
-            0 => return drawing.fill_disc((x, y), r, self.colour),
+            0 => return drawing.fill_disc((x, y), r, colour),
             1 => &[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)],
             2 => &[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)],
             _ => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
         };
         let corners: Vec<_> = corners.iter().map(|c| (x + r * c.0, y + r * c.1)).collect();
-        drawing.fill_polygon(corners, self.colour);
+        drawing.fill_polygon(corners, colour);
     }
 }

@@ -1,6 +1,6 @@
 //! A picture as shapes on a page, from which pixels or SVG are made.
 
-use super::bitmap::{Bitmap, Rgb};
+use super::bitmap::{Bitmap, Pen, Rgb};
 use super::raster::Raster;
 use super::text::{self, Style};
 
@@ -21,10 +21,7 @@ pub(super) enum Shape {
     /// Lines with round ends and joints.
     Strokes {
         lines: Vec<Vec<Spot>>,
-        width: f64,
-        /// Lengths of dashes and of the gaps between them.
-        dash: Option<[f64; 2]>,
-        colour: Rgb,
+        pen: Pen,
     },
     Disc {
         middle: Spot,
@@ -102,19 +99,8 @@ impl Drawing {
         }
     }
 
-    pub(super) fn stroke(
-        &mut self,
-        lines: Vec<Vec<Spot>>,
-        width: f64,
-        dash: Option<[f64; 2]>,
-        colour: Rgb,
-    ) {
-        self.shapes.push(Shape::Strokes {
-            lines,
-            width,
-            dash,
-            colour,
-        });
+    pub(super) fn stroke(&mut self, lines: Vec<Vec<Spot>>, pen: Pen) {
+        self.shapes.push(Shape::Strokes { lines, pen });
     }
 
     pub(super) fn fill_disc(&mut self, middle: Spot, radius: f64, colour: Rgb) {
@@ -152,12 +138,7 @@ impl Drawing {
                     colour,
                     cover,
                 } => bitmap.fill_rectangle(*from, *to, *colour, *cover),
-                Shape::Strokes {
-                    lines,
-                    width,
-                    dash,
-                    colour,
-                } => bitmap.stroke(lines, *width, *dash, *colour),
+                Shape::Strokes { lines, pen } => bitmap.stroke(lines, *pen),
                 Shape::Disc {
                     middle,
                     radius,

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::backdrop::Backdrop;
 use super::bitmap::{INK, SIZES, WHITE};
 use super::clip::{clipped, inside, length_inside};
-use super::curve::{Axis, Curve, Pen};
+use super::curve::{Axis, Curve, Look};
 use super::drawing::Drawing;
 use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
 use super::text::{self, Align, Style};
@@ -184,8 +184,8 @@ impl LineChart {
         let drawn: Vec<_> = curves
             .map(|(number, curve)| {
                 let pieces = self.pieces(curve, &frame, factors);
-                let pen = Pen::of(number, curve, &sizes);
-                draw_curve(&mut drawing, curve, &pieces, (&pen, area));
+                let look = Look::of(number, curve, &sizes);
+                draw_curve(&mut drawing, curve, &pieces, (&look, area));
                 pieces
             })
             .collect();
@@ -327,14 +327,14 @@ impl LineChart {
         drawing.fill_rectangle(place, corner, WHITE, 0.85);
         drawing.outline(place, corner, 1.0, [200, 200, 200]);
         for (line, (number, curve)) in self.named().enumerate() {
-            let pen = Pen::of(number, curve, sizes);
+            let look = Look::of(number, curve, sizes);
             let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
             let (from, to) = (place.0 + gap, place.0 + gap + key.sample);
             if curve.line {
-                pen.stroke(drawing, vec![vec![(from, y), (to, y)]]);
+                look.stroke(drawing, vec![vec![(from, y), (to, y)]]);
             }
             if curve.markers {
-                pen.mark(drawing, (0.5 * (from + to), y));
+                look.mark(drawing, (0.5 * (from + to), y));
             }
             let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, key.room);
             drawing.text(&curve.name, (to + gap, y), style.colour(INK));
@@ -347,19 +347,19 @@ fn draw_curve(
     drawing: &mut Drawing,
     curve: &Curve,
     pieces: &[Vec<(f64, f64)>],
-    (pen, area): (&Pen, Area),
+    (look, area): (&Look, Area),
 ) {
     if curve.line {
         let lines = pieces
             .iter()
             .flat_map(|piece| clipped(piece, area))
             .collect();
-        pen.stroke(drawing, lines);
+        look.stroke(drawing, lines);
     }
     if curve.markers {
         let places = pieces.iter().flatten();
         for &place in places.filter(|place| inside(**place, area)) {
-            pen.mark(drawing, place);
+            look.mark(drawing, place);
         }
     }
 }

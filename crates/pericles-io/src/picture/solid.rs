@@ -1,6 +1,6 @@
 //! A solid in parallel projection: cells as little blocks, nearer ones in front, with the directions of the axes and a length.
 
-use super::bitmap::{INK, Rgb};
+use super::bitmap::{INK, Pen, Rgb};
 use super::colour::shaded;
 use super::drawing::Drawing;
 use super::frame::{Area, ColourBar, Sizes};
@@ -266,7 +266,12 @@ fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, siz
     for (c, [x, y, _]) in axes {
         let (name, colour) = AXES[c];
         let to = (from.0 + arm * x, from.1 - arm * y);
-        drawing.stroke(vec![vec![from, to]], 2.0 * sizes.line, None, colour);
+        let pen = Pen {
+            width: 2.0 * sizes.line,
+            colour,
+            dash: None,
+        };
+        drawing.stroke(vec![vec![from, to]], pen);
         let length = x.hypot(y);
         if length > 0.1 {
             let far = arm + 0.6 * sizes.tick_text / length;

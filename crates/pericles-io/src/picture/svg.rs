@@ -48,20 +48,15 @@ impl Page {
                 colour,
                 cover,
             } => self.rectangle(*from, *to, *colour, *cover),
-            Shape::Strokes {
-                lines,
-                width,
-                dash,
-                colour,
-            } => {
-                let dash = dash.map_or(String::new(), |[dash, gap]| {
+            Shape::Strokes { lines, pen } => {
+                let dash = pen.dash.map_or(String::new(), |[dash, gap]| {
                     format!(" stroke-dasharray=\"{},{}\"", short(dash), short(gap))
                 });
                 let path: String = lines.iter().map(|line| course(line)).collect();
                 self.line(format_args!(
                     "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"{dash}/>",
-                    hex(*colour),
-                    short(*width)
+                    hex(pen.colour),
+                    short(pen.width)
                 ));
             }
             Shape::Disc {
@@ -178,6 +173,7 @@ fn short(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::bitmap::Pen;
 
     #[test]
     fn every_shape_is_there_and_text_is_escaped() {
@@ -186,9 +182,11 @@ mod tests {
         drawing.fill_rectangle((1.2, 2.0), (10.0, 20.4), [255, 0, 128], 0.5);
         drawing.stroke(
             vec![vec![(0.0, 0.0), (5.5, 7.125)], vec![(1.0, 1.0)]],
-            2.0,
-            Some([8.0, 7.2]),
-            black,
+            Pen {
+                width: 2.0,
+                colour: black,
+                dash: Some([8.0, 7.2]),
+            },
         );
         drawing.fill_disc((50.0, 60.0), 4.0, black);
         drawing.fill_polygon(vec![(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)], black);
