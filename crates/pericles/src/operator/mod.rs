@@ -61,7 +61,7 @@ pub use state_based::{
     LinearSolidForce, LinearSolidGrid, SmallStrain,
 };
 pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
-pub use view::{BondAt, BondView, DilatationView};
+pub use view::{BondAt, BondView, DilatationView, PlasticView};
 pub use zoned::{LocalForce, SplitForce};
 
 pub use crate::lanes::InstructionSet;

@@ -89,8 +89,9 @@ fn force_states_return_to_the_yield_surface_and_flow_dissipates() {
                     }
                 }
                 strain = force.plastic_strain().to_vec();
-                assert!(operator.dissipated() >= dissipated);
-                dissipated = operator.dissipated();
+                let now = (&operator as &dyn Force).dissipated();
+                assert!(now >= dissipated);
+                dissipated = now;
                 before = u;
             }
             assert!(strain.iter().filter(|&&strain| strain > 0.0).count() > n / 2);

@@ -7,7 +7,7 @@ use super::kernels::{force_rows, square_rows};
 use super::tangent::{Along, change_rows, tangent_rows};
 use crate::domain::Field;
 use crate::operator::{
-    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, On, TwoPass,
+    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, On, PlasticView, TwoPass,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
@@ -127,6 +127,10 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         Some(0)
     }
 
+    fn plastic(&self) -> Option<&dyn PlasticView> {
+        self.laws.yields().then_some(self)
+    }
+
     fn bonds(&self) -> Option<&dyn BondView> {
         Some(self)
     }
@@ -180,6 +184,12 @@ impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         self.solid.mark_endangered(u, fraction, marks);
+    }
+}
+
+impl<L: Kinematics, const D: usize> PlasticView for InelasticSolidForce<L, D> {
+    fn plastic_strain_into(&self, out: &mut [f64]) {
+        out.copy_from_slice(self.plastic_strain());
     }
 }
 
