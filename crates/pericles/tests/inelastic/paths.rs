@@ -251,12 +251,13 @@ fn proportional_paths_follow_their_closed_form() {
                     assert!((stretch - plastic * e).abs() < 1e-13);
                 }
             }
-            assert!(strain > 0.1);
+            assert!(strain > 0.05);
         }
     }
 }
 
-/// G γ √3/σ_y at yield in simple shear, and the equivalent strain over γ/√3: bounds by an independent implementation for 200 directions.
+/// G γ √3/σ_y at yield in simple shear, and the equivalent strain over γ/√3: an independent implementation found 0.988 to 1.016 in three dimensions and 0.997 to 1.003 in the plane for 200 directions, with horizons that are longer by
+/// 0.015 spacings; hence bounds that are wider by 0.003.
 #[test]
 fn lattices_yield_at_the_stress_given() {
     let law = plastic(0.2, 0.0);
@@ -302,7 +303,7 @@ fn lattices_yield_at_the_stress_given() {
             (5.0 * square / m).sqrt(),
             strength,
             shear,
-            [0.988, 1.016],
+            [0.985, 1.019],
         );
         let list = force2.force().solid().bonds();
         let family = bonds(list, &c2, &constants2.influence, i2);
@@ -319,6 +320,6 @@ fn lattices_yield_at_the_stress_given() {
         let strength = force2.force().strength(i2);
         let shear = constants2.elastic.shear();
         let equivalent = (8.0 / 3.0 * square / m).sqrt();
-        check(norm, equivalent, strength, shear, [0.997, 1.003]);
+        check(norm, equivalent, strength, shear, [0.994, 1.006]);
     }
 }

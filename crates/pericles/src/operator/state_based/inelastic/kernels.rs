@@ -211,7 +211,8 @@ fn force_rows_body<T: Lanes, L: Kinematics, const D: usize>(
             let bond = bonds.group(first + k, &here, u);
             let there = bonds.there::<T>(first + k, reliefs.states);
             let [forth, back] = reliefs.of_group::<T>(first + k);
-            let p = bond.last - factor * forth - there[1] * back;
+            // The same bits seen from the other end.
+            let p = bond.last - (factor * forth + there[1] * back);
             let t = L::strain(bond.xi, bond.eta, bond.inverse_square).masked(intact[k]);
             let pull = L::exact_pull(t, p, stiffness + there[0]);
             let pull = (bond.weight * pull).masked(intact[k]);

@@ -168,7 +168,7 @@ fn tangent_rows_body<T: Lanes, L: Kinematics, const D: usize>(
             let change_there = bonds.there::<T>(first + k, changes);
             let pull_there = bonds.there::<T>(first + k, along.direction)[3];
             let [forth, back] = reliefs.of_group::<T>(first + k);
-            let p = bond.last - T::splat(own[1]) * forth - there[1] * back;
+            let p = bond.last - (T::splat(own[1]) * forth + there[1] * back);
             let s = T::splat(own[0]) + there[0];
             let t = L::strain(bond.xi, bond.eta, bond.inverse_square);
             let (d, stretch) = stretch_changes::<T, L, D>(bonds, along, first + k, from, &bond);
