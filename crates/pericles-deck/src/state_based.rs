@@ -1,8 +1,8 @@
 //! `model = "state-based"`: elastic constants and failure of linear peridynamic solids.
 
 use pericles::material::{
-    BondFailure, Fracture, FractureCalibration, GivenConstants, LinearSolid, StateInfluence,
-    Strains, StressState, StretchDefinition,
+    BondFailure, Fracture, FractureCalibration, GivenConstants, Inelasticity, LinearSolid,
+    StateInfluence, Strains, StressState, StretchDefinition,
 };
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,13 @@ pub struct StateBased {
     /// Finite or small displacements.
     #[serde(default, with = "crate::form")]
     pub strains: Strains,
+    /// Viscosity or plasticity of its shear.
+    #[serde(
+        default,
+        with = "crate::form",
+        skip_serializing_if = "Inelasticity::is_elastic"
+    )]
+    pub inelastic: Inelasticity,
 }
 
 impl StateBased {

@@ -4,8 +4,8 @@ use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration,
-    GivenConstants, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
-    StateInfluence, StretchDefinition,
+    GivenConstants, Inelasticity, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
+    StateInfluence, StretchDefinition, ViscousTerm, Yield,
 };
 use pericles::operator::DamageMeasure;
 use serde::{Deserialize, Serialize};
@@ -121,6 +121,32 @@ enum BondFailureForm {
 
 #[derive(Serialize, Deserialize)]
 #[serde(
+    remote = "Inelasticity",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+enum InelasticityForm {
+    Elastic,
+    Viscous(#[serde(with = "crate::form")] Vec<ViscousTerm>),
+    Plastic(#[serde(with = "crate::form")] Yield),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "ViscousTerm", deny_unknown_fields)]
+struct ViscousTermForm {
+    share: f64,
+    time: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Yield", deny_unknown_fields)]
+struct YieldForm {
+    stress: f64,
+    hardening: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
     remote = "InterfaceStiffness",
     rename_all = "snake_case",
     deny_unknown_fields
@@ -146,6 +172,9 @@ described!(
     GivenConstants: GivenConstantsForm,
     StateInfluence: StateInfluenceForm,
     BondFailure: BondFailureForm,
+    Inelasticity: InelasticityForm,
+    ViscousTerm: ViscousTermForm,
+    Yield: YieldForm,
     InterfaceStiffness: InterfaceStiffnessForm,
     DamageMeasure: DamageMeasureForm,
 );

@@ -22,7 +22,14 @@ pub(super) fn read(
     shared: bool,
 ) -> Option<Material> {
     forbid_former_tables(&table);
-    for key in ["strains", "failure", "stretch_definition"] {
+    for key in [
+        "strains",
+        "failure",
+        "stretch_definition",
+        "viscosity",
+        "yield_stress",
+        "hardening",
+    ] {
         table.forbid(key, "it belongs to model = \"state-based\"");
     }
     let dimension = body.frame.dimension;

@@ -3,6 +3,7 @@
 use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
+use super::inelastic;
 use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
@@ -47,6 +48,7 @@ pub(super) fn read(
         shared,
     );
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
+    let inelastic = inelastic::read(&table, body.state);
     let no_fail = no_fail(&table, sets);
     let damage = damage(&table);
     let form = form(&table);
@@ -68,6 +70,7 @@ pub(super) fn read(
         ..Material::from(StateBased {
             solid,
             strains: strains?,
+            inelastic: inelastic?,
         })
     })
 }

@@ -1,6 +1,7 @@
 //! `[material]` and `[materials.NAME]`: constants, horizon, influence function and breaking.
 
 mod bond_based;
+mod inelastic;
 mod keys;
 mod linear_solid;
 mod several;

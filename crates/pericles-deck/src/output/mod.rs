@@ -418,8 +418,12 @@ fn quantity(field: Field) -> Quantity {
         Field::Displacement => Quantity::Length,
         Field::Velocity => Quantity::Velocity,
         Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
-        Field::Stress => Quantity::Traction,
-        Field::Damage | Field::Strain | Field::Dilatation => Quantity::Number,
+        Field::Stress | Field::EquivalentStress => Quantity::Traction,
+        Field::Damage
+        | Field::Strain
+        | Field::Dilatation
+        | Field::PlasticStrain
+        | Field::YieldFlag => Quantity::Number,
         Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
         Field::Volume => Quantity::Number,
     }
@@ -441,7 +445,7 @@ impl Output {
 
     /// Whether stress or strain is wanted, which only listed bonds give.
     pub fn wants_tensors(&self) -> bool {
-        self.wants_any(Field::is_tensor)
+        self.wants_any(Field::is_of_bonds)
     }
 
     fn wants_any(&self, is_wanted: impl Fn(Field) -> bool) -> bool {

@@ -315,6 +315,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &["material={ model = 'state-based', density = 1, bulk_modulus = 2, shear_modulus = 1, horizon_ratio = 3, influence = { function = 'isotropic' } }"]),
     specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'bond-energy', fracture_energy = 1 }"]),
     specimen(BAR, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, horizon = 3, critical_stretch = 1, failure = 'stretch' }"]),
+    specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, viscosity = [{ share = 0.5, time = 1 }] }"]),
+    specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, yield_stress = 1, hardening = 1 }"]),
     // Several materials.
     specimen(PLATE, &[MATERIALS, ASSIGN, INTERFACES]),
     specimen(PLATE, &[STATE_BASED, STATE_BASED_MATERIALS, "assign=[{ set = 'top', material = 'a' }]", STATE_BASED_INTERFACES]),

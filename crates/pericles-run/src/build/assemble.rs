@@ -59,7 +59,7 @@ pub fn assemble(
         }
         (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
     };
-    assembler.refuse_dilatation(&bonds)?;
+    assembler.refuse_fields(&bonds)?;
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
         .map_err(|error| at("material.density", error))?;
     let mut state = assembler.initial_state(cloud, sets, resources)?;

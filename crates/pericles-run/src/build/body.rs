@@ -92,9 +92,9 @@ impl Assembler<'_> {
             self.bonds(solid, composite, (grids, &materials, &interfaces), warnings)?;
         let refused = bonds.form.refusal(Feature::Tensors.into());
         if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
-            let fields = "the fields Stress and Strain are";
+            let fields = "the fields Stress, Strain and Equivalent_Stress are";
             return Err(at_path(
-                self.field_key(Field::is_tensor),
+                self.field_key(Field::is_of_bonds),
                 Fault::NoFields { fields, reason },
             ));
         }
@@ -136,18 +136,31 @@ impl Assembler<'_> {
         })
     }
 
-    /// Refuses the dilatation of a body that has none.
-    pub(super) fn refuse_dilatation(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
-        let is_dilatation = |field| field == Field::Dilatation;
-        let known = bonds.operator.capabilities().dilatation.is_some();
-        if known || !self.model.output.wants(Field::Dilatation) {
-            return Ok(());
-        }
-        let fault = Fault::NoFields {
-            fields: "the field Dilatation is",
-            reason: "only state-based materials (model = \"state-based\") have a dilatation",
+    /// Refuses the dilatation and the plastic strain of a body that has none.
+    pub(super) fn refuse_fields(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
+        let capabilities = bonds.operator.capabilities();
+        let refuse = |is_meant, fields, reason| {
+            let fault = Fault::NoFields { fields, reason };
+            Err(at_path(self.field_key(is_meant), fault))
         };
-        Err(at_path(self.field_key(is_dilatation), fault))
+        let wants = |field| self.model.output.wants(field);
+        if capabilities.dilatation.is_none() && wants(Field::Dilatation) {
+            return refuse(
+                |field| field == Field::Dilatation,
+                "the field Dilatation is",
+                "only state-based materials (model = \"state-based\") have a dilatation",
+            );
+        }
+        if capabilities.plastic.is_none()
+            && (wants(Field::PlasticStrain) || wants(Field::YieldFlag))
+        {
+            return refuse(
+                |field| matches!(field, Field::PlasticStrain | Field::YieldFlag),
+                "the fields Plastic_Strain and Yield_Flag are",
+                "only materials with a `yield_stress` have a plastic strain",
+            );
+        }
+        Ok(())
     }
 
     /// The key that asks for some fields.

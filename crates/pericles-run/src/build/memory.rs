@@ -36,6 +36,8 @@ const KEPT: f64 = 4.0;
 /// Rows of displacements, references and dilatations of a state-based point, and its constants.
 const SOLID: f64 = 160.0;
 const WORKED: f64 = 24.0;
+/// Of viscous and plastic materials, beside 8 for every viscous term.
+const HISTORY: f64 = 20.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
@@ -278,7 +280,21 @@ impl Assembler<'_> {
             Some(_) => solid.material.surface_correction != Default::default(),
             None => !self.is_on_one_grid(solid),
         };
-        LISTED + if kept { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 }
+        let history = self.history_of_bond(solid);
+        LISTED + if kept { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 } + history
+    }
+
+    /// Bytes that viscous and plastic materials keep of a bond.
+    fn history_of_bond(&self, solid: &Solid) -> f64 {
+        let others = self.model.materials.iter().map(|other| &other.model);
+        let models = std::iter::once(&solid.material.model).chain(others);
+        let of_model = |model: &MaterialModel| match model {
+            MaterialModel::StateBased(state) if !state.inelastic.is_elastic() => {
+                HISTORY + NUMBER * state.inelastic.terms().len() as f64
+            }
+            _ => 0.0,
+        };
+        models.map(of_model).fold(0.0, f64::max)
     }
 
     /// Whether a stencil can serve all points of a state-based body.
@@ -287,6 +303,7 @@ impl Assembler<'_> {
         !shape.is_listed()
             && solid.material.surface_correction == Default::default()
             && !self.breaks_by_energy(solid)
+            && self.history_of_bond(solid) == 0.0
     }
 
     /// Whether all bonds of the same vector have one stiffness.

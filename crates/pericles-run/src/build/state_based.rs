@@ -1,10 +1,10 @@
 //! Forces of a body of state-based materials.
 
 use pericles::material::{
-    BondFailure, BondLimits, LinearSolid, LinearSolidConstants, SolidClasses, SolidSurface,
-    SurfaceCorrection,
+    BondFailure, BondLimits, Inelasticity, LinearSolid, LinearSolidConstants, SolidClasses,
+    SolidSurface, SurfaceCorrection,
 };
-use pericles::operator::{Feature, LinearSolidBody};
+use pericles::operator::{Feature, InelasticSolidBody, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Caution, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning, Remark,
@@ -40,12 +40,14 @@ impl Assembler<'_> {
         );
         let mut all = vec![constants.clone()];
         let mut solids = vec![&state_based.solid];
+        let mut laws = vec![state_based.inelastic.clone()];
         for other in &self.model.materials {
             let path = KeyPath::from("materials").key(&other.name);
             let MaterialModel::StateBased(own) = &other.model else {
                 return Err(self.other_kind(&path, &other.name));
             };
             solids.push(&own.solid);
+            laws.push(own.inelastic.clone());
             let constants = own.solid.constants(cloud, solid.state);
             let constants = constants.map_err(|error| at_path(&path, error.into()))?;
             self.judge_limits(&constants, &own.solid.failure, &path, warnings);
@@ -82,7 +84,16 @@ impl Assembler<'_> {
         };
         // Forms that transform are refused above.
         let form = material.form.of_bonds().unwrap_or_default();
-        let bonds = body.operator(form).map_err(at_material)?;
+        let bonds = match laws.iter().all(Inelasticity::is_elastic) {
+            true => body.operator(form),
+            false => {
+                // Without assignments all points have the first material.
+                laws.truncate(classes.as_ref().map_or(1, SolidClasses::materials));
+                let (elastic, laws) = (body, &laws[..]);
+                InelasticSolidBody { elastic, laws }.operator(form)
+            }
+        };
+        let bonds = bonds.map_err(at_material)?;
         let cracks = self.tracked_cracks(surfaces, &bonds.cuts, cloud, warnings);
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();

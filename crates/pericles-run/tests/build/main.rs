@@ -10,6 +10,7 @@ mod composition;
 mod conditions;
 mod ends;
 mod extremes;
+mod inelastic;
 mod initial;
 mod material;
 mod materials;

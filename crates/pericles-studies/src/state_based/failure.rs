@@ -115,7 +115,9 @@ fn of_layers(
     let of_layer = |k: i32| {
         let across = bonds.iter().filter(|bond| layers(bond.xi) > k);
         if limits.stretch.is_infinite() {
-            return limits.energy * across.map(|bond| bond.volume).sum::<f64>();
+            // Bonds at the horizon whose influence vanishes do no work and do not break.
+            let worked = across.filter(|bond| bond.weight > 1e-5 * bond.volume);
+            return limits.energy * worked.map(|bond| bond.volume).sum::<f64>();
         }
         let share: f64 = across
             .map(|bond| bond.weight * bond.length * bond.length / m)

@@ -169,6 +169,14 @@ pub enum PericlesError {
         "Dilatation is a field of state-based materials (model = \"state-based\"), which this body does not have: leave the field out"
     )]
     NoDilatation,
+    /// The plastic strain of a body whose materials do not yield.
+    #[error(
+        "{field} is a field of materials that yield, which this body does not have: give a material a `yield_stress` or leave the field out"
+    )]
+    NoPlasticStrain {
+        /// The field.
+        field: &'static str,
+    },
     /// An influence function that cannot be used here.
     #[error("influence function: {reason}")]
     BadInfluence {

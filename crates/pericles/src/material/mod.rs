@@ -41,9 +41,9 @@ pub use modulus::{ElasticModulus, StressState};
 pub use pair_force::PairForce;
 pub use polynomial::{GreenBond, LiteralBond};
 pub use state_based::{
-    BondFailure, BondLimits, ElasticConstants, GivenConstants, IsotropicInfluence, LatticeShear,
-    LinearSolid, LinearSolidConstants, SolidClasses, SolidSurface, StateInfluence, Strains,
-    StretchDefinition,
+    BondFailure, BondLimits, ElasticConstants, GivenConstants, Inelasticity, IsotropicInfluence,
+    LatticeShear, LinearSolid, LinearSolidConstants, MOST_TERMS, SolidClasses, SolidSurface,
+    StateInfluence, Strains, StretchDefinition, ViscousTerm, Yield,
 };
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};

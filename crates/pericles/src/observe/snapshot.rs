@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use super::tensors::{fitted_strain, places, virial_stress};
+use super::tensors::{equivalent_stress, fitted_strain, places, virial_stress};
 use crate::error::{PericlesError, Result};
 use crate::operator::BondView;
 use crate::space::PointCloud;
@@ -36,6 +36,12 @@ pub enum Field {
     KineticEnergyDensity,
     /// Dilatation of a state-based material: the relative change of volume, in the plane of area. Else not a number.
     Dilatation,
+    /// Equivalent stress, Pa: von Mises' of the virial stress; in the plane of the components within it, in a bar the size of the stress. As stress.
+    EquivalentStress,
+    /// Equivalent plastic strain. Of materials that yield; else not a number.
+    PlasticStrain,
+    /// 1 where a point has yielded, 0 elsewhere. As plastic strain.
+    YieldFlag,
 }
 
 impl Field {
@@ -49,7 +55,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -62,6 +68,9 @@ impl Field {
         Self::Volume,
         Self::KineticEnergyDensity,
         Self::Dilatation,
+        Self::EquivalentStress,
+        Self::PlasticStrain,
+        Self::YieldFlag,
     ];
 
     /// Name in files.
@@ -79,6 +88,9 @@ impl Field {
             Self::Volume => "Volume",
             Self::KineticEnergyDensity => "Kinetic_Energy_Density",
             Self::Dilatation => "Dilatation",
+            Self::EquivalentStress => "Equivalent_Stress",
+            Self::PlasticStrain => "Plastic_Strain",
+            Self::YieldFlag => "Yield_Flag",
         }
     }
 
@@ -88,8 +100,12 @@ impl Field {
             Self::Displacement => "m",
             Self::Velocity => "m/s",
             Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
-            Self::Stress => "Pa",
-            Self::Damage | Self::Strain | Self::Dilatation => "",
+            Self::Stress | Self::EquivalentStress => "Pa",
+            Self::Damage
+            | Self::Strain
+            | Self::Dilatation
+            | Self::PlasticStrain
+            | Self::YieldFlag => "",
             Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
             Self::Volume => "m³",
         }
@@ -110,6 +126,11 @@ impl Field {
     /// Whether it is a symmetric tensor field, component-major in the order of [`Field::components`].
     pub fn is_tensor(self) -> bool {
         matches!(self, Self::Stress | Self::Strain)
+    }
+
+    /// Whether it is made of single bonds.
+    pub fn is_of_bonds(self) -> bool {
+        self.is_tensor() || self == Self::EquivalentStress
     }
 
     /// Names of the components in a body of a dimension, none for a scalar.
@@ -178,6 +199,9 @@ pub struct Snapshot<'a> {
     stress: OnceCell<Vec<f64>>,
     strain: OnceCell<Vec<f64>>,
     dilatation: OnceCell<Vec<f64>>,
+    equivalent_stress: OnceCell<Vec<f64>>,
+    plastic_strain: OnceCell<Vec<f64>>,
+    yielded: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Snapshot<'a> {
@@ -198,6 +222,9 @@ impl<'a> Snapshot<'a> {
             stress: OnceCell::new(),
             strain: OnceCell::new(),
             dilatation: OnceCell::new(),
+            equivalent_stress: OnceCell::new(),
+            plastic_strain: OnceCell::new(),
+            yielded: OnceCell::new(),
         }
     }
 
@@ -222,7 +249,7 @@ impl<'a> Snapshot<'a> {
         self.state
     }
 
-    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have; only state-based materials have a dilatation.
+    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have; only state-based materials have a dilatation, and only materials that yield a plastic strain.
     ///
     /// # Errors
     /// A field that cannot.
@@ -231,7 +258,14 @@ impl<'a> Snapshot<'a> {
         if field == Field::Dilatation && capabilities.dilatation.is_none() {
             return Err(PericlesError::NoDilatation);
         }
-        if field.is_tensor() && capabilities.bonds.is_none() {
+        if let Field::PlasticStrain | Field::YieldFlag = field
+            && capabilities.plastic.is_none()
+        {
+            return Err(PericlesError::NoPlasticStrain {
+                field: field.name(),
+            });
+        }
+        if field.is_of_bonds() && capabilities.bonds.is_none() {
             return Err(PericlesError::NoSuchField {
                 field: field.name(),
             });
@@ -282,6 +316,25 @@ impl<'a> Snapshot<'a> {
                     view.dilatation_into(t, u, &mut dilatation);
                 }
                 dilatation
+            }),
+            Field::EquivalentStress => self.equivalent_stress.get_or_init(|| {
+                let dimension = self.system.cloud().dimension();
+                equivalent_stress(dimension, self.field(Field::Stress))
+            }),
+            Field::PlasticStrain => self.plastic_strain.get_or_init(|| {
+                let mut strain = vec![f64::NAN; self.system.points()];
+                if let Some(view) = self.system.operator().capabilities().plastic {
+                    view.plastic_strain_into(&mut strain);
+                }
+                strain
+            }),
+            Field::YieldFlag => self.yielded.get_or_init(|| {
+                let strains = self.field(Field::PlasticStrain).iter();
+                let flag = |strain: &f64| match strain.is_nan() {
+                    true => f64::NAN,
+                    false => f64::from(*strain > 0.0),
+                };
+                strains.map(flag).collect()
             }),
             Field::Volume => self.system.cloud().volumes(),
             Field::KineticEnergyDensity => self

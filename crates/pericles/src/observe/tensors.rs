@@ -20,6 +20,28 @@ pub(super) fn places(dimension: usize) -> &'static [(usize, usize)] {
 
 type Matrix = [[f64; 3]; 3];
 
+/// Von Mises' equivalent stress of stresses in the order of their components, Pa; of the components within the plane in two dimensions.
+pub(super) fn equivalent_stress(dimension: usize, stress: &[f64]) -> Vec<f64> {
+    let n = stress.len() / places(dimension).len();
+    let of_point = |i: usize| {
+        let part = |k: usize| stress[k * n + i];
+        match dimension {
+            1 => part(0).abs(),
+            2 => {
+                let [xx, yy, xy] = [0, 1, 2].map(part);
+                (xx * xx - xx * yy + yy * yy + 3.0 * xy * xy).sqrt()
+            }
+            _ => {
+                let [xx, yy, zz, xy, yz, xz] = [0, 1, 2, 3, 4, 5].map(part);
+                let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+                let shear = xy * xy + yz * yz + xz * xz;
+                (0.5 * normal + 3.0 * shear).sqrt()
+            }
+        }
+    };
+    (0..n).map(of_point).collect()
+}
+
 /// The virial stress σ_i = ½ Σ_j f_ij ⊗ (ξ + η), Pa, with the force densities f_ij of the bonds of point i; the symmetric part. In a body under uniform strain it is that of
 /// the continuum; within a horizon of a surface bonds, and so parts of it, are missing.
 pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {

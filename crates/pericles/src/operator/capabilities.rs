@@ -1,6 +1,8 @@
 //! What a force can do beside computing forces, each a trait of its own.
 
-use super::{BondView, Breakable, DilatationView, Force, LinearOperator, LocalForce, SplitForce};
+use super::{
+    BondView, Breakable, DilatationView, Force, LinearOperator, LocalForce, PlasticView, SplitForce,
+};
 
 /// The capabilities of a force; schemes, boundaries and observers ask for those that they need, and are refused where one is missing.
 #[derive(Default, Clone, Copy)]
@@ -19,6 +21,8 @@ pub struct Capabilities<'a> {
     pub bonds: Option<&'a dyn BondView>,
     /// Its points have a dilatation: it is state-based.
     pub dilatation: Option<&'a dyn DilatationView>,
+    /// Its points can yield.
+    pub plastic: Option<&'a dyn PlasticView>,
 }
 
 /// Whether a force is linear in the displacement as long as no bond breaks.

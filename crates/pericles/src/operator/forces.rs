@@ -147,6 +147,7 @@ impl Force for Forces {
             dilatation: self
                 .iter()
                 .find_map(|force| force.capabilities().dilatation),
+            plastic: self.iter().find_map(|force| force.capabilities().plastic),
             linear: match (exact, rounded) {
                 (true, _) => Linearity::Exact(self),
                 (false, true) => Linearity::Rounded,

@@ -9,6 +9,7 @@
 //! | `SurfaceForce` (`pericles-manifold`) | surfaces | listed, 12 bytes each | 1.1 (p = 2), 1.2 (p = 3) |
 //! | [`GridForce`] | on a lattice, one material | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline); in floats half of that |
 //! | [`LinearSolidForce`] | state-based, any | listed, 3 bytes each; two passes | twice to two and a half times [`BondForce`] |
+//! | [`InelasticSolidForce`] | state-based, viscous or plastic | listed, 23 bytes each and 8 for every viscous term | – |
 //! | [`LinearSolidGrid`] | state-based, on a lattice | one stencil, one bit each; two passes | twice [`GridForce`] |
 //!
 //! [`BondBody::operator`] and [`LinearSolidBody::operator`] choose. (Times: one core of an AMD EPYC 9004.)
@@ -56,10 +57,11 @@ pub use list::BondForce;
 pub use own_law::PlainLaw;
 pub use springs::{LatticeSpring, LatticeSprings};
 pub use state_based::{
-    FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, LinearSolidGrid, SmallStrain,
+    FiniteStrain, InelasticSolidBody, InelasticSolidForce, Kinematics, LinearSolidBody,
+    LinearSolidForce, LinearSolidGrid, SmallStrain,
 };
 pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
-pub use view::{BondAt, BondView, DilatationView};
+pub use view::{BondAt, BondView, DilatationView, PlasticView};
 pub use zoned::{LocalForce, SplitForce};
 
 pub use crate::lanes::InstructionSet;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::pool::{Lent, Pool};
 use super::{
     BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, LinearOperator,
-    Linearity, LocalForce, On,
+    Linearity, LocalForce, On, PlasticView,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -87,6 +87,11 @@ pub trait TwoPass: Saved + Send + Sync {
 
     /// Its bonds one by one, if they can be looked at.
     fn bonds(&self) -> Option<&dyn BondView> {
+        None
+    }
+
+    /// Its plastic strain, if its points can yield.
+    fn plastic(&self) -> Option<&dyn PlasticView> {
         None
     }
 
@@ -251,6 +256,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             split: None,
             bonds: self.force.bonds(),
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
+            plastic: self.force.plastic(),
             ..Capabilities::default()
         }
     }

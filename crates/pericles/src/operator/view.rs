@@ -40,6 +40,12 @@ pub trait BondView: Sync {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt));
 }
 
+/// An operator whose points yield.
+pub trait PlasticView: Sync {
+    /// Sets the equivalent plastic strain of every point.
+    fn plastic_strain_into(&self, out: &mut [f64]);
+}
+
 /// An operator whose force on a bond depends on the dilatations of its ends.
 pub trait DilatationView: Sync {
     /// Sets the dilatation of every point, dimensionless: the relative change of volume in three dimensions, of area in the plane, of length in a bar.

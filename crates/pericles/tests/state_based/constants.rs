@@ -284,6 +284,25 @@ fn the_mean_over_planes_is_the_fracture_energy_asked_for() {
     }
 }
 
+/// The conical function vanishes at the horizon, where bonds of three spacings are: they never break and do not count. The bonds that are left are those of a shorter horizon.
+#[test]
+fn bonds_without_force_do_not_count_for_the_bond_energy() {
+    let failure = bond_energy(FractureCalibration::Lattice);
+    let critical = |function: &InfluenceFunction, spacings: f64| {
+        let none = VolumeCorrection::None;
+        let material = with_failure(function.clone(), spacings, none, 0.3, failure);
+        let constants = material.constants_on(&cubes(3), 1.0, StressState::Spatial);
+        constants.unwrap().limits.energy
+    };
+    let (constant, conical) = (InfluenceFunction::Constant, InfluenceFunction::Conical);
+    let shorter = critical(&constant, 2.9);
+    assert!((critical(&conical, 3.0) / shorter - 1.0).abs() < 1e-13);
+    assert!(critical(&constant, 3.0) < 0.99 * shorter);
+    // A little beyond three spacings they carry force.
+    let longer = critical(&conical, 3.01);
+    assert!((longer / critical(&constant, 3.01) - 1.0).abs() < 1e-13);
+}
+
 #[test]
 fn limits_that_do_not_exist_are_refused() {
     // At ν = −0.9 the dilatational part outweighs the rest in the isotropic definition.

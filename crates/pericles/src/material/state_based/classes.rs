@@ -82,6 +82,11 @@ impl SolidClasses {
         self.of_point.is_empty() || self.of_point.len() == points
     }
 
+    /// How many materials there are.
+    pub fn materials(&self) -> usize {
+        self.constants.len()
+    }
+
     /// The number of a point's material.
     pub fn of_point(&self, i: usize) -> usize {
         self.of_point

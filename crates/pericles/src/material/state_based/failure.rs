@@ -117,6 +117,10 @@ pub(super) struct Calibrated {
     pub crack_planes: Vec<CrackPlane>,
 }
 
+/// The influence function over its largest value below which a bond counts as one without force: a function that vanishes at the horizon does so to within the rounding of lengths, and the margin of 1e-6 that some horizons
+/// have.
+const WITHOUT_FORCE: f64 = 1e-5;
+
 /// What the limit of a criterion is measured in.
 #[derive(Clone, Copy)]
 enum Measure {
@@ -242,7 +246,16 @@ impl Crossing<'_> {
         }
     }
 
-    /// The planes of the lattice with the energy of a unit area of crack along each.
+    /// The largest value of the influence function on the bonds of a point.
+    fn largest_influence(&self) -> f64 {
+        let mut largest: f64 = 0.0;
+        for_each_offset(self.cells, self.horizon, self.correction, |_, xi, _| {
+            largest = largest.max(self.influence.alpha_of(xi, self.horizon));
+        });
+        largest
+    }
+
+    /// The planes of the lattice with the energy of a unit area of crack along each. The bond energy is counted for bonds that carry force.
     ///
     /// The points beside a crack lie in layers, the k-th of which has the share p_k of its family beyond k planes of the lattice and more; a layer has 1/(planes per length) of volume for each area.
     fn planes(&self, measure: Measure) -> Vec<CrackPlane> {
@@ -251,9 +264,14 @@ impl Crossing<'_> {
         // Weighted volume and volume of the bonds of a point by the number of planes that they cross.
         let mut by_number: Vec<Vec<[f64; 2]>> = vec![Vec::new(); planes.len()];
         let mut whole = 0.0;
+        let largest = self.largest_influence();
         for_each_offset(cells, self.horizon, self.correction, |offset, xi, r| {
-            let volume = self.correction.factor(r, self.horizon, size);
-            let weighted = volume * self.influence.alpha_of(xi, self.horizon) * r * r;
+            let influence = self.influence.alpha_of(xi, self.horizon);
+            let factor = self.correction.factor(r, self.horizon, size);
+            let weighted = factor * influence * r * r;
+            // A bond without force does no work and never breaks by it.
+            let carries = influence > WITHOUT_FORCE * largest;
+            let volume = if carries { factor } else { 0.0 };
             whole += weighted;
             for (plane, sums) in planes.iter().zip(&mut by_number) {
                 let crossed = plane.crossed(offset).max(0) as usize;

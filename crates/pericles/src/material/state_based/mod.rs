@@ -3,6 +3,7 @@
 mod classes;
 mod elastic;
 mod failure;
+mod inelastic;
 mod interface;
 mod isotropic;
 mod linear_solid;
@@ -11,6 +12,7 @@ mod surface;
 pub use classes::SolidClasses;
 pub use elastic::{ElasticConstants, GivenConstants};
 pub use failure::{BondFailure, BondLimits, StretchDefinition};
+pub use inelastic::{Inelasticity, MOST_TERMS, ViscousTerm, Yield};
 pub use isotropic::{IsotropicInfluence, LatticeShear};
 pub use linear_solid::{LinearSolid, LinearSolidConstants, StateInfluence, Strains};
 pub use surface::SolidSurface;

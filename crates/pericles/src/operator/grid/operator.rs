@@ -176,6 +176,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
             bonds: Some(self),
             single_precision: !in_doubles,
             dilatation: None,
+            plastic: None,
         }
     }
 

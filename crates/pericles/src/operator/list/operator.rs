@@ -119,6 +119,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
             bonds: Some(self),
             single_precision: false,
             dilatation: None,
+            plastic: None,
         }
     }
 

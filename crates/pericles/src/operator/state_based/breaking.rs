@@ -86,7 +86,12 @@ pub(super) struct BreakRule<'a> {
     pub velocity: Option<Field<'a>>,
     /// Note what breaks, so that the other end can be cleared.
     pub note_events: bool,
+    /// What inelastic stretches keep of an entry, where a material is not elastic.
+    pub stored: Option<Stored<'a>>,
 }
+
+/// Of a point and one of its entries: the inelastic stretch x, and the part c of ψ² − 2 ψ x + c, in units of the energy of a bond, that the stretches of the entry keep.
+pub(super) type Stored<'a> = &'a (dyn Fn(usize, usize) -> [f64; 2] + Sync);
 
 impl BreakRule<'_> {
     /// Bits of the bonds of a group that are left and may break.
@@ -188,6 +193,7 @@ fn dissipated<L: Kinematics, const D: usize>(
                 velocity: velocity.unwrap_or([0.0; D]),
                 weight: bonds.weight_of(entry, [here, j], xi),
                 factor: bonds.factor_of(entry),
+                stored: rule.stored.map_or([0.0; 2], |stored| stored(i, entry)),
             };
             loss.add::<L, D>(&bond, broken[k] >> lane & 1 == 1);
         }
@@ -205,6 +211,8 @@ pub(super) struct LosingBond<const D: usize> {
     pub weight: f64,
     /// The factor of its stiffness.
     pub factor: f64,
+    /// x and c of [`Stored`]; zero in elastic solids.
+    pub stored: [f64; 2],
 }
 
 /// What a point loses with some of its bonds: sums over all of its bonds, and over those that it loses.
@@ -219,7 +227,7 @@ pub(super) struct Loss {
 struct Sums {
     /// Σ ω r e and its rate.
     extension: [f64; 2],
-    /// Σ g ω e² and half its rate.
+    /// Σ g ω (e² − 2 e e_x + c r²) with inelastic extensions e_x, and half its rate.
     square: [f64; 2],
 }
 
@@ -233,9 +241,9 @@ impl Loss {
         let along = dot(direction::<L, D>(bond.xi, bond.eta), bond.velocity);
         let rate = along * L::contraction(t).0[0] / square;
         let weight = bond.weight * square;
-        self.whole.add(weight, bond.factor, stretch, rate);
+        self.whole.add(weight, bond, [stretch, rate]);
         if broken {
-            self.lost.add(weight, bond.factor, stretch, rate);
+            self.lost.add(weight, bond, [stretch, rate]);
         }
     }
 
@@ -261,12 +269,19 @@ impl Loss {
 }
 
 impl Sums {
-    /// Adds a bond of the weight ω r² and the factor g with the stretch ψ and its rate.
-    fn add(&mut self, weight: f64, factor: f64, stretch: f64, rate: f64) {
+    /// Adds a bond of the weight ω r² with the stretch ψ and its rate.
+    fn add<const D: usize>(
+        &mut self,
+        weight: f64,
+        bond: &LosingBond<D>,
+        [stretch, rate]: [f64; 2],
+    ) {
+        let [inelastic, kept] = bond.stored;
         self.extension[0] += weight * stretch;
         self.extension[1] += weight * rate;
-        self.square[0] += factor * weight * stretch * stretch;
-        self.square[1] += factor * weight * stretch * rate;
+        let square = stretch * (stretch - 2.0 * inelastic) + kept;
+        self.square[0] += bond.factor * weight * square;
+        self.square[1] += bond.factor * weight * (stretch - inelastic) * rate;
     }
 }
 

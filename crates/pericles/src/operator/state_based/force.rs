@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::bond_work::{KEPT, Worked, work_rows};
 use super::bonds::{Layout, SolidBonds, pack};
-use super::breaking::{BreakRule, States, take_bonds};
+use super::breaking::{BreakRule, States, Stored, take_bonds};
 use super::kernels::{accept_rows, dilatation_rows};
 use super::kinematics::Kinematics;
 use super::weight::Weight;
@@ -170,11 +170,20 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Rows of a vector and of p for the dilatations given.
     pub(super) fn packed_with(&self, u: Field<'_>, dilatations: Field<'_>) -> Lent<'_, Vec<Row>> {
-        let mut rows = self.packed.take();
         let sites = self.bonds.sites();
-        let pressure =
-            |site: usize| self.states.pressure[site] * dilatations.at::<1>(0, sites.point(site));
-        pack::<D>(u, sites, pressure, &mut rows);
+        self.packed_beside(u, |site| {
+            self.states.pressure[site] * dilatations.at::<1>(0, sites.point(site))
+        })
+    }
+
+    /// Rows of a vector and of a number of each site.
+    pub(super) fn packed_beside(
+        &self,
+        u: Field<'_>,
+        number: impl Fn(usize) -> f64 + Sync,
+    ) -> Lent<'_, Vec<Row>> {
+        let mut rows = self.packed.take();
+        pack::<D>(u, self.bonds.sites(), number, &mut rows);
         rows
     }
 
@@ -226,22 +235,27 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             step,
             velocity,
             note_events: !matches!(on, On::All),
+            stored: None,
         }
     }
 
-    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch and sets the points' dilatations.
+    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch and sets the points' dilatations. `stored` is what inelastic stretches keep, where a material is not elastic.
     pub(super) fn break_by_stretch(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
         on: &On<'_>,
         dilatations: &mut [f64],
+        stored: Option<Stored<'_>>,
     ) {
         let n = self.cloud.len();
         let mut blocks = std::mem::take(&mut self.blocks);
         let bonds = self.view();
         let moved = step.ghost_velocities(self.cloud.domain());
-        let rule = self.rule(step, step.velocities(&moved), on);
+        let rule = BreakRule {
+            stored,
+            ..self.rule(step, step.velocities(&moved), on)
+        };
         let u = self.packed(u);
         for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
             let len = n.min(first + BLOCK) - first;

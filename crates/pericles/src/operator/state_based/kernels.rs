@@ -21,7 +21,7 @@ struct Extension<T> {
 
 /// The sum of the lanes, in a fixed order.
 #[inline(always)]
-fn sum<T: Lanes>(lanes: T) -> f64 {
+pub(super) fn sum<T: Lanes>(lanes: T) -> f64 {
     F64x8(lanes.to_array()).sum()
 }
 

@@ -8,6 +8,7 @@
 //! | `breaking` | which bonds break, and what that dissipates |
 //! | `force`, `passes`, `view` | the operator on lists |
 //! | `grid` | the same on a lattice, by one stencil |
+//! | `inelastic` | solids whose shear is viscous or plastic, on lists |
 //! | `body` | what the operator is made of, and the choice of its form |
 
 mod body;
@@ -16,6 +17,7 @@ mod bonds;
 mod breaking;
 mod force;
 mod grid;
+mod inelastic;
 mod kernels;
 mod kinematics;
 mod passes;
@@ -25,4 +27,5 @@ mod weight;
 pub use body::LinearSolidBody;
 pub use force::LinearSolidForce;
 pub use grid::LinearSolidGrid;
+pub use inelastic::{InelasticSolidBody, InelasticSolidForce};
 pub use kinematics::{FiniteStrain, Kinematics, SmallStrain};

@@ -106,7 +106,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
     ) {
         let all = matches!(on, On::All);
         if self.weakest.stretch.is_finite() {
-            self.break_by_stretch(step, u, on, values);
+            self.break_by_stretch(step, u, on, values, None);
             if !all {
                 self.dilatations_into(u, needed, values);
             }

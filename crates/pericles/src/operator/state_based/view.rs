@@ -58,21 +58,34 @@ pub(super) fn force_of_bond<L: Kinematics, const D: usize>(
     direction.map(|y| weight * pull * y.0[0])
 }
 
-/// The dilatations of a point and its neighbours are computed for each call.
-impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
+    /// Calls `visit` for every bond of a point that is left. The pull of a bond is taken less `relief` of its point and its entry.
+    pub(super) fn visit_bonds(
+        &self,
+        u: Field<'_>,
+        i: usize,
+        relief: &dyn Fn(usize, usize) -> f64,
+        visit: &mut dyn FnMut(BondAt),
+    ) {
         let (bonds, here) = (self.view(), self.bonds.site(i));
         let pressure = self.pressure_of(u, i);
         let family = self.bonds.family(i);
         for (entry, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
             let j = self.bonds.sites().point(b);
             let [xi, eta] = self.vectors(u, i, b);
-            let p = pressure + self.pressure_of(u, j);
+            let p = pressure + self.pressure_of(u, j) - relief(i, entry);
             let stiffness = self.states.stiffness[here] + self.states.stiffness[b];
             let s = bonds.factor_of(entry) * stiffness;
             let weight = bonds.weight_of(entry, [here, b], xi);
             let force = force_of_bond::<L, D>(weight, [p, s], xi, eta);
             visit(BondAt::new(j, xi, eta, force));
         }
+    }
+}
+
+/// The dilatations of a point and its neighbours are computed for each call.
+impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        self.visit_bonds(u, i, &|_, _| 0.0, visit);
     }
 }

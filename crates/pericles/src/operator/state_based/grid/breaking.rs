@@ -144,6 +144,7 @@ fn loss_of<L: Kinematics, const D: usize>(
             velocity: rule.velocity.map_or([0.0; D], velocity),
             weight: offset.weight,
             factor: 1.0,
+            stored: [0.0; 2],
         };
         loss.add::<L, D>(&bond, broken);
     }

@@ -1,0 +1,57 @@
+//! Viscosity and plasticity of state-based materials.
+
+use pericles::material::{Inelasticity, StressState, ViscousTerm, Yield};
+
+use crate::quantity::Quantity;
+use crate::reader::Table;
+
+/// How the shear of the material in a table departs from elasticity.
+pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inelasticity> {
+    let law = match table.has("viscosity") {
+        true => {
+            for key in ["yield_stress", "hardening"] {
+                table.forbid(
+                    key,
+                    "a material is viscous or plastic: leave out `viscosity` or this key",
+                );
+            }
+            let terms: Vec<_> = table.tables("viscosity").into_iter().map(term).collect();
+            Inelasticity::Viscous(terms.into_iter().collect::<Option<_>>()?)
+        }
+        false => match table.maybe("yield_stress", |item| item.positive(Quantity::Modulus))? {
+            None => {
+                table.forbid("hardening", "it belongs to `yield_stress`");
+                Inelasticity::Elastic
+            }
+            Some(stress) => Inelasticity::Plastic(Yield {
+                stress,
+                hardening: table.or("hardening", 0.0, |item| {
+                    item.within(
+                        Quantity::Modulus,
+                        "a number that is not negative",
+                        |modulus| modulus >= 0.0,
+                    )
+                })?,
+            }),
+        },
+    };
+    table.accept(law.check(state?))?;
+    Some(law)
+}
+
+/// A term of the relaxation function.
+fn term(table: Table<'_>) -> Option<ViscousTerm> {
+    let share = table.required("share").and_then(|item| {
+        item.within(Quantity::Number, "a number between 0 and 1", |share| {
+            share > 0.0 && share < 1.0
+        })
+    });
+    let time = table
+        .required("time")
+        .and_then(|item| item.positive(Quantity::Time));
+    table.finish();
+    Some(ViscousTerm {
+        share: share?,
+        time: time?,
+    })
+}

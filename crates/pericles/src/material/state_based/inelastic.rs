@@ -1,0 +1,145 @@
+//! Viscosity and plasticity of linear peridynamic solids.
+
+use crate::error::{PericlesError, Result, positive};
+use crate::material::StressState;
+
+/// How the deviatoric part of a linear peridynamic solid departs from elasticity; its dilatation stays elastic.
+///
+/// With the extension e of a bond, the deviatoric extension is e_d = e − θ r/D, with the dilatation θ of the point whose force state it belongs to. Each directed bond keeps an inelastic extension e_x, and the force
+/// state is t = (w/m)(A θ r + B (e − e_x)).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Inelasticity {
+    /// None: the solid is elastic.
+    #[default]
+    Elastic,
+    /// Shear that relaxes: e_x = Σ λ_k e_k with back-extensions that follow de_k/dt = (e_d − e_k)/τ_k (Mitchell, Sandia report SAND2011-8064, 2011). Under a constant shear strain the shear modulus falls as
+    /// G(t)/G = 1 − Σ λ_k + Σ λ_k exp(−t/τ_k).
+    Viscous(Vec<ViscousTerm>),
+    /// Shear that yields: e_x is a plastic extension (Mitchell, Sandia report SAND2011-3166, 2011).
+    Plastic(Yield),
+}
+
+/// A term of a relaxation function: a share λ of the shear modulus relaxes with the time τ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViscousTerm {
+    /// λ, between 0 and 1.
+    pub share: f64,
+    /// τ, s.
+    pub time: f64,
+}
+
+/// When shear yields: where the norm |t| = (Σ t² b V)^½ of the deviatoric force state reaches that of a uniform strain at which the material yields, √(2 ψ₀) = σ_y (c M₂)^½/m with M₂ = Σ w² r², c = 5 in three dimensions
+/// and 8/3 in the plane.
+///
+/// In three dimensions this is von Mises' criterion for uniform strains, exact in the mean over all directions. In the plane a bond sees the deviator within the plane only: the body yields where the largest shear stress
+/// in the plane reaches σ_y/√3.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Yield {
+    /// Yield stress σ_y in uniaxial tension, Pa.
+    pub stress: f64,
+    /// Isotropic hardening H, Pa: the yield stress is σ_y + H ε_p, with the equivalent plastic strain ε_p.
+    pub hardening: f64,
+}
+
+/// The largest number of terms of a relaxation function.
+pub const MOST_TERMS: usize = 8;
+
+impl Inelasticity {
+    /// Whether the solid is elastic.
+    pub fn is_elastic(&self) -> bool {
+        *self == Self::Elastic
+    }
+
+    /// The terms of the relaxation function.
+    pub fn terms(&self) -> &[ViscousTerm] {
+        match self {
+            Self::Viscous(terms) => terms,
+            Self::Elastic | Self::Plastic(_) => &[],
+        }
+    }
+
+    /// Refuses constants that are not usable.
+    ///
+    /// # Errors
+    /// Shares that are not positive or whose sum is not below one, times and yield stresses that are not positive, negative hardening, no term or more than [`MOST_TERMS`]; a bar, which has no deviatoric strain.
+    pub fn check(&self, state: StressState) -> Result<()> {
+        if !self.is_elastic() && state == StressState::Uniaxial {
+            return Err(PericlesError::WrongDimension {
+                what: "viscosity or plasticity of shear",
+                needed: "2 or 3",
+                dimension: 1,
+            });
+        }
+        match self {
+            Self::Elastic => Ok(()),
+            Self::Viscous(terms) => check_terms(terms),
+            Self::Plastic(law) => {
+                positive("the yield stress", law.stress)?;
+                if law.hardening.is_finite() && law.hardening >= 0.0 {
+                    return Ok(());
+                }
+                Err(PericlesError::OutOfRange {
+                    quantity: "the hardening modulus",
+                    value: law.hardening,
+                    allowed: "a number that is not negative",
+                })
+            }
+        }
+    }
+}
+
+fn check_terms(terms: &[ViscousTerm]) -> Result<()> {
+    if terms.is_empty() || terms.len() > MOST_TERMS {
+        return Err(PericlesError::OutOfRange {
+            quantity: "the number of viscous terms",
+            value: terms.len() as f64,
+            allowed: "1 to 8",
+        });
+    }
+    for term in terms {
+        positive("the share of a viscous term", term.share)?;
+        positive("the relaxation time of a viscous term", term.time)?;
+    }
+    let sum: f64 = terms.iter().map(|term| term.share).sum();
+    if sum < 1.0 {
+        return Ok(());
+    }
+    Err(PericlesError::OutOfRange {
+        quantity: "the sum of the shares of all viscous terms",
+        value: sum,
+        allowed: "a number below 1, so that a part of the shear modulus is left",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constants_that_cannot_be_used_are_refused_with_the_value() {
+        let viscous = |terms: &[[f64; 2]]| {
+            let terms = terms
+                .iter()
+                .map(|&[share, time]| ViscousTerm { share, time });
+            Inelasticity::Viscous(terms.collect())
+        };
+        let plastic = |stress, hardening| Inelasticity::Plastic(Yield { stress, hardening });
+        for (law, words) in [
+            (viscous(&[]), "number of viscous terms is 0"),
+            (viscous(&[[0.1, 1.0]; 9]), "number of viscous terms is 9"),
+            (viscous(&[[0.0, 1.0]]), "share of a viscous term"),
+            (viscous(&[[0.5, -1.0]]), "relaxation time"),
+            (viscous(&[[0.5, 1.0], [0.5, 2.0]]), "all viscous terms is 1"),
+            (plastic(0.0, 0.0), "yield stress"),
+            (plastic(1.0, -2.0), "hardening modulus is -2"),
+        ] {
+            let message = law.check(StressState::Spatial).unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+        }
+        for law in [viscous(&[[0.5, 1.0], [0.4, 2.0]]), plastic(1.0, 0.0)] {
+            assert!(law.check(StressState::PlaneStrain).is_ok());
+            let message = law.check(StressState::Uniaxial).unwrap_err().to_string();
+            assert!(message.contains("dimension 2 or 3"), "{message}");
+        }
+    }
+}

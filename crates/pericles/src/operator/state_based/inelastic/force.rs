@@ -1,0 +1,329 @@
+//! The force operator of inelastic solids.
+
+use super::super::force::LinearSolidForce;
+use super::super::kinematics::Kinematics;
+use super::super::weight::Weight;
+use super::advance::{Advance, advance_rows, sum_rows};
+use super::history::History;
+use super::kernels::{Points, Reliefs, point_rows};
+use super::laws::{Laws, mean_square};
+use crate::domain::Field;
+use crate::error::{PericlesError, Result};
+use crate::kernel::Influence;
+use crate::lanes::{Row, dot};
+use crate::material::Inelasticity;
+use crate::operator::On;
+use crate::operator::pool::{Lent, Pool};
+use crate::operator::rows::Rows;
+use crate::parallel::{BLOCK, for_each_block, for_each_point};
+use crate::step_end::StepEnd;
+use rayon::prelude::*;
+
+/// The force density of linear peridynamic solids whose shear is viscous or plastic ([`Inelasticity`]), on a bond list.
+///
+/// The force state of a point is t_ij = (w/m)(A θ r + B (e − e_x)) with the inelastic extension e_x of the directed bond. Viscous and plastic materials may stand beside elastic ones; bonds break by their critical stretch.
+/// Extensions are advanced to the end of every accepted step. Between, at time t and displacement u, the force is that of a step from the last one to t: schemes with stages and static solvers see the viscosity and the
+/// plasticity of the step that they are in, and the tangent is that of this force.
+///
+/// What flow and relaxation dissipate is booked with what breaking bonds dissipate ([`Breakable::dissipated`](crate::operator::Breakable::dissipated)); with hardening, all plastic work counts as dissipated.
+///
+/// For influence functions other than the constant the flow of a plastic point is radial but not normal to the yield surface, and the tangent of yielding points is not symmetric.
+///
+/// Memory beside that of [`LinearSolidForce`]: 20 bytes per directed bond and 8 for every viscous term.
+pub struct InelasticSolidForce<L: Kinematics, const D: usize> {
+    pub(super) solid: LinearSolidForce<L, D>,
+    pub(super) laws: Laws,
+    pub(super) history: History,
+    /// The influence function alone, where a material yields.
+    pub(super) influence: Option<Weight>,
+    states: Pool<Vec<Row>>,
+    reliefs: Pool<Vec<f64>>,
+}
+
+crate::saved! {
+    impl<L: Kinematics, const D: usize> Saved for InelasticSolidForce<L, D> {
+        solid, history: part,
+        laws, influence: fixed,
+        states, reliefs: scratch,
+    }
+}
+
+impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
+    /// The force of solids of these laws, one for each material. The solid has the influence function `influence`, whole stiffness at its surfaces, and no limits of bond energy.
+    ///
+    /// # Errors
+    /// A body that is divided among processes; more than 4.29e9 directed bonds.
+    pub fn new(
+        solid: LinearSolidForce<L, D>,
+        of_material: Vec<Inelasticity>,
+        influence: &Influence,
+    ) -> Result<Self> {
+        if solid.cloud.domain().is_divided() {
+            return Err(PericlesError::FormNotUsable {
+                form: "list",
+                reason: "viscous and plastic materials keep numbers for each end of a bond, which must belong to one process",
+            });
+        }
+        let mut laws = Laws {
+            terms: of_material
+                .iter()
+                .map(|law| law.terms().len())
+                .fold(0, usize::max),
+            of_material,
+            strength: Vec::new(),
+        };
+        let influence = laws
+            .yields()
+            .then(|| Weight::of_influence(&solid.cloud, &solid.bonds, influence));
+        if let Some(influence) = &influence {
+            laws.strength = strengths(&solid, &laws, influence);
+        }
+        let n = solid.cloud.len();
+        let volumes = (0..n).map(|i| solid.weighted_volume(i));
+        let volumes = volumes.map(|m| if m.is_finite() { m } else { 0.0 });
+        let history = History::new(&solid.bonds, laws.terms, volumes.collect())?;
+        let (sites, entries) = (solid.bonds.sites().len(), history.inelastic.len());
+        Ok(Self {
+            solid,
+            laws,
+            history,
+            influence,
+            states: Pool::new(1, move || vec![Row::default(); sites]),
+            reliefs: Pool::new(0, move || vec![0.0; entries]),
+        })
+    }
+
+    /// The elastic solid.
+    pub fn solid(&self) -> &LinearSolidForce<L, D> {
+        &self.solid
+    }
+
+    /// Equivalent plastic strain ε_p of every point.
+    pub fn plastic_strain(&self) -> &[f64] {
+        &self.history.plastic_strain
+    }
+
+    /// Plastic multiplier of every point since the start, m⁵/Pa for a dimensionless influence function: the plastic extensions change by the deviatoric force state over w times its change.
+    pub fn multiplier(&self) -> &[f64] {
+        &self.history.multiplier
+    }
+
+    /// √(2 ψ₀) of a point, the norm of the deviatoric force state at which it yields first; infinite where nothing yields.
+    pub fn strength(&self, i: usize) -> f64 {
+        self.laws.strength.get(i).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The inelastic stretch e_x/r of an entry.
+    pub fn inelastic_stretch(&self, entry: usize) -> f64 {
+        self.history.inelastic[entry]
+    }
+
+    pub(super) fn points(&self, t: f64) -> Points<'_> {
+        Points {
+            laws: &self.laws,
+            classes: &self.solid.classes,
+            states: &self.solid.states,
+            history: &self.history,
+            influence: self.influence.as_ref(),
+            t,
+        }
+    }
+
+    /// R of all entries at a time; none if they are those at the end of the last step.
+    pub(super) fn reliefs_at(&self, t: f64) -> Option<Lent<'_, Vec<f64>>> {
+        if self.laws.terms == 0 || self.history.time.iter().all(|&time| time >= t) {
+            return None;
+        }
+        let mut reliefs = self.reliefs.take();
+        let Self { solid, laws, .. } = self;
+        self.history
+            .reliefs_into(t, &solid.bonds, laws, &solid.classes, &mut reliefs);
+        Some(reliefs)
+    }
+
+    /// What the loops over bonds read, with the rows of S and G.
+    pub(super) fn reliefs<'a>(
+        &'a self,
+        at_time: &'a Option<Lent<'_, Vec<f64>>>,
+        states: &'a [Row],
+    ) -> Reliefs<'a> {
+        Reliefs {
+            of_entries: match at_time {
+                Some(reliefs) => reliefs,
+                None => &self.history.inelastic,
+            },
+            opposite: &self.history.opposite,
+            states,
+        }
+    }
+
+    /// Rows of S and G, or of their changes, from the values of the points.
+    pub(super) fn state_rows(&self, values: Field<'_>, changes: bool) -> Lent<'_, Vec<Row>> {
+        let mut rows = self.states.take();
+        let sites = self.solid.bonds.sites();
+        let row = |site: usize| {
+            let stiffness = values.at::<3>(2, sites.point(site));
+            let law = &self.laws.of_material[self.solid.classes.of_point(site)];
+            let factor = match law {
+                Inelasticity::Elastic => 0.0,
+                Inelasticity::Plastic(_) => stiffness,
+                Inelasticity::Viscous(_) if changes => 0.0,
+                Inelasticity::Viscous(_) => self.solid.states.stiffness[site],
+            };
+            Row([stiffness, factor, 0.0, 0.0])
+        };
+        rows.par_chunks_mut(8 * BLOCK)
+            .enumerate()
+            .for_each(|(part, rows)| {
+                for (site, out) in (8 * BLOCK * part..).zip(rows) {
+                    *out = row(site);
+                }
+            });
+        rows
+    }
+
+    /// Rows of a vector and of P, or of its change.
+    pub(super) fn packed_with(&self, u: Field<'_>, values: Field<'_>) -> Lent<'_, Vec<Row>> {
+        let sites = self.solid.bonds.sites();
+        self.solid
+            .packed_beside(u, |site| values.at::<3>(1, sites.point(site)))
+    }
+
+    /// Sets P and S of the points named by `on`, whose dilatations are the first of the values.
+    pub(super) fn states_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+        let (bonds, points) = (self.solid.view(), self.points(t));
+        let u = self.solid.packed(u);
+        self.solid.sweep::<3>(on, values, |intact, rows, out| {
+            let set = self.solid.instruction_set;
+            point_rows::<L, D>(set, &bonds, &points, &u, intact, rows, out);
+        });
+    }
+
+    /// Advances the inelastic stretches of the points named by `on` to the end of a step.
+    pub(super) fn advance(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &On<'_>) {
+        let mut blocks = std::mem::take(&mut self.solid.blocks);
+        let mut history = std::mem::take(&mut self.history);
+        let (bonds, set) = (self.solid.view(), self.solid.instruction_set);
+        let (n, rule) = (self.solid.cloud.len(), self.rule(step));
+        let u = self.solid.packed(u);
+        let (points, mut parts) = history.split(self.solid.bonds.start(), &mut blocks);
+        for_each_block(points, &mut parts, &|first, mut out, part| {
+            let len = n.min(first + BLOCK) - first;
+            if let Some(wanted) = Rows::of_block(on, first, len) {
+                advance_rows::<L, D>(set, &bonds, &rule, &u, part, &wanted, &mut out);
+            }
+        });
+        drop(u);
+        self.solid.blocks = blocks;
+        self.history = history;
+    }
+
+    /// Sets the sums over the bonds of points again in all blocks that have lost bonds since there were so many broken ones in each.
+    pub(super) fn renew_sums(&mut self, step: &StepEnd<'_>, u: Field<'_>, before: &[u64]) {
+        let mut blocks = std::mem::take(&mut self.solid.blocks);
+        let mut history = std::mem::take(&mut self.history);
+        let (bonds, set) = (self.solid.view(), self.solid.instruction_set);
+        let (n, rule) = (self.solid.cloud.len(), self.rule(step));
+        let u = self.solid.packed(u);
+        let start = self.solid.bonds.start();
+        let ([_, volumes, ..], mut parts) = history.split(start, &mut blocks);
+        for_each_block([volumes], &mut parts, &|first, mut out, part| {
+            let len = n.min(first + BLOCK) - first;
+            if let Some(rows) = Rows::of_block(&On::All, first, len)
+                && part.damage.tally.broken.get() != before[first / BLOCK]
+            {
+                sum_rows::<D>(set, &bonds, &rule, &u, part, &rows, &mut out);
+            }
+        });
+        drop(u);
+        self.solid.blocks = blocks;
+        self.history = history;
+    }
+
+    /// Broken directed bonds by blocks.
+    pub(super) fn broken(&self) -> Vec<u64> {
+        let blocks = self.solid.blocks.iter();
+        blocks.map(|block| block.tally.broken.get()).collect()
+    }
+
+    /// The end of a step as the loops see it. What changes in the loops is not read by it.
+    fn rule(&self, step: &StepEnd<'_>) -> Advance<'_> {
+        Advance {
+            laws: &self.laws,
+            classes: &self.solid.classes,
+            states: &self.solid.states,
+            volumes: self.solid.cloud.volumes(),
+            influence: self.influence.as_ref(),
+            terms: self.laws.terms,
+            t: step.t,
+            starts: step.dt == 0.0,
+        }
+    }
+
+    /// Breaks bonds of the points named by `on` and sets the dilatations of those named by `needed`.
+    pub(super) fn break_bonds(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        [on, needed]: [&On<'_>; 2],
+        dilatations: &mut [f64],
+    ) {
+        if !self.solid.weakest.stretch.is_finite() {
+            return self.solid.dilatations_into(u, needed, dilatations);
+        }
+        let before = self.broken();
+        let Self {
+            solid,
+            history,
+            laws,
+            ..
+        } = self;
+        let material: Vec<u8> = (0..solid.cloud.len())
+            .map(|i| solid.classes.of_point(solid.bonds.site(i)) as u8)
+            .collect();
+        let stored = |i: usize, entry: usize| {
+            history.stored(&laws.of_material[usize::from(material[i])], entry)
+        };
+        solid.break_by_stretch(step, u, on, dilatations, Some(&stored));
+        if !matches!(on, On::All) {
+            solid.dilatations_into(u, needed, dilatations);
+        }
+        if self.broken() != before {
+            self.renew_sums(step, u, &before);
+        }
+    }
+
+    /// Memory of what is kept beside the elastic solid, bytes.
+    pub(super) fn own_bytes(&self) -> usize {
+        let influence = self.influence.as_ref().map_or(0, Weight::bytes);
+        let strength = size_of_val(&self.laws.strength[..]);
+        let states = size_of::<Row>() * self.solid.bonds.sites().len();
+        self.history.bytes() + influence + strength + states
+    }
+}
+
+/// √(2 ψ₀) of every point.
+fn strengths<L: Kinematics, const D: usize>(
+    solid: &LinearSolidForce<L, D>,
+    laws: &Laws,
+    influence: &Weight,
+) -> Vec<f64> {
+    let (bonds, list) = (solid.view(), &solid.bonds);
+    for_each_point(solid.cloud.len(), &|i| {
+        let a = list.site(i);
+        let law = &laws.of_material[solid.classes.of_point(a)];
+        let (Inelasticity::Plastic(law), true) = (law, solid.states.dilatation[i] > 0.0) else {
+            return f64::INFINITY;
+        };
+        let family = list.family(i).filter(|&(entry, _)| list.is_present(entry));
+        let square: f64 = family
+            .map(|(entry, b)| {
+                let xi = bonds.vector::<D>(a, b);
+                let square = dot(xi, xi);
+                let w = influence.of_entry(entry, square.sqrt(), 1.0, [0.0; 2]);
+                bonds.weight_of(entry, [a, b], xi) * w * square
+            })
+            .sum();
+        law.stress * (mean_square(D) * square).sqrt() / solid.weighted_volume(i)
+    })
+}

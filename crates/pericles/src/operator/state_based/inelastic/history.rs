@@ -1,0 +1,233 @@
+//! What bonds and points of inelastic solids keep from step to step.
+
+use rayon::prelude::*;
+
+use super::laws::{Laws, Relaxation, weighted};
+use crate::error::{PericlesError, Result};
+use crate::family::BondList;
+use crate::lanes::{F64x8, LANES};
+use crate::material::{Inelasticity, SolidClasses};
+use crate::operator::damage::BlockDamage;
+use crate::parallel::{BLOCK, for_each_point};
+
+/// Inelastic stretches of bonds, and sums over the bonds of points.
+#[derive(Default)]
+pub(super) struct History {
+    /// Viscous terms kept per bond.
+    pub terms: usize,
+    /// The inelastic stretch x of each entry.
+    pub inelastic: Vec<f64>,
+    /// The stretch of each entry at the end of the last step.
+    pub last: Vec<f64>,
+    /// The back-stretches ψ_k, the terms of a group of eight entries behind each other.
+    pub back: Vec<f64>,
+    /// The time at which each point was advanced last, s.
+    pub time: Vec<f64>,
+    /// Σ ω r² over the bonds of each point that are left.
+    pub volume: Vec<f64>,
+    /// Σ ω r² of the stretch of the last step (viscous) or of the plastic stretch, then of every back-stretch, point by point.
+    pub sums: Vec<f64>,
+    /// Equivalent plastic strain of the points.
+    pub plastic_strain: Vec<f64>,
+    /// Plastic multiplier of the points: e_p changes by the deviatoric force state over w times its change.
+    pub multiplier: Vec<f64>,
+    /// The entry that leads back, for every entry; itself for padding.
+    pub opposite: Vec<u32>,
+}
+
+crate::saved! {
+    impl Saved for History {
+        inelastic: array("inelastic/stretch"),
+        last: array("inelastic/last"),
+        back: array("inelastic/back"),
+        time: array("inelastic/time"),
+        volume: array("inelastic/volume"),
+        sums: array("inelastic/sums"),
+        plastic_strain: array("inelastic/plastic-strain"),
+        multiplier: array("inelastic/multiplier"),
+        terms, opposite: fixed,
+    }
+}
+
+/// What a block of points keeps.
+pub(super) struct Part<'a> {
+    pub damage: &'a mut BlockDamage,
+    pub inelastic: &'a mut [f64],
+    pub last: &'a mut [f64],
+    pub back: &'a mut [f64],
+    pub sums: &'a mut [f64],
+}
+
+impl History {
+    /// That of bodies without a history yet; `volumes` are the weighted volumes of the points.
+    pub fn new(bonds: &BondList, terms: usize, volumes: Vec<f64>) -> Result<Self> {
+        let (n, entries) = (volumes.len(), bonds.present().len() * LANES);
+        Ok(Self {
+            terms,
+            inelastic: vec![0.0; entries],
+            last: vec![0.0; entries],
+            back: vec![0.0; terms * entries],
+            time: vec![0.0; n],
+            volume: volumes,
+            sums: vec![0.0; (1 + terms) * n],
+            plastic_strain: vec![0.0; n],
+            multiplier: vec![0.0; n],
+            opposite: opposites(bonds)?,
+        })
+    }
+
+    /// The sums of a point.
+    pub fn sums(&self, i: usize) -> &[f64] {
+        &self.sums[i * (1 + self.terms)..(i + 1) * (1 + self.terms)]
+    }
+
+    /// x of an entry and c, the part of the energy that its inelastic stretches keep.
+    pub fn stored(&self, law: &Inelasticity, entry: usize) -> [f64; 2] {
+        let x = self.inelastic[entry];
+        let first = entry / LANES * LANES * self.terms + entry % LANES;
+        let square = |(k, share): (usize, f64)| share * self.back[first + k * LANES].powi(2);
+        match law {
+            Inelasticity::Elastic => [0.0; 2],
+            Inelasticity::Plastic(_) => [x, x * x],
+            Inelasticity::Viscous(terms) => {
+                let shares = terms.iter().map(|term| term.share).enumerate();
+                [x, shares.map(square).sum()]
+            }
+        }
+    }
+
+    /// Sets what the inelastic stretches at a time keep of those at the end of the last step: R of every entry, with which the deviatoric pull of its first point is S ψ − G R and a number of the point.
+    pub fn reliefs_into(
+        &self,
+        t: f64,
+        bonds: &BondList,
+        laws: &Laws,
+        classes: &SolidClasses,
+        out: &mut [f64],
+    ) {
+        let n = bonds.len();
+        let parts = split_groups(bonds.start(), out, LANES);
+        parts.into_par_iter().enumerate().for_each(|(block, out)| {
+            let first = block * BLOCK;
+            let start = bonds.start()[first];
+            for i in first..n.min(first + BLOCK) {
+                let terms = laws.of_material[classes.of_point(bonds.site(i))].terms();
+                let relaxation = Relaxation::new(terms, (t - self.time[i]).max(0.0));
+                for group in bonds.groups(i) {
+                    let entries = group * LANES..(group + 1) * LANES;
+                    let out = &mut out[(group - start) * LANES..(group - start + 1) * LANES];
+                    if relaxation.terms == 0 {
+                        out.copy_from_slice(&self.inelastic[entries]);
+                        continue;
+                    }
+                    let back = &self.back[group * LANES * self.terms..];
+                    let mut keep = relaxation.keep;
+                    for (keep, share) in keep.iter_mut().zip(relaxation.share) {
+                        *keep *= share;
+                    }
+                    let kept: F64x8 = weighted(&keep, relaxation.terms, back);
+                    for (k, entry) in entries.enumerate() {
+                        out[k] = kept.0[k] + relaxation.of_start() * self.last[entry];
+                    }
+                }
+            }
+        });
+    }
+
+    /// Time, intact weighted volume, plastic strain and multiplier of all points, and the parts of the blocks.
+    pub fn split<'a>(
+        &'a mut self,
+        start: &[usize],
+        blocks: &'a mut [BlockDamage],
+    ) -> ([&'a mut [f64]; 4], Vec<Part<'a>>) {
+        let (n, terms) = (self.time.len(), self.terms);
+        let of_groups = |array: &'a mut [f64], width| split_groups(start, array, width).into_iter();
+        let mut inelastic = of_groups(&mut self.inelastic, LANES);
+        let mut last = of_groups(&mut self.last, LANES);
+        let mut back = of_groups(&mut self.back, terms * LANES);
+        let mut sums = self.sums.chunks_mut((1 + terms) * BLOCK);
+        let parts = blocks.iter_mut().map_while(|damage| {
+            Some(Part {
+                damage,
+                inelastic: inelastic.next()?,
+                last: last.next()?,
+                back: back.next()?,
+                sums: sums.next()?,
+            })
+        });
+        let parts: Vec<_> = parts.collect();
+        debug_assert_eq!(parts.len(), n.div_ceil(BLOCK));
+        let points = [
+            &mut self.time[..],
+            &mut self.volume[..],
+            &mut self.plastic_strain[..],
+            &mut self.multiplier[..],
+        ];
+        (points, parts)
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        let numbers = [
+            &self.inelastic,
+            &self.last,
+            &self.back,
+            &self.time,
+            &self.volume,
+            &self.sums,
+            &self.plastic_strain,
+            &self.multiplier,
+        ];
+        let numbers: usize = numbers.iter().map(|array| size_of_val(&array[..])).sum();
+        numbers + size_of_val(&self.opposite[..])
+    }
+}
+
+/// An array with `width` numbers for each group, in parts for the blocks of points.
+pub(super) fn split_groups<'a>(
+    start: &[usize],
+    mut array: &'a mut [f64],
+    width: usize,
+) -> Vec<&'a mut [f64]> {
+    let n = start.len() - 1;
+    let mut parts = Vec::with_capacity(n.div_ceil(BLOCK));
+    for first in (0..n).step_by(BLOCK) {
+        let groups = start[n.min(first + BLOCK)] - start[first];
+        let (own, rest) = array.split_at_mut(width * groups);
+        parts.push(own);
+        array = rest;
+    }
+    parts
+}
+
+/// The entry that leads back, for every entry of a list.
+fn opposites(bonds: &BondList) -> Result<Vec<u32>> {
+    let entries = bonds.present().len() * LANES;
+    if u32::try_from(entries).is_err() {
+        return Err(PericlesError::OutOfRange {
+            quantity: "the number of directed bonds with history",
+            value: entries as f64,
+            allowed: "at most 4.29e9",
+        });
+    }
+    let sites = bonds.sites();
+    let back = |i: usize, site: usize| {
+        let shift = sites.shift(site).map(|periods| -periods);
+        let mut family = bonds.family(sites.point(site));
+        let found = family.find(|&(_, b)| sites.point(b) == i && sites.shift(b) == shift);
+        found.map(|(entry, _)| entry)
+    };
+    let of_points = for_each_point(bonds.len(), &|i| {
+        let groups = bonds.groups(i);
+        let mut places: Vec<u32> = (groups.start * LANES..groups.end * LANES)
+            .map(|entry| entry as u32)
+            .collect();
+        for (entry, site) in bonds.family(i) {
+            if let Some(found) = back(i, site) {
+                places[entry - groups.start * LANES] = found as u32;
+            }
+        }
+        places
+    });
+    Ok(of_points.concat())
+}

@@ -1,0 +1,200 @@
+//! Relaxation over a step, and the return to the yield surface.
+
+use crate::lanes::Lanes;
+use crate::material::{Inelasticity, MOST_TERMS, ViscousTerm, Yield};
+
+/// The factors by which back-stretches follow a stretch that changes linearly over a time dt:
+///
+/// ψ_k' = q_k ψ_k + (1 − q_k) h + β_k (h' − h), q = exp(−dt/τ), β = 1 − (τ/dt)(1 − q), with the driving stretches h and h' at the start and the end: the exact solution.
+#[derive(Clone, Copy)]
+pub(super) struct Relaxation {
+    /// dt, s.
+    pub dt: f64,
+    /// Number of terms.
+    pub terms: usize,
+    /// λ_k
+    pub share: [f64; MOST_TERMS],
+    /// q_k
+    pub keep: [f64; MOST_TERMS],
+    /// 1 − q_k
+    pub gain: [f64; MOST_TERMS],
+    /// β_k
+    pub slope: [f64; MOST_TERMS],
+}
+
+impl Relaxation {
+    /// The factors of terms over a time; nothing changes in no time.
+    pub fn new(terms: &[ViscousTerm], dt: f64) -> Self {
+        let zero = [0.0; MOST_TERMS];
+        let mut of = Self {
+            dt,
+            terms: terms.len(),
+            share: zero,
+            keep: zero,
+            gain: zero,
+            slope: zero,
+        };
+        for (k, term) in terms.iter().enumerate() {
+            let ratio = dt / term.time;
+            of.share[k] = term.share;
+            of.gain[k] = -(-ratio).exp_m1();
+            of.keep[k] = 1.0 - of.gain[k];
+            of.slope[k] = slope(ratio);
+        }
+        of
+    }
+
+    /// Σ λ_k β_k: the share of a change of stretch within the step that has relaxed at its end.
+    pub fn relaxed(&self) -> f64 {
+        (0..self.terms).map(|k| self.share[k] * self.slope[k]).sum()
+    }
+
+    /// Σ λ_k (1 − q_k − β_k): the weight of the stretch at the start.
+    pub fn of_start(&self) -> f64 {
+        let weight = |k: usize| self.share[k] * (self.gain[k] - self.slope[k]);
+        (0..self.terms).map(weight).sum()
+    }
+}
+
+/// β = 1 − (1 − e^−a)/a.
+fn slope(a: f64) -> f64 {
+    if a < 1e-3 {
+        // Nothing cancels in the series; the next term is below 1e-16 of the first.
+        return a * (0.5 - a * (1.0 / 6.0 - a * (1.0 / 24.0 - a * (1.0 / 120.0 - a / 720.0))));
+    }
+    1.0 + (-a).exp_m1() / a
+}
+
+/// c of [`Yield`]: ε_p² = c Σ ω e_p²/m of the plastic extensions e_p of a uniform plastic strain.
+pub(super) const fn mean_square(dimension: usize) -> f64 {
+    match dimension {
+        3 => 5.0,
+        _ => 8.0 / 3.0,
+    }
+}
+
+/// A deviatoric force state that may lie outside the yield surface.
+#[derive(Clone, Copy)]
+pub(super) struct Trial {
+    /// √(2 ψ₀), the norm at which the material that has not yielded yet yields.
+    pub strength: f64,
+    /// Equivalent plastic strain so far.
+    pub strain: f64,
+    /// |t| of the trial state.
+    pub norm: f64,
+    /// The equivalent strain that belongs to its deviatoric extensions; that of the plastic flow is 1 − γ times it.
+    pub equivalent: f64,
+}
+
+impl Trial {
+    /// The norm at the yield surface before the step.
+    fn limit(&self, law: &Yield) -> f64 {
+        self.strength * (1.0 + law.hardening * self.strain / law.stress)
+    }
+
+    /// √(2 ψ₀) H E/σ_y: how far the surface grows if all of the deviatoric extension becomes plastic.
+    fn growth(&self, law: &Yield) -> f64 {
+        self.strength * law.hardening * self.equivalent / law.stress
+    }
+
+    /// γ, the factor of the deviatoric force state that puts it on the yield surface of the hardened material; 1 within the surface.
+    ///
+    /// γ |t| = limit + (1 − γ) growth is linear in γ, so that no iteration is needed.
+    pub fn factor(&self, law: &Yield) -> f64 {
+        let limit = self.limit(law);
+        if self.norm <= limit {
+            return 1.0;
+        }
+        let growth = self.growth(law);
+        (limit + growth) / (self.norm + growth)
+    }
+
+    /// The change of γ with those of the norm and of the equivalent strain.
+    pub fn factor_change(&self, law: &Yield, norm: f64, equivalent: f64) -> f64 {
+        if self.norm <= self.limit(law) {
+            return 0.0;
+        }
+        let growth = self.strength * law.hardening * equivalent / law.stress;
+        let factor = self.factor(law);
+        (growth - factor * (norm + growth)) / (self.norm + self.growth(law))
+    }
+}
+
+/// The laws of all materials of a body, and the strength of its points.
+pub(super) struct Laws {
+    /// By material.
+    pub of_material: Vec<Inelasticity>,
+    /// The largest number of viscous terms of a material.
+    pub terms: usize,
+    /// √(2 ψ₀) of every point; infinite where nothing yields.
+    pub strength: Vec<f64>,
+}
+
+impl Laws {
+    /// Whether a material is plastic.
+    pub fn yields(&self) -> bool {
+        let mut laws = self.of_material.iter();
+        laws.any(|law| matches!(law, Inelasticity::Plastic(_)))
+    }
+}
+
+/// Σ λ_k ψ_k of the back-stretches of a group.
+#[inline(always)]
+pub(super) fn weighted<T: Lanes>(factors: &[f64; MOST_TERMS], terms: usize, back: &[f64]) -> T {
+    let mut total = T::splat(0.0);
+    for k in 0..terms {
+        total = T::splat(factors[k]).mul_add(T::load(back, k * crate::lanes::LANES), total);
+    }
+    total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slope_is_continuous_where_its_forms_meet() {
+        for a in [1e-12, 1e-6, 0.999_999e-3, 1.000_001e-3, 0.1, 3.0, 100.0_f64] {
+            // ∫₀¹ (1 − e^−as) ds = β
+            let steps = 2000;
+            let value = |s: f64| -(-a * s).exp_m1();
+            let simpson: f64 = (0..steps)
+                .map(|k| {
+                    let [from, to] = [k, k + 1].map(|k| f64::from(k) / f64::from(steps));
+                    (value(from) + 4.0 * value(0.5 * (from + to)) + value(to)) * (to - from) / 6.0
+                })
+                .sum();
+            assert!((slope(a) / simpson - 1.0).abs() < 1e-9, "{a}");
+        }
+        assert_eq!(slope(0.0), 0.0);
+    }
+
+    #[test]
+    fn the_return_lands_on_the_hardened_surface() {
+        let law = Yield {
+            stress: 2.0,
+            hardening: 5.0,
+        };
+        let trial = Trial {
+            strength: 3.0,
+            strain: 0.1,
+            norm: 7.0,
+            equivalent: 0.4,
+        };
+        let factor = trial.factor(&law);
+        let strain = trial.strain + (1.0 - factor) * trial.equivalent;
+        let surface = trial.strength * (law.stress + law.hardening * strain) / law.stress;
+        assert!((factor * trial.norm / surface - 1.0).abs() < 1e-15);
+        let h = 1e-6;
+        let moved = |h: f64| Trial {
+            norm: trial.norm + 2.0 * h,
+            equivalent: trial.equivalent - 3.0 * h,
+            ..trial
+        };
+        let difference = (moved(h).factor(&law) - moved(-h).factor(&law)) / (2.0 * h);
+        assert!((trial.factor_change(&law, 2.0, -3.0) - difference).abs() < 1e-8);
+        let inside = Trial { norm: 3.0, ..trial };
+        assert_eq!(inside.factor(&law), 1.0);
+        assert_eq!(inside.factor_change(&law, 1.0, 1.0), 0.0);
+    }
+}

@@ -1,0 +1,208 @@
+//! [`TwoPass`], [`Breakable`] and [`BondView`] for inelastic solids.
+
+use super::super::kernels::dilatation_change_rows;
+use super::super::kinematics::Kinematics;
+use super::force::InelasticSolidForce;
+use super::kernels::{force_rows, square_rows};
+use super::tangent::{Along, change_rows, tangent_rows};
+use crate::domain::Field;
+use crate::operator::{
+    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, On, PlasticView, TwoPass,
+};
+use crate::parallel::for_each_chunk;
+use crate::step_end::StepEnd;
+
+impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
+    /// The dilatation θ, then P and S: the own force state of a point pulls at a bond with P + S ψ − G R, where R is what the inelastic stretch of the entry keeps of the last step.
+    fn values_per_point(&self) -> usize {
+        3
+    }
+
+    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+        let n = self.solid.cloud.len();
+        self.solid.dilatations_into(u, on, &mut values[..n]);
+        self.states_into(t, u, on, values);
+    }
+
+    fn value_changes_into(&self, t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
+        let (solid, n) = (&self.solid, self.solid.cloud.len());
+        let (bonds, factors) = (solid.view(), &solid.states.dilatation[..]);
+        let mut thetas = vec![0.0; n];
+        solid.dilatations_into(u, &On::All, &mut thetas);
+        let (u, direction) = (solid.packed(u), solid.packed(direction));
+        let set = solid.instruction_set;
+        solid.sweep::<1>(&On::All, &mut changes[..n], |intact, rows, out| {
+            dilatation_change_rows::<L, D>(set, &bonds, factors, &u, &direction, intact, rows, out);
+        });
+        let points = self.points(t);
+        let along = Along {
+            u: &u,
+            direction: &direction,
+        };
+        solid.sweep::<3>(&On::All, changes, |intact, rows, out| {
+            change_rows::<L, D>(set, &bonds, &points, &thetas, &along, intact, rows, out);
+        });
+    }
+
+    fn add_bond_force(&self, t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+        let (solid, at_time) = (&self.solid, self.reliefs_at(t));
+        let (bonds, states) = (solid.view(), self.state_rows(at.values, false));
+        let reliefs = self.reliefs(&at_time, &states);
+        let u = self.packed_with(at.u, at.values);
+        solid.sweep::<D>(on, out, |intact, rows, out| {
+            let set = solid.instruction_set;
+            force_rows::<L, D>(set, &bonds, &reliefs, &u, intact, rows, out);
+        });
+    }
+
+    fn add_bond_tangent(&self, t: f64, at: AtPoints<'_>, change: AtPoints<'_>, out: &mut [f64]) {
+        let (solid, at_time) = (&self.solid, self.reliefs_at(t));
+        let (bonds, states) = (solid.view(), self.state_rows(at.values, false));
+        let changes = self.state_rows(change.values, true);
+        let reliefs = self.reliefs(&at_time, &states);
+        let u = self.packed_with(at.u, at.values);
+        let direction = self.packed_with(change.u, change.values);
+        let along = Along {
+            u: &u,
+            direction: &direction,
+        };
+        solid.sweep::<D>(&On::All, out, |intact, rows, out| {
+            let set = solid.instruction_set;
+            tangent_rows::<L, D>(set, &bonds, &reliefs, &changes, &along, intact, rows, out);
+        });
+    }
+
+    /// The free energy with the inelastic stretches at the end of the last step.
+    fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]) {
+        let solid = &self.solid;
+        let (bonds, points) = (solid.view(), self.points(t));
+        let mut squares = vec![0.0; solid.cloud.len()];
+        let u = solid.packed(at.u);
+        solid.sweep::<1>(&On::All, &mut squares, |intact, rows, out| {
+            let set = solid.instruction_set;
+            square_rows::<L, D>(set, &bonds, &points, &u, intact, rows, out);
+        });
+        for_each_chunk(out, &|first, out| {
+            for (i, energy) in (first..).zip(out) {
+                let place = [i, solid.bonds.site(i)];
+                let theta = at.values.owned[i];
+                *energy += solid.states.energy_density(place, theta, squares[i]);
+            }
+        });
+    }
+
+    /// Viscosity and plasticity soften: the bound is that of the elastic solid.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        self.solid.frequency_bound(density)
+    }
+
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        TwoPass::neighbours(&self.solid, i, visit);
+    }
+
+    /// Bonds act through the step and relax or flow before they are found over-stretched.
+    fn end_values_into(
+        &mut self,
+        step: &StepEnd<'_>,
+        u: Field<'_>,
+        on: &On<'_>,
+        needed: &On<'_>,
+        values: &mut [f64],
+    ) {
+        let n = self.solid.cloud.len();
+        self.advance(step, u, on);
+        self.break_bonds(step, u, [on, needed], &mut values[..n]);
+        self.states_into(step.t, u, needed, values);
+    }
+
+    fn breaking(&self) -> Option<&dyn Breakable> {
+        Some(self)
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        Some(self)
+    }
+
+    fn dilatation(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    fn plastic(&self) -> Option<&dyn PlasticView> {
+        self.laws.yields().then_some(self)
+    }
+
+    fn bonds(&self) -> Option<&dyn BondView> {
+        Some(self)
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.solid.directed_bonds()
+    }
+
+    fn bytes(&self) -> usize {
+        self.solid.bytes() + self.own_bytes()
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.solid.instruction_set
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        self.solid.use_instruction_set(set);
+    }
+}
+
+/// As of the elastic solid; what inelastic stretches dissipate is booked with what breaking does.
+impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
+    fn dissipated(&self) -> f64 {
+        self.solid.dissipated()
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        self.solid.dissipate(energy);
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        self.solid.take_coarse_breaks()
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        self.solid.broken_bonds()
+    }
+
+    fn can_break(&self) -> bool {
+        self.solid.can_break()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        self.solid.damage_into(out);
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        self.solid.for_each_intact(visit);
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        self.solid.mark_endangered(u, fraction, marks);
+    }
+}
+
+impl<L: Kinematics, const D: usize> PlasticView for InelasticSolidForce<L, D> {
+    fn plastic_strain_into(&self, out: &mut [f64]) {
+        out.copy_from_slice(self.plastic_strain());
+    }
+}
+
+/// Bonds with the inelastic stretches at the end of the last step.
+impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (bonds, stiffness) = (&self.solid.bonds, &self.solid.states.stiffness);
+        let relief = |i: usize, entry: usize| {
+            let back = self.history.opposite[entry] as usize;
+            let [forth, back] = [entry, back].map(|entry| self.history.inelastic[entry]);
+            let (here, there) = (bonds.site(i), bonds.neighbour(entry));
+            stiffness[here] * forth + stiffness[there] * back
+        };
+        self.solid.visit_bonds(u, i, &relief, visit);
+    }
+}

@@ -1,0 +1,78 @@
+//! Bodies with history, and steps that are given to them.
+
+use std::sync::Arc;
+
+use pericles::Path;
+use pericles::StepEnd;
+use pericles::family::VolumeCorrection;
+use pericles::material::{Inelasticity, LinearSolidConstants, ViscousTerm, Yield};
+use pericles::operator::{
+    FiniteStrain, Force, InelasticSolidBody, InelasticSolidForce, LinearSolidBody, On, TwoPassForce,
+};
+use pericles::space::PointCloud;
+
+pub type Operator<const D: usize> = TwoPassForce<InelasticSolidForce<FiniteStrain, D>>;
+
+pub fn viscous(terms: &[[f64; 2]]) -> Inelasticity {
+    let terms = terms.iter();
+    Inelasticity::Viscous(
+        terms
+            .map(|&[share, time]| ViscousTerm { share, time })
+            .collect(),
+    )
+}
+
+pub fn plastic(stress: f64, hardening: f64) -> Inelasticity {
+    Inelasticity::Plastic(Yield { stress, hardening })
+}
+
+/// The operator of a body of one material with whole volumes.
+pub fn operator<const D: usize>(
+    cloud: &Arc<PointCloud>,
+    constants: &LinearSolidConstants,
+    law: &Inelasticity,
+) -> Operator<D> {
+    let laws = [law.clone()];
+    let body = InelasticSolidBody {
+        elastic: LinearSolidBody::new(cloud, constants, VolumeCorrection::None),
+        laws: &laws,
+    };
+    let (force, _) = body.list::<FiniteStrain, D>().unwrap();
+    TwoPassForce::new(cloud.clone(), force)
+}
+
+/// Ends a step from `before` to `u`, along which forces act as under velocity Verlet; returns the force density.
+pub fn step(force: &mut dyn Force, [t, dt]: [f64; 2], before: &[f64], u: &[f64]) -> Vec<f64> {
+    let mean: Vec<f64> = before
+        .iter()
+        .zip(u)
+        .map(|(from, to)| if dt > 0.0 { (to - from) / dt } else { 0.0 })
+        .collect();
+    let end = StepEnd {
+        t,
+        dt,
+        u,
+        path: Path::MeanVelocity(&mean),
+    };
+    let mut out = vec![0.0; u.len()];
+    force.end_step(&end, On::All, &mut out);
+    out
+}
+
+/// The force density at a time.
+pub fn force_at(force: &dyn Force, t: f64, u: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; u.len()];
+    force.add_force(t, u, On::All, &mut out);
+    out
+}
+
+pub fn scaled(u: &[f64], factor: f64) -> Vec<f64> {
+    u.iter().map(|u| factor * u).collect()
+}
+
+/// The largest difference of two vectors over the largest number of the second.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let size = b.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let pairs = a.iter().zip(b);
+    pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / size
+}
