@@ -37,6 +37,7 @@ const TENSORS: Limit = Limit::new(
 
 const OF_CONVOLUTION: &[Limit] = &[
     Limit::STATE_BASED,
+    Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,
@@ -66,6 +67,7 @@ const FULL_BOX: &str =
 
 const OF_SPECTRAL: &[Limit] = &[
     Limit::STATE_BASED,
+    Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
     Limit::SEVERAL_MATERIALS,
     Limit::SURFACE_CORRECTION,

@@ -1,8 +1,8 @@
 //! Several forces on one body.
 
 use super::{
-    BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, LinearOperator,
-    Linearity, LocalForce, On, SplitForce,
+    BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, Inversion,
+    LinearOperator, Linearity, LocalForce, On, SplitForce,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -176,6 +176,10 @@ impl Force for Forces {
     fn rounding(&self, u: &[f64]) -> Option<f64> {
         let errors = self.list.iter().filter_map(|force| force.rounding(u));
         errors.reduce(|sum, error| sum + error)
+    }
+
+    fn inversion(&self) -> Option<Inversion> {
+        self.iter().find_map(|force| force.inversion())
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -20,6 +20,7 @@ pub enum BondForm {
 const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 
 const OF_GRID: &[Limit] = &[
+    Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
     Limit::listed_law(Feature::GreenStrainBar),
     Limit::listed_law(Feature::GreenStrain),
