@@ -1,1 +1,34 @@
 //! Correspondence materials: forces from the stress of a deformation gradient.
+//!
+//! A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007) takes the stress of any classical material at large strain. Each point has the deformation gradient that fits its bonds
+//! best, F = I + (Σ w η ⊗ ξ) K⁻¹ with the shape tensor K = Σ w ξ ⊗ ξ; the force state follows from the first Piola–Kirchhoff stress P(F), and a penalty controls the deformations that F does not represent
+//! ([`Stabilisation`]). A uniform deformation has the classical stress at every point, surfaces included.
+//!
+//! [`CorrespondenceMaterial`] → [`CorrespondenceConstants`] → [`CorrespondenceBody`] → [`CorrespondenceForce`].
+
+mod body;
+mod bonds;
+mod breaking;
+mod classes;
+mod control;
+mod error;
+mod force;
+mod law;
+mod material;
+mod passes;
+mod plasticity;
+mod shape;
+mod solid;
+mod tensor;
+mod view;
+
+pub use body::CorrespondenceBody;
+pub use classes::CorrespondenceClasses;
+pub use control::{Control, Stabilisation};
+pub use error::SingularShape;
+pub use force::CorrespondenceForce;
+pub use law::{ElasticLaw, Moduli};
+pub use material::{CorrespondenceConstants, CorrespondenceMaterial};
+pub use plasticity::{History, Plasticity};
+pub use shape::LARGEST_CONDITION;
+pub use solid::{PointState, Solid};

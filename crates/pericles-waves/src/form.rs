@@ -41,8 +41,9 @@ const TENSORS: Limit = Limit::new(
 );
 
 /// Limits of all transforms.
-const OF_TRANSFORMS: [Limit; 13] = [
+const OF_TRANSFORMS: [Limit; 14] = [
     Limit::STATE_BASED,
+    Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
     uniform(Feature::SeveralHorizons),
     linear(Feature::BondStretch),

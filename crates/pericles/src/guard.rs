@@ -7,6 +7,7 @@
 //! | growing kinetic and elastic energy | every step | runs whose step is above the bound of the stable step |
 //! | the same, by a measure that costs no force | every [`OFTEN`] steps | nonlinear bodies under explicit schemes |
 //! | more energy than the scheme conserves | every [`RARELY`] steps | all bodies |
+//! | a deformation gradient without a positive determinant | every step | forces that compute one |
 //! | points that have passed each other | every [`OFTEN`] steps | nonlinear bars: a linear law knows no order of points |
 //! | a step above the bound of a body that stiffened | every [`RARELY`] steps, and where energy appeared | nonlinear bodies under explicit schemes of one step, unless the step was too long from the start |
 //!
@@ -24,6 +25,7 @@
 use std::fmt;
 
 use crate::observe::StartEnergy;
+use crate::operator::Inversion;
 use crate::system::System;
 use crate::time::{Integrator, State, frequency_from_below, highest_frequency};
 
@@ -58,6 +60,11 @@ pub enum Cause {
         /// The other point, in the user's numbering.
         other: usize,
     },
+    /// The deformation gradient of a point has no positive determinant: its material is turned inside out.
+    Inverted {
+        /// The determinant J.
+        volume_ratio: f64,
+    },
     /// The body has become so stiff that the step is too long.
     Stiffened {
         /// The step, s.
@@ -78,6 +85,10 @@ impl fmt::Display for Cause {
                 write!(f, "the energy is {ratio:.1e} times what was put in")
             }
             Self::Passed { other } => write!(f, "it has passed its neighbour, point {other}"),
+            Self::Inverted { volume_ratio } => write!(
+                f,
+                "its deformation gradient has the determinant {volume_ratio:.3}, which must be positive: the material is turned inside out"
+            ),
             Self::Stiffened { dt, limit } => write!(
                 f,
                 "the body has become stiffer: steps above {limit:.4e} s are unstable now, and dt is {dt:.4e} s"
@@ -95,6 +106,9 @@ impl Cause {
             }
             Self::Passed { .. } => {
                 "a weaker load, a smoother initial field or a larger spacing keeps points apart"
+            }
+            Self::Inverted { .. } => {
+                "usual causes: a load or prescribed displacement that is too strong or too fast, a time step above the stable limit; a neo-Hookean law resists compression, and bonds that break (`fracture_energy`) let                  material come apart"
             }
             Self::Stiffened { .. } => "give a smaller dt",
         }
@@ -127,6 +141,7 @@ pub(crate) struct Watched<'a> {
 impl Watched<'_> {
     /// Looks at what is due after a step; at everything after the last.
     pub(crate) fn look(&self, last: bool) -> Result<(), Alarm> {
+        self.look_at_volumes()?;
         let due = |every: u64| last || self.state.step.is_multiple_of(every);
         if due(OFTEN) {
             self.look_at_motion()?;
@@ -143,8 +158,9 @@ impl Watched<'_> {
         Ok(())
     }
 
-    /// Looks for NaN and infinity alone.
+    /// Looks for NaN, infinity and inverted points alone.
     pub(crate) fn look_at_numbers(&self, last: bool) -> Result<(), Alarm> {
+        self.look_at_volumes()?;
         if !(last || self.state.step.is_multiple_of(OFTEN)) {
             return Ok(());
         }
@@ -180,6 +196,19 @@ impl Watched<'_> {
             cause: Cause::NotANumber,
             point: self.fastest(),
         })
+    }
+
+    fn look_at_volumes(&self) -> Result<(), Alarm> {
+        match self.system.operator().inversion() {
+            None => Ok(()),
+            Some(Inversion {
+                point,
+                volume_ratio,
+            }) => Err(Alarm {
+                cause: Cause::Inverted { volume_ratio },
+                point,
+            }),
+        }
     }
 
     fn look_at_motion(&self) -> Result<(), Alarm> {

@@ -35,6 +35,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",
+            "pericles-solids",
         ],
     ),
     (

@@ -8,6 +8,7 @@ use pericles::material::{
     StateInfluence, StretchDefinition, ViscousTerm, Yield,
 };
 use pericles::operator::DamageMeasure;
+use pericles_solids::correspondence::Plasticity;
 use serde::{Deserialize, Serialize};
 
 use super::described;
@@ -157,6 +158,14 @@ enum InterfaceStiffnessForm {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Plasticity", deny_unknown_fields)]
+struct PlasticityForm {
+    yield_stress: f64,
+    #[serde(default)]
+    hardening: f64,
+}
+
+#[derive(Serialize, Deserialize)]
 #[serde(remote = "DamageMeasure", deny_unknown_fields)]
 struct DamageMeasureForm {
     count: bool,
@@ -177,4 +186,5 @@ described!(
     Yield: YieldForm,
     InterfaceStiffness: InterfaceStiffnessForm,
     DamageMeasure: DamageMeasureForm,
+    Plasticity: PlasticityForm,
 );

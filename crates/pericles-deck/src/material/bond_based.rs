@@ -10,6 +10,7 @@ use crate::body::BodyRead;
 use crate::constants::{
     ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
 };
+use crate::correspondence;
 use crate::influence::{InfluenceRead, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -22,14 +23,14 @@ pub(super) fn read(
     shared: bool,
 ) -> Option<Material> {
     forbid_former_tables(&table);
-    for key in [
-        "strains",
-        "failure",
-        "stretch_definition",
-        "viscosity",
-        "yield_stress",
-        "hardening",
-    ] {
+    correspondence::forbid_keys(&table);
+    for key in ["yield_stress", "hardening"] {
+        table.forbid(
+            key,
+            "it belongs to model = \"state-based\" or \"correspondence\"",
+        );
+    }
+    for key in ["strains", "failure", "stretch_definition", "viscosity"] {
         table.forbid(key, "it belongs to model = \"state-based\"");
     }
     let dimension = body.frame.dimension;

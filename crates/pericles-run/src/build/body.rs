@@ -45,6 +45,9 @@ impl Assembler<'_> {
             MaterialModel::StateBased(material) => {
                 self.state_based_parts(solid, material, discretisation, warnings)
             }
+            MaterialModel::Correspondence(material) => {
+                self.correspondence_parts(solid, material, discretisation, warnings)
+            }
         }
     }
 
@@ -148,7 +151,7 @@ impl Assembler<'_> {
             return refuse(
                 |field| field == Field::Dilatation,
                 "the field Dilatation is",
-                "only state-based materials (model = \"state-based\") have a dilatation",
+                "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
             );
         }
         if capabilities.plastic.is_none()

@@ -3,7 +3,8 @@
 use std::fmt::{self, Display};
 
 use super::BondMaterial;
-use super::lattice::Cells;
+use super::lattice::{Cells, for_each_offset};
+use crate::family::VolumeCorrection;
 
 /// A plane of the lattice with the energy that a crack along it takes.
 ///
@@ -67,7 +68,7 @@ impl CrackPlane {
     }
 
     /// The same plane with its energy times a factor.
-    pub(super) fn scaled(self, factor: f64) -> Self {
+    pub fn scaled(self, factor: f64) -> Self {
         Self {
             energy: factor * self.energy,
             ..self
@@ -86,6 +87,80 @@ impl CrackPlane {
             .collect();
         planes.sort_by_key(|plane| plane.indices.iter().sum::<u8>());
         planes
+    }
+}
+
+/// Sums over the bonds of a point of a lattice in one of the layers beside a crack, each bond weighted by its influence function and partial volume, in units of the volume of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LayerMoments {
+    /// Σ κ w ξ ⊗ ξ over all bonds, m².
+    pub whole: [[f64; 3]; 3],
+    /// The same over the bonds that cross the crack.
+    pub crossing: [[f64; 3]; 3],
+    /// Σ κ w over all bonds.
+    pub weight: f64,
+}
+
+impl CrackPlane {
+    /// The planes of a lattice whose cells have these sides (m), with the energy of a unit area of crack along each, from the energy density (J/m³) that a crack takes from the points of each layer beside it:
+    /// materials whose points have an energy that is not a sum over bonds.
+    ///
+    /// `extent` is the horizon with the correction of volumes, `weight` the influence function of a bond ξ.
+    pub fn by_layers(
+        sides: &[f64],
+        (horizon, correction): (f64, VolumeCorrection),
+        weight: &dyn Fn([f64; 3]) -> f64,
+        energy_density: &dyn Fn(&LayerMoments) -> f64,
+    ) -> Vec<Self> {
+        let cells = Cells::new(sides);
+        let planes = Self::all(cells);
+        let mut crossing: Vec<Vec<[[f64; 3]; 3]>> = vec![Vec::new(); planes.len()];
+        let mut whole = LayerMoments::default();
+        for_each_offset(cells, horizon, correction, |offset, xi, r| {
+            let volume = correction.factor(r, horizon, cells.size());
+            let weight = volume * weight(xi);
+            whole.weight += weight;
+            add_square(&mut whole.whole, weight, xi);
+            for (plane, sums) in planes.iter().zip(&mut crossing) {
+                let crossed = plane.crossed(offset).max(0) as usize;
+                if crossed >= sums.len() {
+                    sums.resize(crossed + 1, Default::default());
+                }
+                add_square(&mut sums[crossed], weight, xi);
+            }
+        });
+        let energy = |plane: &Self, sums: &[[[f64; 3]; 3]]| {
+            let mut layer = whole;
+            // From the layer that is farthest from the crack, on both of its sides.
+            let layers = sums[1..].iter().rev().map(|sum| {
+                for (row, more) in layer
+                    .crossing
+                    .iter_mut()
+                    .flatten()
+                    .zip(sum.iter().flatten())
+                {
+                    *row += more;
+                }
+                2.0 * energy_density(&layer)
+            });
+            layers.sum::<f64>() / plane.per_length(cells)
+        };
+        let with_sums = planes.into_iter().zip(&crossing);
+        with_sums
+            .map(|(plane, sums)| {
+                let energy = energy(&plane, sums);
+                plane.with_energy(energy)
+            })
+            .collect()
+    }
+}
+
+/// Adds `weight` ξ ⊗ ξ.
+fn add_square(sum: &mut [[f64; 3]; 3], weight: f64, xi: [f64; 3]) {
+    for (a, row) in sum.iter_mut().enumerate() {
+        for (b, entry) in row.iter_mut().enumerate() {
+            *entry += weight * xi[a] * xi[b];
+        }
     }
 }
 

@@ -34,7 +34,7 @@ pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration
 pub(crate) use composite::check_materials;
 pub use composite::{InterfaceRule, PairClasses};
 pub use constants::BondConstants;
-pub use crack_planes::CrackPlane;
+pub use crack_planes::{CrackPlane, LayerMoments};
 pub use interface::{InterfaceStiffness, MaterialInterface};
 pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};

@@ -1,8 +1,8 @@
 //! Several forces on one body.
 
 use super::{
-    BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, LinearOperator,
-    Linearity, LocalForce, On, SplitForce,
+    BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, Inversion,
+    LinearOperator, Linearity, LocalForce, On, SplitForce,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -179,6 +179,10 @@ impl Force for Forces {
         errors.reduce(|sum, error| sum + error)
     }
 
+    fn inversion(&self) -> Option<Inversion> {
+        self.iter().find_map(|force| force.inversion())
+    }
+
     fn directed_bonds(&self) -> u64 {
         self.list.iter().map(|force| force.directed_bonds()).sum()
     }
@@ -207,6 +211,11 @@ impl Breakable for Forces {
         self.breaking()
             .map(|breaking| breaking.broken_bonds())
             .sum()
+    }
+
+    fn dropped_points(&self) -> u64 {
+        let dropped = self.breaking().map(|breaking| breaking.dropped_points());
+        dropped.sum()
     }
 
     fn dissipated(&self) -> f64 {

@@ -20,6 +20,7 @@ pub enum BondForm {
 const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
 
 const OF_GRID: &[Limit] = &[
+    Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),

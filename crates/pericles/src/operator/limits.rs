@@ -17,6 +17,8 @@ pub enum Feature {
     OtherCubic,
     /// State-based materials, whose bonds depend on the dilatations of both ends.
     StateBased,
+    /// Correspondence materials, whose bonds depend on the deformation gradients of both ends.
+    Correspondence,
     /// Bonds that break.
     Breaking,
     /// Bonds that break by their energy, the work of their force states since the start.
@@ -47,12 +49,13 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
         Self::OtherCubic,
         Self::StateBased,
+        Self::Correspondence,
         Self::Breaking,
         Self::BondEnergy,
         Self::PreCracks,
@@ -76,6 +79,7 @@ impl Feature {
             Self::GreenStrain => "Green-strain law, plates and blocks",
             Self::OtherCubic => "other cubic laws (bars)",
             Self::StateBased => "state-based materials",
+            Self::Correspondence => "correspondence materials",
             Self::Breaking => "breaking",
             Self::BondEnergy => "breaking by bond energy",
             Self::PreCracks => "pre-cracks",
@@ -151,6 +155,12 @@ impl Limit {
     pub const STATE_BASED: Self = Self::new(
         Feature::StateBased,
         "state-based materials are computed on a list of bonds or, in double precision, on a stencil; leave `bonds` out or give \"list\" or \"grid\"",
+    );
+
+    /// Of all forms but lists.
+    pub const CORRESPONDENCE: Self = Self::new(
+        Feature::Correspondence,
+        "correspondence materials are computed on a list of bonds; leave `bonds` out or give \"list\"",
     );
 
     /// Of forms that store no number per bond.

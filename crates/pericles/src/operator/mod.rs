@@ -128,6 +128,11 @@ pub trait Force: Saved + Send + Sync {
         None
     }
 
+    /// A point whose material had no positive volume left at the end of the last step, if the force has a material that needs one.
+    fn inversion(&self) -> Option<Inversion> {
+        None
+    }
+
     /// Family entries that the loops run over: each bond counts twice. Zero of forces without bonds.
     fn directed_bonds(&self) -> u64 {
         0
@@ -147,6 +152,15 @@ pub trait Force: Saved + Send + Sync {
     fn use_instruction_set(&mut self, set: InstructionSet) {
         let _ = set;
     }
+}
+
+/// A point whose material is turned inside out: the run cannot go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inversion {
+    /// The point.
+    pub point: usize,
+    /// J = det F of its deformation gradient F, zero or negative.
+    pub volume_ratio: f64,
 }
 
 /// A force density linear in the displacement.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
-    BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, LinearOperator,
-    Linearity, LocalForce, On, PlasticView,
+    BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, Inversion,
+    LinearOperator, Linearity, LocalForce, On, PlasticView,
 };
 use crate::archive::{Archive, Saved};
 use crate::domain::Field;
@@ -82,6 +82,11 @@ pub trait TwoPass: Saved + Send + Sync {
 
     /// The number of the value that is the dilatation of a point, if one is.
     fn dilatation(&self) -> Option<usize> {
+        None
+    }
+
+    /// As [`Force::inversion`].
+    fn inversion(&self) -> Option<Inversion> {
         None
     }
 
@@ -263,6 +268,10 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
 
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
         self.force.breaking_mut()
+    }
+
+    fn inversion(&self) -> Option<Inversion> {
+        self.force.inversion()
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -1,0 +1,321 @@
+//! Breaking of bonds, plastic flow, and the energy that both dissipate.
+//!
+//! The energy of a point is a function of all of its bonds. A point that loses bonds loses the difference of its energy with them and without them, with the shape tensor of each; the work of its forces in the part of
+//! the step in which they no longer act is taken off ([`StepEnd::dissipated_energy`]).
+
+use std::collections::BTreeMap;
+
+use pericles::StepEnd;
+use pericles::domain::{Field, Letter};
+use pericles::lanes::{LANES, Row};
+use pericles::material::{BondStretch, PairForce};
+use pericles::operator::rows::Rows;
+use pericles::operator::{Breakable, CoarseBreak, On};
+use pericles::parallel::{BLOCK, for_each_chunk};
+use pericles::sum::BinnedSum;
+use rayon::prelude::*;
+
+use super::bonds::Bond;
+use super::force::{CorrespondenceForce, PointShape};
+use super::plasticity::History;
+use super::tensor::{combination, unit};
+
+/// A point before it lost bonds in this step.
+struct Before<const D: usize> {
+    intact: Vec<u8>,
+    shape: PointShape<D>,
+}
+
+/// Entries of points.
+type Entries = Vec<(usize, usize)>;
+
+impl<const D: usize> CorrespondenceForce<D> {
+    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch, and all bonds of points whose other bonds do not span the space; books the energy.
+    pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &On<'_>) {
+        let domain = self.cloud.domain().clone();
+        let mut found = self.over_stretched(&self.packed(u), on);
+        if domain.all(found.is_empty()) {
+            return;
+        }
+        let rows = self.packed(u).to_vec();
+        let mut before = BTreeMap::new();
+        while !domain.all(found.is_empty()) {
+            let others = self.other_ends(&found);
+            found.extend(others);
+            let mut touched: Vec<usize> = found.iter().map(|&(i, _)| i).collect();
+            touched.sort_unstable();
+            touched.dedup();
+            for &i in &touched {
+                before.entry(i).or_insert_with(|| Before {
+                    intact: self.bits(i).to_vec(),
+                    shape: self.shapes[i],
+                });
+            }
+            for (_, entry) in found.drain(..) {
+                self.intact[entry / LANES] &= !(1 << (entry % LANES));
+            }
+            for i in touched {
+                let shape = self.shape(i);
+                if shape.bonds > 0 && !shape.is_regular() {
+                    self.drop_point(i, &mut found);
+                }
+                self.shapes[i] = self.shape_of(i);
+            }
+        }
+        self.book(step, &rows, before);
+    }
+
+    /// Entries of the points named by `on` whose bond is stretched beyond its critical stretch.
+    fn over_stretched(&self, rows: &[Row], on: &On<'_>) -> Entries {
+        let n = self.cloud.len();
+        let threshold = BondStretch::threshold(self.weakest);
+        let of_block = |block: usize| {
+            let first = block * BLOCK;
+            let mut found = Entries::new();
+            let Some(wanted) = Rows::of_block(on, first, BLOCK.min(n - first)) else {
+                return found;
+            };
+            for i in (0..wanted.count()).map(|k| wanted.at(k)) {
+                let here = self.bonds.list.site(i);
+                self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+                    let eta = Self::eta(rows, here, &bond);
+                    let (measure, square) = BondStretch::stretch_measure(bond.xi, eta);
+                    if measure > threshold * square && self.breaks(here, &bond, eta) {
+                        found.push((i, bond.entry));
+                    }
+                });
+            }
+            found
+        };
+        let blocks: Vec<Entries> = (0..n.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(of_block)
+            .collect();
+        blocks.concat()
+    }
+
+    /// Whether a bond may break and is stretched beyond the critical stretch of its pair of materials.
+    fn breaks(&self, here: usize, bond: &Bond<D>, eta: [f64; D]) -> bool {
+        let (measure, square) = BondStretch::stretch_measure(bond.xi, eta);
+        let limit = self.limits.stretch(here, bond.site);
+        self.may_break(bond.entry) && measure > BondStretch::threshold(limit) * square
+    }
+
+    fn may_break(&self, entry: usize) -> bool {
+        let bits = self.breakable.as_ref();
+        bits.is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
+    }
+
+    /// The entries at the other ends of bonds, those that are still there and are not among the bonds themselves.
+    fn other_ends(&self, found: &Entries) -> Entries {
+        let sites = self.bonds.list.sites();
+        let letters = found.iter().map(|&(i, entry)| {
+            let site = self.bonds.list.neighbour(entry);
+            let [x, y, z] = sites.shift(site).map(|periods| -f64::from(periods));
+            Letter {
+                from: i,
+                to: sites.point(site),
+                numbers: [0.0, x, y, z],
+            }
+        });
+        let known: std::collections::BTreeSet<usize> =
+            found.iter().map(|&(_, entry)| entry).collect();
+        let letters = self.cloud.domain().deliver(letters.collect());
+        let back = |letter: &Letter| {
+            let [_, x, y, z] = letter.numbers;
+            let leads_back = |&(_, site): &(usize, usize)| {
+                sites.point(site) == letter.from && sites.shift(site).map(f64::from) == [x, y, z]
+            };
+            let (entry, _) = self.bonds.list.family(letter.to).find(leads_back)?;
+            let wanted = self.is_intact(entry) && !known.contains(&entry);
+            wanted.then_some((letter.to, entry))
+        };
+        letters.iter().filter_map(back).collect()
+    }
+
+    /// Notes all bonds of a point that are left and may break, whose number and directions do not determine a deformation gradient.
+    fn drop_point(&mut self, i: usize, found: &mut Entries) {
+        let before = found.len();
+        self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+            if self.may_break(bond.entry) {
+                found.push((i, bond.entry));
+            }
+        });
+        if found.len() > before {
+            self.dropped = self.dropped.saturating_add(1);
+        }
+    }
+
+    /// Books what points dissipate that lost bonds.
+    fn book(&mut self, step: &StepEnd<'_>, rows: &[Row], before: BTreeMap<usize, Before<D>>) {
+        let ghosts = step.ghost_velocities(self.cloud.domain());
+        let velocity = step.velocities(&ghosts);
+        let volumes = self.cloud.clone();
+        let mut velocities = vec![Row::default(); if velocity.is_some() { rows.len() } else { 0 }];
+        if let Some(velocity) = velocity
+            && !before.is_empty()
+        {
+            let sites = self.bonds.list.sites();
+            pericles::operator::records::pack_sites::<D>(velocity, sites, &mut velocities);
+        }
+        for (i, before) in before {
+            let (groups, shape) = (self.bonds.list.groups(i), self.shapes[i]);
+            let after = self.intact[groups.clone()].to_vec();
+            let [energy, power] = self.energy_and_power(i, &shape, rows, &velocities);
+            self.intact[groups.clone()].copy_from_slice(&before.intact);
+            let [more, stronger] = self.energy_and_power(i, &before.shape, rows, &velocities);
+            self.intact[groups].copy_from_slice(&after);
+            let volume = volumes.volumes()[i];
+            let lost =
+                step.dissipated_energy(volume * (more - energy), volume * (stronger - power));
+            self.dissipated.add(lost);
+            let count = |bits: &[u8]| -> u64 {
+                let ones = bits.iter().map(|byte| u64::from(byte.count_ones()));
+                ones.sum()
+            };
+            let broken = count(&before.intact) - count(&after);
+            self.broken = self.broken.saturating_add(broken);
+        }
+    }
+
+    /// W of a point with a shape (J/m³), and its rate Σ_j b V_j T_ij·(v_j − v_i) (W/m³) with the velocities given by sites; zero without velocities.
+    fn energy_and_power(
+        &self,
+        i: usize,
+        shape: &PointShape<D>,
+        rows: &[Row],
+        velocities: &[Row],
+    ) -> [f64; 2] {
+        let energy = self.energy_of(i, shape, rows);
+        if velocities.is_empty() {
+            return [energy, 0.0];
+        }
+        let (state, _) = self.state_of(i, shape, &self.etas(i, rows));
+        let (here, nothing) = (self.bonds.list.site(i), Default::default());
+        let mut power = 0.0;
+        self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+            let (eta, moved) = (
+                Self::eta(rows, here, &bond),
+                Self::eta(velocities, here, &bond),
+            );
+            let mut pull = [0.0; D];
+            state.add_force(&nothing, &bond, &eta, &mut pull);
+            power += (0..D).map(|c| pull[c] * moved[c]).sum::<f64>();
+        });
+        [energy, power]
+    }
+
+    /// Plastic flow of the points named by `on` in the step that ends at `u`, and its work.
+    pub(super) fn advance_history(&mut self, u: Field<'_>, on: &On<'_>) {
+        let n = self.cloud.len();
+        let mut history = std::mem::take(&mut self.history);
+        let rows = self.packed(u);
+        let sums: Vec<BinnedSum> = history
+            .par_chunks_mut(BLOCK * History::KEPT)
+            .enumerate()
+            .map(|(block, kept)| {
+                let (first, mut sum) = (block * BLOCK, BinnedSum::default());
+                let Some(wanted) = Rows::of_block(on, first, BLOCK.min(n - first)) else {
+                    return sum;
+                };
+                for i in (0..wanted.count()).map(|k| wanted.at(k)) {
+                    let kept = &mut kept[(i - first) * History::KEPT..][..History::KEPT];
+                    let gradient = self.gradient(i, &self.shapes[i].inverse, &self.etas(i, &rows));
+                    let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
+                    let solid = self.classes.solid(i);
+                    let (next, work) = solid.advanced(&f, &History::of(kept));
+                    next.keep(kept);
+                    if work != 0.0 {
+                        sum.add(work * self.cloud.volumes()[i]);
+                    }
+                }
+                sum
+            })
+            .collect();
+        drop(rows);
+        self.history = history;
+        for sum in sums {
+            self.plastic_work = self.plastic_work.merged(sum);
+        }
+    }
+}
+
+impl<const D: usize> Breakable for CorrespondenceForce<D> {
+    fn can_break(&self) -> bool {
+        self.weakest.is_finite()
+    }
+
+    fn broken_bonds(&self) -> u64 {
+        self.cloud.domain().count(self.broken) / 2
+    }
+
+    fn dropped_points(&self) -> u64 {
+        CorrespondenceForce::dropped_points(self)
+    }
+
+    /// By breaking and by plastic flow.
+    fn dissipated(&self) -> f64 {
+        let all = self.dissipated.merged(self.plastic_work);
+        self.cloud.domain().total(all)
+    }
+
+    fn dissipate(&mut self, energy: f64) {
+        self.dissipated.add(energy);
+    }
+
+    /// None: the energy that a bond stores at its critical stretch depends on the other bonds of its ends.
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        Vec::new()
+    }
+
+    fn damage_into(&self, out: &mut [f64]) {
+        for_each_chunk(out, &|first, out| {
+            for (i, damage) in (first..).zip(out) {
+                let (mut whole, mut left) = (0.0, 0.0);
+                let (list, here) = (&self.bonds.list, self.bonds.list.site(i));
+                for (entry, site) in list.family(i) {
+                    if !(list.is_present(entry) || self.damage.count_precut) {
+                        continue;
+                    }
+                    let weight = match self.damage.count {
+                        true => 1.0,
+                        false => list.volume_factor(here, site) * list.volume(site),
+                    };
+                    whole += weight;
+                    if self.is_intact(entry) {
+                        left += weight;
+                    }
+                }
+                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
+            }
+        });
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        let sites = self.bonds.list.sites();
+        for i in 0..self.cloud.len() {
+            self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+                if let Some(j) = sites.own_point(bond.site).filter(|&j| j > i) {
+                    visit(i, j);
+                }
+            });
+        }
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        let ghosts = self.cloud.domain().ghosts(u);
+        let rows = self.packed(Field::new(u, &ghosts));
+        for_each_chunk(marks, &|first, marks| {
+            for (i, mark) in (first..).zip(marks) {
+                let here = self.bonds.list.site(i);
+                self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+                    let eta = Self::eta(&rows, here, &bond);
+                    let (measure, square) = BondStretch::stretch_measure(bond.xi, eta);
+                    let limit = fraction * self.limits.stretch(here, bond.site);
+                    *mark |= self.may_break(bond.entry)
+                        && measure > BondStretch::threshold(limit) * square;
+                });
+            }
+        });
+    }
+}

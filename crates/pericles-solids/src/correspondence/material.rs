@@ -1,0 +1,240 @@
+//! The correspondence material as a user describes it, and its constants on a body.
+
+use pericles::family::VolumeCorrection;
+use pericles::material::{
+    BondFailure, BondLimits, CrackPlane, FractureCalibration, LayerMoments, LinearSolid,
+    LinearSolidConstants, StressState, StretchDefinition,
+};
+use pericles::space::PointCloud;
+use pericles::{PericlesError, Result, positive};
+
+use super::control::{Stabilisation, spring_of_horizon};
+use super::law::{ElasticLaw, Moduli};
+use super::plasticity::Plasticity;
+use super::solid::Solid;
+use super::tensor::{Matrix, combination, contraction, in_body, product, symmetric};
+
+/// A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007): the force state of a point follows from the stress of its deformation gradient.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CorrespondenceMaterial {
+    /// Density, elastic constants, horizon, influence function, partial volumes and failure, as of a linear peridynamic solid. Bonds break by their stretch.
+    pub solid: LinearSolid,
+    /// The elastic law; of a material that yields it is [`ElasticLaw::Hencky`] whatever is given.
+    pub law: ElasticLaw,
+    /// Control of zero-energy modes.
+    pub stabilisation: Stabilisation,
+    /// When the material yields, if it does.
+    pub plasticity: Option<Plasticity>,
+}
+
+/// The constants of a correspondence material on a given body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CorrespondenceConstants {
+    /// Elastic constants, horizon, influence function, limits of bonds and fracture energy. The kernel constants A and B are not used, and the lattice's shear is exact: none is reported.
+    pub solid: LinearSolidConstants,
+    /// Stress and moduli.
+    pub point: Solid,
+    /// Control of zero-energy modes.
+    pub stabilisation: Stabilisation,
+}
+
+impl CorrespondenceMaterial {
+    /// A material that does not yield.
+    pub fn new(solid: LinearSolid, law: ElasticLaw, stabilisation: Stabilisation) -> Self {
+        Self {
+            solid,
+            law,
+            stabilisation,
+            plasticity: None,
+        }
+    }
+
+    /// The constants for bonds of `cloud`.
+    ///
+    /// # Errors
+    /// Those of [`LinearSolid::constants`]; a failure criterion other than the closing stretch; plastic constants out of range.
+    pub fn constants(
+        &self,
+        cloud: &PointCloud,
+        state: StressState,
+    ) -> Result<CorrespondenceConstants> {
+        if let Some(plasticity) = &self.plasticity {
+            plasticity.check()?;
+        }
+        let unbroken = LinearSolid {
+            failure: BondFailure::Unbreakable,
+            ..self.solid.clone()
+        };
+        let mut solid = unbroken.constants(cloud, state)?;
+        solid.lattice_shear = None;
+        let mut constants = CorrespondenceConstants {
+            point: Solid {
+                state,
+                law: match self.plasticity {
+                    Some(_) => ElasticLaw::Hencky,
+                    None => self.law,
+                },
+                moduli: Moduli::new(solid.elastic.bulk(), solid.elastic.shear()),
+                plasticity: self.plasticity,
+            },
+            stabilisation: self.stabilisation,
+            solid,
+        };
+        self.set_limits(&mut constants, cloud)?;
+        Ok(constants)
+    }
+
+    /// What bonds between this material and another one can bear, for a failure criterion of the interface: half of the energy of a unit area of crack belongs to the points on each side.
+    ///
+    /// # Errors
+    /// Those of [`CorrespondenceMaterial::constants`].
+    pub fn limits_towards(
+        &self,
+        other: &Self,
+        failure: BondFailure,
+        cloud: &PointCloud,
+        state: StressState,
+    ) -> Result<BondLimits> {
+        // 1/s₀² is the energy of a crack at unit stretch over the fracture energy.
+        let limit = |material: &Self| -> Result<f64> {
+            let solid = LinearSolid {
+                failure,
+                ..material.solid.clone()
+            };
+            let material = Self {
+                solid,
+                ..material.clone()
+            };
+            Ok(material.constants(cloud, state)?.solid.limits.stretch)
+        };
+        let [a, b] = [limit(self)?, limit(other)?];
+        let stretch = (0.5 * (a.powi(-2) + b.powi(-2))).powf(-0.5);
+        Ok(BondLimits {
+            stretch,
+            ..BondLimits::NONE
+        })
+    }
+
+    /// The critical stretch: s₀² is the fracture energy over the energy of a unit area of crack at unit stretch, counted in the closing deformation, where only the bonds that cross the crack are stretched.
+    fn set_limits(
+        &self,
+        constants: &mut CorrespondenceConstants,
+        cloud: &PointCloud,
+    ) -> Result<()> {
+        let sides = cloud.cell_sides();
+        let planes = |fine: bool| constants.crack_planes(&self.solid, cloud, fine);
+        let (stretch, energy, calibration) = match self.solid.failure {
+            BondFailure::Unbreakable => return Ok(()),
+            BondFailure::BondEnergy { .. } => return Err(no_such_failure("the bond energy")),
+            BondFailure::CriticalStretch(stretch) => {
+                let stretch = positive("the critical stretch", stretch)?;
+                let unit = CrackPlane::mean(&planes(true));
+                (stretch, unit * stretch * stretch, None)
+            }
+            BondFailure::Stretch {
+                definition: StretchDefinition::Bond | StretchDefinition::Isotropic,
+                ..
+            } => {
+                return Err(no_such_failure(
+                    "a stretch definition other than \"closing\"",
+                ));
+            }
+            BondFailure::Stretch {
+                fracture_energy,
+                calibration,
+                ..
+            } => {
+                let energy = positive("the fracture energy", fracture_energy)?;
+                let calibration = match sides {
+                    Some(_) => calibration,
+                    None => FractureCalibration::Continuum,
+                };
+                let fine = calibration == FractureCalibration::Continuum;
+                let unit = CrackPlane::mean(&planes(fine));
+                ((energy / unit).sqrt(), energy, Some(calibration))
+            }
+        };
+        let crack_planes = match sides {
+            Some(_) => planes(false),
+            None => Vec::new(),
+        };
+        let scale = stretch * stretch;
+        let solid = &mut constants.solid;
+        solid.crack_planes = crack_planes
+            .into_iter()
+            .map(|plane| plane.scaled(scale))
+            .collect();
+        solid.limits.stretch = stretch;
+        solid.fracture_energy = energy;
+        solid.fracture_calibration = calibration;
+        Ok(())
+    }
+}
+
+fn no_such_failure(what: &str) -> PericlesError {
+    PericlesError::ElasticConstants {
+        reason: format!(
+            "bonds of correspondence materials break by their stretch, calibrated in the closing deformation, not by {what}"
+        ),
+    }
+}
+
+/// Cells in a horizon of the lattice whose sums stand for the integrals of the continuum; they are within 1 % (plane) and 2 % (space) of them.
+const FINE: [f64; 3] = [200.0, 24.0, 10.0];
+
+impl CorrespondenceConstants {
+    /// Planes of the body's lattice, or of a fine one, with the energy of a unit area of crack at unit stretch.
+    fn crack_planes(&self, solid: &LinearSolid, cloud: &PointCloud, fine: bool) -> Vec<CrackPlane> {
+        let (dimension, horizon) = (cloud.dimension(), self.solid.horizon);
+        let (sides, correction) = match cloud.cell_sides() {
+            Some(sides) if !fine => (sides.to_vec(), solid.volume_correction),
+            _ => (
+                vec![horizon / (FINE[dimension - 1] + 0.5); dimension],
+                VolumeCorrection::None,
+            ),
+        };
+        let weight = |xi: [f64; 3]| self.solid.influence.alpha_of(xi, horizon);
+        let energy = |layer: &LayerMoments| match dimension {
+            1 => self.closing_energy::<1>(layer),
+            2 => self.closing_energy::<2>(layer),
+            _ => self.closing_energy::<3>(layer),
+        };
+        CrackPlane::by_layers(&sides, (horizon, correction), &weight, &energy)
+    }
+
+    /// The energy density (J/m³) of a point whose bonds across a crack are stretched by one, η = ξ, and whose other bonds are not: with the moment M of the former and the shape tensor K, the displacement gradient is
+    /// H = M K⁻¹, and Σ w z ⊗ z = M − M K⁻¹ M.
+    fn closing_energy<const D: usize>(&self, layer: &LayerMoments) -> f64 {
+        let whole: Matrix<D> = in_body(&layer.whole);
+        let crossing: Matrix<D> = in_body(&layer.crossing);
+        let inverse = super::shape::inverse_of(&whole);
+        let gradient = product(&crossing, &inverse);
+        let strain = symmetric(&gradient);
+        let stress = self.point.linear_stress(&strain);
+        let left = combination(1.0, &crossing, -1.0, &product(&gradient, &crossing));
+        let spring = self.spring() / layer.weight;
+        // Moments are in units of the volume of a cell, of which neither penalty depends.
+        let control = self.stabilisation.control(&self.point, &inverse, spring);
+        0.5 * contraction(&stress, &strain) + 0.5 * control.contraction(&symmetric(&left))
+    }
+
+    /// An upper bound of the stiffness C : H : H/|H|², Pa.
+    pub(super) fn stiffest(&self) -> f64 {
+        let dimension = self.point.state.dimension() as f64;
+        let bulk = dimension * self.point.dilatation_modulus();
+        match self.point.state {
+            StressState::Uniaxial => bulk,
+            _ => bulk.max(2.0 * self.point.moduli.shear),
+        }
+    }
+
+    /// c V_δ/δ, N/m⁴.
+    pub(super) fn spring(&self) -> f64 {
+        let dimension = self.point.state.dimension();
+        spring_of_horizon(
+            dimension,
+            self.point.dilatation_modulus(),
+            self.solid.horizon,
+        )
+    }
+}

@@ -1,0 +1,248 @@
+//! J2 plasticity at finite strain in the logarithmic frame, and the elastic law that belongs to it.
+//!
+//! The deformation gradient is F = Fₑ Fₚ. The history is Cₚ⁻¹ = (FₚᵀFₚ)⁻¹ and the accumulated plastic strain α. With the trial state bₑ = F Cₚ⁻¹ Fᵀ = Σ b_a n_a ⊗ n_a and the logarithmic strains ε_a = ½ ln b_a, the
+//! Kirchhoff stress is τ = K tr(ε) I + 2 G dev ε, and the return mapping in principal axes is that of small strain (Simo, Comput. Methods Appl. Mech. Eng. 99, 1992): isotropic, volume-preserving, exact for every
+//! rotation.
+
+use super::law::Moduli;
+use super::tensor::{
+    Matrix, combination, determinant, inverse, matrix, principal_axes, product, symmetric,
+    transpose,
+};
+
+use pericles::{PericlesError, Result, positive};
+
+/// Yielding at the von Mises stress σ_y + H α of the Kirchhoff stress, with the accumulated plastic strain α: linear isotropic hardening.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plasticity {
+    /// σ_y, Pa.
+    pub yield_stress: f64,
+    /// H, Pa; zero for perfect plasticity.
+    pub hardening: f64,
+}
+
+/// What a point remembers of its plastic flow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct History {
+    /// Cₚ⁻¹: xx, yy, zz, xy, yz, xz.
+    pub plastic: [f64; 6],
+    /// Accumulated plastic strain α = ∫ √(2/3) |dₚ| dt.
+    pub accumulated: f64,
+    /// The stretch across the plane or the bar at the end of the last step, from which that of the next one is sought.
+    pub across: f64,
+}
+
+impl Default for History {
+    /// No plastic flow yet.
+    fn default() -> Self {
+        Self {
+            plastic: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+            accumulated: 0.0,
+            across: 1.0,
+        }
+    }
+}
+
+/// Row and column of the components of a symmetric tensor.
+const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
+
+impl History {
+    /// Numbers that are kept.
+    pub(super) const KEPT: usize = 8;
+
+    pub(super) fn of(kept: &[f64]) -> Self {
+        Self {
+            plastic: std::array::from_fn(|k| kept[k]),
+            accumulated: kept[6],
+            across: kept[7],
+        }
+    }
+
+    pub(super) fn keep(&self, kept: &mut [f64]) {
+        kept[..6].copy_from_slice(&self.plastic);
+        kept[6] = self.accumulated;
+        kept[7] = self.across;
+    }
+
+    fn inverse_plastic(&self) -> Matrix<3> {
+        let mut full = [[0.0; 3]; 3];
+        for (&(a, b), value) in PLACES.iter().zip(self.plastic) {
+            full[a][b] = value;
+            full[b][a] = value;
+        }
+        full
+    }
+}
+
+impl Plasticity {
+    /// Checks the constants.
+    ///
+    /// # Errors
+    /// A yield stress that is not positive; a hardening modulus below zero.
+    pub fn check(&self) -> Result<()> {
+        positive("the yield stress", self.yield_stress)?;
+        if self.hardening >= 0.0 && self.hardening.is_finite() {
+            return Ok(());
+        }
+        Err(PericlesError::OutOfRange {
+            quantity: "the hardening modulus",
+            value: self.hardening,
+            allowed: "zero or a positive number: softening needs a length that the model does not have",
+        })
+    }
+
+    /// ∫ (σ_y + H α) dα from α by an increment: the plastic work per volume, J/m³.
+    fn work(&self, accumulated: f64, increment: f64) -> f64 {
+        increment * (self.yield_stress + self.hardening * (accumulated + 0.5 * increment))
+    }
+}
+
+/// The stress of a state in principal axes of the trial state.
+pub(super) struct Returned {
+    /// b_a of the trial state.
+    squares: [f64; 3],
+    /// n_a as columns.
+    axes: Matrix<3>,
+    /// Principal Kirchhoff stresses, Pa.
+    tau: [f64; 3],
+    /// Elastic logarithmic strains after the return.
+    elastic: [f64; 3],
+    /// ∂τ_a/∂ε_b of the trial strains, Pa.
+    moduli: Matrix<3>,
+    /// 2 G times the part of the trial deviator that is left, Pa.
+    secant: f64,
+    /// Increment of α.
+    pub increment: f64,
+}
+
+/// The return mapping from the trial state of F; without `plasticity` the trial state itself.
+pub(super) fn returned(
+    moduli: &Moduli,
+    plasticity: Option<&Plasticity>,
+    f: &Matrix<3>,
+    history: &History,
+) -> Returned {
+    let trial = product(&product(f, &history.inverse_plastic()), &transpose(f));
+    let (squares, axes) = principal_axes(&trial);
+    let strain = squares.map(|b| 0.5 * b.ln());
+    let mean = strain.iter().sum::<f64>() / 3.0;
+    let shear = 2.0 * moduli.shear;
+    let deviator = strain.map(|e| shear * (e - mean));
+    let size = deviator.iter().map(|s| s * s).sum::<f64>().sqrt();
+    let root = (2.0f64 / 3.0).sqrt();
+    let mut result = Returned {
+        squares,
+        axes,
+        tau: deviator.map(|s| s + 3.0 * moduli.bulk * mean),
+        elastic: strain,
+        moduli: matrix(|a, b| moduli.bulk - shear / 3.0 + if a == b { shear } else { 0.0 }),
+        secant: shear,
+        increment: 0.0,
+    };
+    let Some(plasticity) = plasticity else {
+        return result;
+    };
+    let limit = plasticity.yield_stress + plasticity.hardening * history.accumulated;
+    let excess = size - root * limit;
+    if !(excess > 1e-12 * root * limit) {
+        return result;
+    }
+    let flow = excess / (shear + 2.0 / 3.0 * plasticity.hardening);
+    let direction = deviator.map(|s| s / size);
+    let left = 1.0 - shear * flow / size;
+    let turned = shear / (shear + 2.0 / 3.0 * plasticity.hardening) - (1.0 - left);
+    for a in 0..3 {
+        result.tau[a] -= shear * flow * direction[a];
+        result.elastic[a] -= flow * direction[a];
+    }
+    result.moduli = matrix(|a, b| {
+        let unit = if a == b { 1.0 } else { 0.0 };
+        moduli.bulk + shear * left * (unit - 1.0 / 3.0)
+            - shear * turned * direction[a] * direction[b]
+    });
+    result.secant = shear * left;
+    result.increment = root * flow;
+    result
+}
+
+impl Returned {
+    /// The elastic energy density, J/m³.
+    pub fn energy(&self, moduli: &Moduli) -> f64 {
+        let sum: f64 = self.elastic.iter().sum();
+        let deviator = self.elastic.map(|e| (e - sum / 3.0).powi(2));
+        0.5 * moduli.bulk * sum * sum + moduli.shear * deviator.iter().sum::<f64>()
+    }
+
+    /// τ, Pa.
+    pub fn kirchhoff(&self) -> Matrix<3> {
+        self.in_space(self.tau)
+    }
+
+    /// P = τ F⁻ᵀ, Pa.
+    pub fn first_stress(&self, f: &Matrix<3>) -> Matrix<3> {
+        let back = inverse(f, determinant(f));
+        product(&self.kirchhoff(), &transpose(&back))
+    }
+
+    /// dP = dτ F⁻ᵀ − τ F⁻ᵀ dFᵀ F⁻ᵀ for a change dF, with dτ of the trial state's change dbₑ = dF F⁻¹ bₑ + (…)ᵀ: in principal axes dτ_aa = Σ_b ∂τ_a/∂ε_b db_bb/(2 b_b) and
+    /// dτ_ab = (τ_a − τ_b)/(b_a − b_b) db_ab.
+    pub fn stress_change(&self, f: &Matrix<3>, df: &Matrix<3>) -> Matrix<3> {
+        let back = inverse(f, determinant(f));
+        let rate = product(df, &back);
+        // In principal axes.
+        let turned = product(&product(&transpose(&self.axes), &rate), &self.axes);
+        let b = &self.squares;
+        let change = matrix::<3>(|i, j| turned[i][j] * b[j] + turned[j][i] * b[i]);
+        let own = matrix::<3>(|i, j| match i == j {
+            true => (0..3)
+                .map(|k| self.moduli[i][k] * change[k][k] / (2.0 * b[k]))
+                .sum(),
+            false => self.quotient(i, j) * change[i][j],
+        });
+        let own = product(&product(&self.axes, &own), &transpose(&self.axes));
+        let tau = self.kirchhoff();
+        let whole = combination(1.0, &own, -1.0, &product(&tau, &transpose(&rate)));
+        product(&whole, &transpose(&back))
+    }
+
+    /// (τ_a − τ_b)/(b_a − b_b): τ_a − τ_b is the secant times ε_a − ε_b = ½ ln(b_a/b_b).
+    fn quotient(&self, a: usize, b: usize) -> f64 {
+        let excess = self.squares[a] / self.squares[b] - 1.0;
+        let slope = if excess == 0.0 {
+            1.0
+        } else {
+            excess.ln_1p() / excess
+        };
+        0.5 * self.secant * slope / self.squares[b]
+    }
+
+    /// The history after the step, with the plastic work per volume, J/m³.
+    pub fn advanced(
+        &self,
+        plasticity: &Plasticity,
+        f: &Matrix<3>,
+        history: &History,
+    ) -> (History, f64) {
+        let across = f[2][2];
+        if self.increment == 0.0 {
+            return (History { across, ..*history }, 0.0);
+        }
+        let elastic = self.in_space(self.elastic.map(|e| (2.0 * e).exp()));
+        let back = inverse(f, determinant(f));
+        let plastic = symmetric(&product(&product(&back, &elastic), &transpose(&back)));
+        let next = History {
+            plastic: PLACES.map(|(a, b)| plastic[a][b]),
+            accumulated: history.accumulated + self.increment,
+            across,
+        };
+        (next, plasticity.work(history.accumulated, self.increment))
+    }
+
+    fn in_space(&self, principal: [f64; 3]) -> Matrix<3> {
+        matrix(|i, j| {
+            (0..3)
+                .map(|a| principal[a] * self.axes[i][a] * self.axes[j][a])
+                .sum()
+        })
+    }
+}

@@ -1,0 +1,64 @@
+//! Shape tensors K = Σ w ξ ⊗ ξ.
+
+use super::tensor::{Matrix, determinant, in_body, in_space, inverse, principal_axes, trace};
+
+/// The largest ratio of the principal values of a shape tensor that is inverted: beyond it the bonds that are left do not span the space.
+pub const LARGEST_CONDITION: f64 = 1e6;
+
+/// A shape tensor that is being summed up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shape<const D: usize> {
+    pub tensor: Matrix<D>,
+    /// Bonds that are left.
+    pub bonds: usize,
+}
+
+impl<const D: usize> Default for Shape<D> {
+    fn default() -> Self {
+        Self {
+            tensor: [[0.0; D]; D],
+            bonds: 0,
+        }
+    }
+}
+
+impl<const D: usize> Shape<D> {
+    /// Adds a bond of the weight ω = w b V.
+    #[inline(always)]
+    pub fn add(&mut self, weight: f64, xi: &[f64; D]) {
+        for a in 0..D {
+            for b in 0..D {
+                self.tensor[a][b] += weight * xi[a] * xi[b];
+            }
+        }
+        self.bonds += 1;
+    }
+
+    /// The ratio of its largest principal value to the smallest.
+    pub fn condition(&self) -> f64 {
+        let (values, _) = principal_axes(&self.tensor);
+        let largest = values.into_iter().fold(0.0, f64::max);
+        let least = values.into_iter().fold(f64::INFINITY, f64::min);
+        match least > 0.0 {
+            true => largest / least,
+            false => f64::INFINITY,
+        }
+    }
+
+    /// Whether a deformation gradient follows from the bonds: there are more than the body has dimensions, and their directions differ enough.
+    pub fn is_regular(&self) -> bool {
+        self.bonds > D && self.condition() <= LARGEST_CONDITION
+    }
+
+    /// K⁻¹; none where no deformation gradient follows from the bonds.
+    pub fn inverse(&self) -> Option<Matrix<D>> {
+        self.is_regular().then(|| inverse_of(&self.tensor))
+    }
+}
+
+/// The inverse of a positive definite tensor.
+pub(super) fn inverse_of<const D: usize>(tensor: &Matrix<D>) -> Matrix<D> {
+    // Axes that the body does not have get the mean, so that the determinant has the scale of the tensor.
+    let full = in_space(tensor, trace(tensor) / D as f64);
+    in_body(&inverse(&full, determinant(&full)))
+}

@@ -1,0 +1,162 @@
+//! A solid in the dimensions of a body: its stress with what follows across a plane or a bar.
+
+use pericles::material::StressState;
+
+use super::law::{ElasticLaw, Moduli, stress, stress_change};
+use super::plasticity::{History, Plasticity, returned};
+use super::tensor::{Matrix, combination, determinant, diagonal, in_body, in_space, trace, unit};
+
+/// A solid under a state of stress: in plane strain F₃₃ = 1; in plane stress F₃₃ is such that P₃₃ = 0, in a bar F₂₂ = F₃₃ such that P₂₂ = P₃₃ = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solid {
+    /// The state of stress.
+    pub state: StressState,
+    /// The elastic law; [`ElasticLaw::Hencky`] if the solid yields.
+    pub law: ElasticLaw,
+    /// Elastic moduli.
+    pub moduli: Moduli,
+    /// When the solid yields, if it does.
+    pub plasticity: Option<Plasticity>,
+}
+
+/// The state of a point of a solid with a deformation gradient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointState<const D: usize> {
+    /// Elastic energy density ψ, J/m³.
+    pub energy: f64,
+    /// First Piola–Kirchhoff stress P in the body's own dimensions, Pa.
+    pub stress: Matrix<D>,
+    /// The stretch across a plane or a bar; one in space.
+    pub across: f64,
+}
+
+/// Iterations for the stretch across; quadratic convergence needs a handful.
+const ITERATIONS: usize = 60;
+
+impl Solid {
+    /// Energy density and stress; not numbers where det F ≤ 0.
+    pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
+        let full = self.embedded(f, history);
+        let (energy, stress) = self.stress_in_space(&full, history);
+        PointState {
+            energy,
+            stress: in_body(&stress),
+            across: full[2][2],
+        }
+    }
+
+    /// The change of P in a direction dF at F, with what changes across.
+    pub fn stress_change<const D: usize>(
+        &self,
+        f: &Matrix<D>,
+        df: &Matrix<D>,
+        history: &History,
+    ) -> Matrix<D> {
+        let full = self.embedded(f, history);
+        let direct = self.change_in_space(&full, &in_space(df, 0.0), history);
+        let Some(across) = self.across() else {
+            return in_body(&direct);
+        };
+        let slope = self.change_in_space(&full, &across, history);
+        let stretch = -direct[2][2] / slope[2][2];
+        in_body(&combination(1.0, &direct, stretch, &slope))
+    }
+
+    /// The history after a step that ends at F, and the plastic work per volume within it, J/m³; as before of solids that do not yield.
+    pub fn advanced<const D: usize>(&self, f: &Matrix<D>, history: &History) -> (History, f64) {
+        let Some(plasticity) = &self.plasticity else {
+            return (*history, 0.0);
+        };
+        let full = self.embedded(f, history);
+        let state = returned(&self.moduli, Some(plasticity), &full, history);
+        state.advanced(plasticity, &full, history)
+    }
+
+    /// The tensor of linear elasticity on a symmetric tensor in the body's own dimensions, λ̂ tr(ε) I + 2 G ε, Pa.
+    pub fn linear_stress<const D: usize>(&self, strain: &Matrix<D>) -> Matrix<D> {
+        let pressure = self.plane_lame() * trace(strain);
+        combination(pressure, &unit(), 2.0 * self.moduli.shear, strain)
+    }
+
+    /// λ̂, Pa: λ, in plane stress 2 λ G/(λ + 2 G), in a bar E − 2 G.
+    pub fn plane_lame(&self) -> f64 {
+        let Moduli { lame, shear, .. } = self.moduli;
+        match self.state {
+            StressState::Spatial | StressState::PlaneStrain => lame,
+            StressState::PlaneStress => 2.0 * lame * shear / (lame + 2.0 * shear),
+            StressState::Uniaxial => shear * lame / (lame + shear),
+        }
+    }
+
+    /// The modulus of dilatation κ = λ̂ + 2 G/D, Pa.
+    pub fn dilatation_modulus(&self) -> f64 {
+        self.plane_lame() + 2.0 * self.moduli.shear / self.state.dimension() as f64
+    }
+
+    /// What changes where the stretch across grows; none where it does not change.
+    fn across(&self) -> Option<Matrix<3>> {
+        match self.state {
+            StressState::PlaneStress => Some(diagonal([0.0, 0.0, 1.0])),
+            StressState::Uniaxial => Some(diagonal([0.0, 1.0, 1.0])),
+            StressState::PlaneStrain | StressState::Spatial => None,
+        }
+    }
+
+    /// F in space.
+    fn embedded<const D: usize>(&self, f: &Matrix<D>, history: &History) -> Matrix<3> {
+        let Some(direction) = self.across() else {
+            return in_space(f, 1.0);
+        };
+        // An inverted plane has no stretch across.
+        if determinant(&in_space(f, 1.0)) <= 0.0 {
+            return in_space(f, f64::NAN);
+        }
+        let mut across = self.first_guess(f, history);
+        for _ in 0..ITERATIONS {
+            let full = in_space(f, across);
+            let (_, stress) = self.stress_in_space(&full, history);
+            let slope = self.change_in_space(&full, &direction, history);
+            let step = -stress[2][2] / slope[2][2];
+            // Never to zero or beyond, nor far at once where the law is concave.
+            let step = step.clamp(-0.5 * across, across);
+            across += step;
+            if step.abs() <= 4.0 * f64::EPSILON * across || !step.is_finite() {
+                break;
+            }
+        }
+        in_space(f, across)
+    }
+
+    /// The stretch of linear elasticity; of a solid that yields, that of the last step.
+    fn first_guess<const D: usize>(&self, f: &Matrix<D>, history: &History) -> f64 {
+        if self.plasticity.is_some() {
+            return history.across;
+        }
+        let Moduli { lame, shear, .. } = self.moduli;
+        let strain = trace(f) - D as f64;
+        let contraction = match self.state {
+            StressState::Uniaxial => 0.5 * lame / (lame + shear),
+            _ => lame / (lame + 2.0 * shear),
+        };
+        (1.0 - contraction * strain).clamp(0.2, 5.0)
+    }
+
+    fn stress_in_space(&self, f: &Matrix<3>, history: &History) -> (f64, Matrix<3>) {
+        if self.law != ElasticLaw::Hencky {
+            return stress(self.law, &self.moduli, f);
+        }
+        let j = determinant(f);
+        if j.is_nan() || j <= 0.0 {
+            return (f64::NAN, [[f64::NAN; 3]; 3]);
+        }
+        let state = returned(&self.moduli, self.plasticity.as_ref(), f, history);
+        (state.energy(&self.moduli), state.first_stress(f))
+    }
+
+    fn change_in_space(&self, f: &Matrix<3>, df: &Matrix<3>, history: &History) -> Matrix<3> {
+        if self.law != ElasticLaw::Hencky {
+            return stress_change(self.law, &self.moduli, f, df);
+        }
+        returned(&self.moduli, self.plasticity.as_ref(), f, history).stress_change(f, df)
+    }
+}

@@ -1,0 +1,26 @@
+//! Single bonds of correspondence bodies, for fields.
+
+use pericles::domain::Field;
+use pericles::operator::{BondAt, BondView};
+
+use super::bonds::Bond;
+use super::force::CorrespondenceForce;
+
+/// The deformation gradients of a point and its neighbours are computed for each call.
+impl<const D: usize> BondView for CorrespondenceForce<D> {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let sites = self.bonds.list.sites();
+        let state = |k: usize| {
+            let eta = |bond: &Bond<D>| u.difference::<D>([k, sites.point(bond.site)]);
+            self.state_of(k, &self.shapes[k], &eta).0
+        };
+        let own = state(i);
+        self.bonds.for_each(i, self.bits(i), |bond: Bond<D>| {
+            let j = sites.point(bond.site);
+            let eta = u.difference::<D>([i, j]);
+            let mut force = [0.0; D];
+            own.add_force(&state(j), &bond, &eta, &mut force);
+            visit(BondAt::new(j, bond.xi, eta, force));
+        });
+    }
+}
