@@ -1,0 +1,5 @@
+//! Static equilibrium: iteration counts, closed forms, reference values, balances.
+
+mod bodies;
+mod equilibrium;
+mod solver;
