@@ -6,8 +6,8 @@ use pericles::{Interrupt, PericlesError, Result, System};
 use crate::error::StaticsError;
 use crate::krylov::{End, Goal, KrylovWork, Solution, add_multiple, conjugate_gradients};
 use crate::multigrid::Multigrid;
-use crate::rigid::{FreePiece, free_pieces};
-use crate::scheme::StaticOptions;
+use crate::options::StaticOptions;
+use crate::rigid::{FreePiece, free_pieces, spread};
 use crate::surrogate::Surrogate;
 use crate::tangent::{Tangent, remove, stiffness_into};
 use crate::unknowns::Unknowns;
@@ -324,25 +324,6 @@ impl Equilibrium {
         }
         None
     }
-}
-
-/// The motions of free pieces as vectors on the whole body.
-fn spread(pieces: &[FreePiece], system: &System) -> Vec<Vec<f64>> {
-    let (n, d) = (system.points(), system.dimension());
-    let mut all = Vec::new();
-    for piece in pieces {
-        let own = piece.points.len();
-        for motion in &piece.basis {
-            let mut vector = vec![0.0; n * d];
-            for c in 0..d {
-                for (k, &i) in piece.points.iter().enumerate() {
-                    vector[c * n + i as usize] = motion[c * own + k];
-                }
-            }
-            all.push(vector);
-        }
-    }
-    all
 }
 
 /// `out` = V (f(u) + b), N.

@@ -30,6 +30,14 @@ pub enum StaticsError {
         /// Resultant along rigid-body motions over the norm of the loads.
         part: f64,
     },
+    /// The modes do not converge.
+    #[error("the natural modes do not reach a residual of {} within {iterations} iterations; allow more of them, or ask for fewer modes", significant(*.tolerance, 3))]
+    ModesNotFound {
+        /// Iterations made.
+        iterations: u32,
+        /// The residual asked for.
+        tolerance: f64,
+    },
     /// Newton's method does not converge, however short the load step.
     #[error(
         "no static state found at t = {t} s: after {} of the load step the residual is {} of the loads and reactions (tolerance {}){}; \

@@ -3,6 +3,8 @@
 //! | module | contents |
 //! |---|---|
 //! | [`StaticScheme`] | the integrator whose steps go from one static state to the next by Newton's method |
+//! | [`BreakingRule`] | which bonds break at a static state |
+//! | [`NaturalModes`] | lowest natural frequencies and mode shapes |
 //! | [`krylov`] | conjugate gradients with a preconditioner |
 //! | [`surrogate`] | the springs between neighbouring points that stand for the body in the preconditioner |
 //! | [`multigrid`] | smoothed-aggregation multigrid of their matrix |
@@ -10,11 +12,14 @@
 //!
 //! The crate uses only what the engine, [`pericles`], exports.
 
+mod breaking;
 mod eigen;
 mod equilibrium;
 mod error;
 pub mod krylov;
+mod modes;
 pub mod multigrid;
+mod options;
 mod path;
 pub mod rigid;
 mod scheme;
@@ -23,9 +28,12 @@ pub mod surrogate;
 mod tangent;
 mod unknowns;
 
+pub use breaking::BreakingRule;
 pub use eigen::symmetric_eigen;
 pub use equilibrium::{Effort, Equilibrium, Target};
 pub use error::StaticsError;
-pub use scheme::{StaticOptions, StaticScheme};
+pub use modes::{Mode, ModeGroup, ModeOptions, NaturalModes};
+pub use options::StaticOptions;
+pub use scheme::StaticScheme;
 pub use tangent::Tangent;
 pub use unknowns::Unknowns;

@@ -47,6 +47,25 @@ pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) 
     free
 }
 
+/// The motions of free pieces as vectors on the whole body.
+pub(crate) fn spread(pieces: &[FreePiece], system: &System) -> Vec<Vec<f64>> {
+    let (n, d) = (system.points(), system.dimension());
+    let mut all = Vec::new();
+    for piece in pieces {
+        let own = piece.points.len();
+        for motion in &piece.basis {
+            let mut vector = vec![0.0; n * d];
+            for c in 0..d {
+                for (k, &i) in piece.points.iter().enumerate() {
+                    vector[c * n + i as usize] = motion[c * own + k];
+                }
+            }
+            all.push(vector);
+        }
+    }
+    all
+}
+
 /// The parts of the body that bonds hold together.
 fn pieces(system: &System, surrogate: &Surrogate) -> Vec<Vec<u32>> {
     let n = system.points();

@@ -8,31 +8,8 @@ use pericles::{
 };
 
 use crate::equilibrium::{Effort, Equilibrium};
+use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
-
-/// When a state counts as static, and how it is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StaticOptions {
-    /// Norm of the residual over that of loads or reactions, the larger; the largest so far.
-    pub tolerance: f64,
-    /// The most steps of Newton's method for one state.
-    pub newton_steps: u32,
-    /// The most products of one linear problem.
-    pub products: u32,
-    /// Whether rigid-body motions that nothing prevents are taken out; else they are refused.
-    pub fix_rigid_modes: bool,
-}
-
-impl Default for StaticOptions {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-6,
-            newton_steps: 25,
-            products: 2000,
-            fix_rigid_modes: false,
-        }
-    }
-}
 
 /// Each step goes from one static state to the next: loads and supports take their values of its end, and f(u) + b = 0 is solved on the free entries by Newton's method.
 ///
@@ -41,7 +18,7 @@ impl Default for StaticOptions {
 /// Comput. 17, 1996) and stopped at directions without positive curvature (Steihaug 1983). A correction that does not reduce the residual is shortened; a load step that
 /// does not converge is cut.
 ///
-/// Bonds that are over-stretched in a static state break, all at once, and the state is found again at the same loads, until none does.
+/// Bonds that are over-stretched in a static state break, by default those with the largest stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is found again at the same loads, until none does.
 ///
 /// The energy balance: within a load step, loads and supports change linearly. For linear forces their work is that of the mean forces, exactly; for others it is integrated by Simpson's rule over static states in
 /// between, so that the balance closes to a small multiple of the tolerance. The run starts from the unloaded body. What the body gives up after bonds broke is reported as the
@@ -158,12 +135,11 @@ impl StaticScheme {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         loop {
-            let broken = system.operator().broken_bonds();
-            let end = StepEnd::sub_step(t, 0.0, &state.u);
-            system.end_step_on(&end, &On::All, &mut state.a);
-            if system.operator().broken_bonds() == broken {
+            let rule = self.options.breaking;
+            let Some(beyond) = rule.apply(system, t, &state.u, &mut state.a) else {
                 return Ok(());
-            }
+            };
+            self.released += beyond;
             let before = state.u.clone();
             let (elastic, work) = (system.operator().energy(t, &before), system.ledger().work);
             let step = LoadStep {

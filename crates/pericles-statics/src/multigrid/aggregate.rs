@@ -2,7 +2,7 @@
 
 use crate::sparse::SparseMatrix;
 
-use super::tentative::Nodes;
+use super::nodes::Nodes;
 
 /// Couplings below this part of the geometric mean of the diagonal blocks do not join nodes.
 const WEAK: f64 = 0.02;

@@ -10,25 +10,17 @@
 
 mod aggregate;
 mod dense;
+mod nodes;
 mod smoother;
 mod tentative;
 
 pub use dense::DenseCholesky;
+pub use nodes::NearKernel;
 
 use crate::sparse::SparseMatrix;
+use nodes::Nodes;
 use smoother::Smoother;
-use tentative::{Nodes, Tentative};
-
-/// What the levels below the finest are made of.
-#[derive(Debug, Clone)]
-pub struct NearKernel {
-    /// First unknown of each node; one entry more than nodes. A node is a point, its unknowns the free displacement components.
-    pub nodes: Vec<usize>,
-    /// How many vectors.
-    pub count: usize,
-    /// The vectors, unknown by unknown: entry `unknown * count + k`.
-    pub vectors: Vec<f64>,
-}
+use tentative::Tentative;
 
 /// Unknowns that are left to a dense factor.
 const COARSEST: usize = 300;

@@ -1,46 +1,8 @@
 //! The tentative prolongation: rigid-body motions of aggregates.
 
-use super::NearKernel;
 use super::aggregate::{ALONE, aggregates};
+use super::nodes::Nodes;
 use crate::sparse::SparseMatrix;
-
-/// The nodes of a level, and the vectors that its coarse level must represent.
-#[derive(Debug, Clone)]
-pub struct Nodes {
-    start: Vec<usize>,
-    count: usize,
-    vectors: Vec<f64>,
-}
-
-impl From<NearKernel> for Nodes {
-    fn from(kernel: NearKernel) -> Self {
-        Self {
-            start: kernel.nodes,
-            count: kernel.count,
-            vectors: kernel.vectors,
-        }
-    }
-}
-
-impl Nodes {
-    /// Number of nodes.
-    pub fn len(&self) -> usize {
-        self.start.len() - 1
-    }
-
-    /// The unknowns of a node.
-    pub fn unknowns(&self, node: usize) -> std::ops::Range<usize> {
-        self.start[node]..self.start[node + 1]
-    }
-
-    /// The node of each unknown.
-    pub fn of_unknowns(&self) -> Vec<u32> {
-        let nodes = 0..self.len();
-        nodes
-            .flat_map(|a| self.unknowns(a).map(move |_| a as u32))
-            .collect()
-    }
-}
 
 /// What is left of a vector after the parts along others, below which it depends on them.
 const DEPENDENT: f64 = 1e-7;

@@ -2,8 +2,16 @@
 
 use pericles::System;
 
-use super::Resistance;
 use super::bonds::Neighbours;
+
+/// What a neighbouring point resists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resistance {
+    /// Changes of the distance: bonds of solids.
+    Stretch,
+    /// Any difference of displacements: bonds of surfaces.
+    Difference,
+}
 
 /// Displacement gradients with which the body is probed.
 const STRAIN: f64 = 1e-4;

@@ -2,4 +2,5 @@
 
 mod bodies;
 mod equilibrium;
+mod modes;
 mod solver;
