@@ -4,8 +4,7 @@ use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles_deck::{
-    BuildError, Caution, Component, Fault, KeyPath, Model, ModelWarning, Remark, Solid,
-    TimeHistory,
+    BuildError, Caution, Component, Fault, KeyPath, Model, ModelWarning, Remark, Solid, TimeHistory,
 };
 use pericles_dispersion::DispersionError;
 use pericles_dispersion::{

@@ -260,9 +260,7 @@ impl Assembler<'_> {
             (None, _) => VERTEX * points + GEODESIC * bonds,
             (Some(solid), ForceForm::List) => list(solid),
             // Whether every part of a static body has a support is found on a list of its bonds.
-            (Some(solid), _) if self.model.time.scheme.is_static() => {
-                list(solid)
-            }
+            (Some(solid), _) if self.model.time.scheme.is_static() => list(solid),
             _ => 0.0,
         };
         let ends: usize = assembly.ends.iter().map(|(_, end)| end.bytes).sum();
