@@ -6,7 +6,10 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
 /// Keys that belong to the scheme alone.
-pub(crate) const KEYS: [&str; 2] = ["damping", "load_steps"];
+pub(crate) const KEYS: [&str; 1] = ["damping"];
+
+/// The key of static schemes for the number of static states.
+pub(crate) const LOAD_STEPS: &str = "load_steps";
 
 /// The pseudo-time at which all loads have their final values, if the deck does not say.
 pub(crate) const END: f64 = 1.0;
@@ -67,8 +70,8 @@ pub(crate) fn load_steps(table: &Table<'_>) -> Option<u64> {
     for key in ["dt", "safety"] {
         table.forbid(
             key,
-            "scheme = \"relaxation\" goes from static state to static state: give load_steps",
+            "the scheme goes from static state to static state: give load_steps",
         );
     }
-    table.or("load_steps", 1, |item| item.count())
+    table.or(LOAD_STEPS, 1, |item| item.count())
 }

@@ -11,6 +11,7 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::relaxation;
 use crate::set::SetNames;
+use crate::statics::{self, Statics};
 use crate::vocabulary::FINE_REGIONS;
 
 /// Schemes of time integration.
@@ -68,11 +69,20 @@ pub enum Scheme {
     },
     /// Static states by dynamic relaxation.
     Relaxation(#[serde(with = "crate::form")] RelaxationOptions),
+    /// Static states by Newton's method.
+    Static(Statics),
     /// r-RESPA.
     Respa {
         /// Where and how fine.
         fine: FineStep,
     },
+}
+
+impl Scheme {
+    /// Whether its states are static: true time plays no part.
+    pub fn is_static(&self) -> bool {
+        matches!(self, Self::Relaxation(_) | Self::Static(_))
+    }
 }
 
 /// The smaller of two time steps.
@@ -121,6 +131,7 @@ enum Kind {
     Newmark,
     DiscreteGradient,
     Relaxation,
+    Static,
 }
 
 /// The scheme by its name.
@@ -148,6 +159,7 @@ fn kind(table: &Table<'_>) -> Option<Kind> {
             ("newmark", Kind::Newmark),
             ("discrete-gradient", Kind::DiscreteGradient),
             ("relaxation", Kind::Relaxation),
+            ("static", Kind::Static),
         ],
     );
     if kind.is_none() {
@@ -168,6 +180,8 @@ fn kind(table: &Table<'_>) -> Option<Kind> {
         .into_iter()
         .chain(newmark::KEYS)
         .chain(relaxation::KEYS)
+        .chain([relaxation::LOAD_STEPS])
+        .chain(statics::KEYS)
         {
             table.optional(key);
         }
@@ -202,15 +216,28 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         "it belongs to scheme = \"relaxation\"",
         relaxation::read,
     );
+    let statics = only(
+        kind == Kind::Static,
+        table,
+        &statics::KEYS,
+        "it belongs to scheme = \"static\"",
+        statics::read,
+    );
+    if !matches!(kind, Kind::Relaxation | Kind::Static) {
+        table.forbid(
+            relaxation::LOAD_STEPS,
+            "it belongs to scheme = \"relaxation\" or scheme = \"static\"",
+        );
+    }
     let tolerance = match kind {
         Kind::DormandPrince => tolerance(table).map(Some),
         Kind::DiscreteGradient => energy_tolerance(table).map(Some),
         // Their own, of other quantities.
-        Kind::Newmark | Kind::Relaxation => Some(None),
+        Kind::Newmark | Kind::Relaxation | Kind::Static => Some(None),
         _ => {
             table.forbid(
                 "tolerance",
-                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\" or \"relaxation\"",
+                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\", \"relaxation\" or \"static\"",
             );
             Some(None)
         }
@@ -245,6 +272,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
     );
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
     let (newmark, relaxation, exact, solver) = (newmark?, relaxation?, exact?, solver?);
+    let statics = statics?;
     Some(match kind {
         Kind::Verlet => Scheme::VelocityVerlet,
         Kind::Rk3 => Scheme::RungeKutta3 { alpha: alpha? },
@@ -272,6 +300,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
             tolerance: tolerance?,
         },
         Kind::Relaxation => Scheme::Relaxation(relaxation?),
+        Kind::Static => Scheme::Static(statics?),
     })
 }
 

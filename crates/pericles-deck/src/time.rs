@@ -70,7 +70,7 @@ impl Default for TimeStep {
 pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
     let scheme = scheme::read(&table, names);
     let (end, step) = match scheme {
-        Some(Scheme::Relaxation(_)) => (
+        Some(ref scheme) if scheme.is_static() => (
             table.or("end", relaxation::END, |item| item.positive(Quantity::Time)),
             relaxation::load_steps(&table).map(TimeStep::Equal),
         ),

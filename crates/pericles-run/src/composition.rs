@@ -9,6 +9,7 @@ use pericles::time::{
 };
 use pericles::{Need, Requirement, StepKind};
 use pericles_deck::Scheme as DeckScheme;
+use pericles_statics::StaticScheme;
 use pericles_waves::absorbing::LatticeScheme;
 use pericles_waves::{ForceForm, Trigonometric};
 
@@ -42,7 +43,7 @@ pub struct Form {
 const OF_FORMS: [Need; 3] = [Need::DoublePrecision, Need::FiniteReach, Need::SumOverBonds];
 
 /// All schemes.
-pub const SCHEMES: [Scheme; 12] = [
+pub const SCHEMES: [Scheme; 13] = [
     Scheme {
         words: "velocity Verlet",
         names: &["velocity-verlet"],
@@ -54,6 +55,12 @@ pub const SCHEMES: [Scheme; 12] = [
         names: &["relaxation"],
         kind: StepKind::Stages,
         requirements: Relaxation::REQUIREMENTS,
+    },
+    Scheme {
+        words: "static (Newton–Krylov)",
+        names: &["static"],
+        kind: StepKind::Stages,
+        requirements: StaticScheme::REQUIREMENTS,
     },
     Scheme {
         words: "Runge–Kutta of order 3 and 4",
@@ -210,6 +217,7 @@ pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
         DeckScheme::Implicit { .. } => Implicit::REQUIREMENTS,
         DeckScheme::Trigonometric(_) => Trigonometric::REQUIREMENTS,
         DeckScheme::Relaxation(_) => Relaxation::REQUIREMENTS,
+        DeckScheme::Static(_) => StaticScheme::REQUIREMENTS,
     }
 }
 

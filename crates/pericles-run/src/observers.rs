@@ -51,7 +51,7 @@ pub fn simulation(
     let mut history = History::new(folder.file("history.csv"), dimension);
     if simulation.integrator().inner_iterations().is_some() {
         history = history.with(match model.time.scheme {
-            Scheme::Relaxation(_) => InnerColumns::Residual,
+            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
             _ => InnerColumns::Velocity,
         });
     }

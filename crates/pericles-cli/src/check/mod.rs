@@ -9,7 +9,7 @@ mod waves;
 use std::path::Path;
 
 use pericles::observe::Probe;
-use pericles_deck::{Body, Model, Scheme};
+use pericles_deck::{Body, Model};
 use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
 use pericles_run::{Assembled, Assembly, Facts, Means, Source};
@@ -78,7 +78,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     for changed in &facts.changed_defaults {
         lines.push(Line::new("changed default", changed.clone()));
     }
-    if matches!(model.time.scheme, Scheme::Relaxation(_)) {
+    if model.time.scheme.is_static() {
         // A step goes from static state to static state: one would be the whole run.
         let note = "that of as many iterations as each static state takes";
         lines.push(Line::new("run time", note));

@@ -40,6 +40,10 @@ impl Check {
                 self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
                 self.count(key.key("iterations"), options.iterations);
             }
+            Scheme::Static(options) => {
+                self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
+                self.count(key.key("newton_steps"), options.newton_steps);
+            }
             Scheme::VelocityVerlet
             | Scheme::RungeKutta4
             | Scheme::Implicit { .. }

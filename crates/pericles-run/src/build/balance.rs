@@ -2,7 +2,7 @@
 
 use pericles::System;
 use pericles::space::PointCloud;
-use pericles_deck::{Caution, ModelWarning, Remark, Scheme};
+use pericles_deck::{Caution, ModelWarning, Remark};
 
 use super::assembler::Assembler;
 
@@ -118,7 +118,7 @@ impl Assembler<'_> {
         end: f64,
         warnings: &mut Vec<ModelWarning>,
     ) {
-        let is_static = matches!(self.model.time.scheme, Scheme::Relaxation(_));
+        let is_static = self.model.time.scheme.is_static();
         let Some(solid) = self.model.body.solid() else {
             return;
         };

@@ -3,7 +3,7 @@
 use pericles::System;
 use pericles::operator::On;
 use pericles::time::State;
-use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Scheme};
+use pericles_deck::{Caution, KeyPath, ModelWarning, Remark};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -23,7 +23,7 @@ impl Assembler<'_> {
         steps: &Steps,
         warnings: &mut Vec<ModelWarning>,
     ) {
-        let dynamic = !matches!(self.model.time.scheme, Scheme::Relaxation(_));
+        let dynamic = !self.model.time.scheme.is_static();
         let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
             return;
         };

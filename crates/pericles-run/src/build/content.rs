@@ -4,8 +4,7 @@ use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles_deck::{
-    BuildError, Caution, Component, Fault, KeyPath, Model, ModelWarning, Remark, Scheme, Solid,
-    TimeHistory,
+    BuildError, Caution, Component, Fault, KeyPath, Model, ModelWarning, Remark, Solid, TimeHistory,
 };
 use pericles_dispersion::DispersionError;
 use pericles_dispersion::{
@@ -177,7 +176,7 @@ impl<'a> Assembler<'a> {
             return Vec::new();
         };
         let mut warnings = self.judge_kernel(solid, assembly, &waves);
-        if matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
+        if self.model.time.scheme.is_static() {
             return warnings;
         }
         let carried = waves.grid;

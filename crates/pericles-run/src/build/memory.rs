@@ -268,9 +268,7 @@ impl Assembler<'_> {
             (None, _) => VERTEX * points + GEODESIC * bonds,
             (Some(solid), ForceForm::List) => list(solid),
             // Whether every part of a static body has a support is found on a list of its bonds.
-            (Some(solid), _) if matches!(self.model.time.scheme, Scheme::Relaxation(_)) => {
-                list(solid)
-            }
+            (Some(solid), _) if self.model.time.scheme.is_static() => list(solid),
             (Some(solid), _) if self.has_several_horizons(solid) => list(solid),
             _ => 0.0,
         };

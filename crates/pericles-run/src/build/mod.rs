@@ -35,6 +35,7 @@ mod resources;
 mod scheme;
 mod sense;
 mod state_based;
+mod statics;
 mod step;
 mod stop;
 mod surface;

@@ -61,6 +61,7 @@ impl Assembler<'_> {
             Scheme::Relaxation(options) => {
                 Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
             }
+            Scheme::Static(options) => self.statics(options, system)?,
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
                 Box::new(
@@ -115,7 +116,7 @@ impl Assembler<'_> {
         }
     }
 
-    fn at_scheme(&self, error: PericlesError) -> BuildError {
+    pub(super) fn at_scheme(&self, error: PericlesError) -> BuildError {
         let error = match self.named_fine_sets(error) {
             Ok(fault) => return at_path("time.fine", fault),
             Err(error) => error,

@@ -7,7 +7,7 @@ use pericles::family::{BondList, Crack};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::space::{Point, PointCloud};
-use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Scheme, Solid};
+use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Solid};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -24,7 +24,7 @@ impl Assembler<'_> {
             return;
         }
         // Supports of static bodies are judged with their loads.
-        if !matches!(self.model.time.scheme, Scheme::Relaxation(_)) {
+        if !self.model.time.scheme.is_static() {
             self.judge_pieces(solid, system, warnings);
         }
     }

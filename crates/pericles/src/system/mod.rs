@@ -361,7 +361,7 @@ impl System {
 
     /// Books a load step from one static state to another: loads and supports act as the mean of both ends, without inertia. With a length of zero they do not change on the way.
     /// `work` is for accelerations.
-    pub(crate) fn book_equilibrium(&mut self, step: &StepEnd<'_>, work: &mut [f64]) {
+    pub fn book_equilibrium(&mut self, step: &StepEnd<'_>, work: &mut [f64]) {
         self.free_acceleration(step.t, step.u, &On::All, work);
         let n = self.points();
         for motion in &self.motions {
@@ -371,7 +371,7 @@ impl System {
     }
 
     /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet. `work` is for accelerations.
-    pub(crate) fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
+    pub fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
         self.zero(&On::All, work);
         self.count(&On::All);
         self.operator().add_force(t, u, On::All, work);

@@ -1,0 +1,352 @@
+//! One static state: Newton's method with conjugate gradients inside.
+
+use pericles::operator::On;
+use pericles::{Interrupt, PericlesError, Result, System};
+
+use crate::error::StaticsError;
+use crate::krylov::{End, Goal, KrylovWork, Solution, add_multiple, conjugate_gradients};
+use crate::multigrid::Multigrid;
+use crate::options::StaticOptions;
+use crate::rigid::{FreePiece, free_pieces, spread};
+use crate::surrogate::Surrogate;
+use crate::tangent::{Tangent, remove, stiffness_into};
+use crate::unknowns::Unknowns;
+
+/// What a static state is in equilibrium with.
+#[derive(Debug, Clone, Copy)]
+pub struct Target<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// Loads, N/m³.
+    pub load: &'a [f64],
+    /// Displacements whose held entries are prescribed, m.
+    pub supports: &'a [f64],
+    /// The largest norm of loads or reactions before, N.
+    pub largest: f64,
+}
+
+/// What finding a static state took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Effort {
+    /// Steps of Newton's method.
+    pub newton: u64,
+    /// Products with the tangent.
+    pub products: u64,
+    /// Evaluations of the force.
+    pub forces: u64,
+    /// Norm of the residual over that of loads or reactions.
+    pub residual: f64,
+    /// Norm of loads or reactions, the larger, N.
+    pub acting: f64,
+}
+
+impl Effort {
+    /// Adds what another state took; the residual is the other's.
+    pub fn add(&mut self, other: Self) {
+        self.newton += other.newton;
+        self.products += other.products;
+        self.forces += other.forces;
+        self.residual = other.residual;
+        self.acting = self.acting.max(other.acting);
+    }
+}
+
+/// The first forcing term: the accuracy of the first linear problem.
+const FORCING: f64 = 0.1;
+/// Halvings of a Newton step that does not reduce the residual.
+const HALVINGS: u32 = 8;
+
+/// The solver of a body with certain supports and bonds.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    options: StaticOptions,
+    free: Vec<f64>,
+    unknowns: Unknowns,
+    multigrid: Multigrid,
+    pieces: Vec<FreePiece>,
+    /// Rigid-body motions that are taken out.
+    rigid: Vec<Vec<f64>>,
+    krylov: KrylovWork,
+    reduced: [Vec<f64>; 2],
+    residual: Vec<f64>,
+    correction: Vec<f64>,
+    lift: Vec<f64>,
+    trial: Vec<f64>,
+    trial_residual: Vec<f64>,
+}
+
+impl Equilibrium {
+    /// Of a body with the bonds that are intact now, whose supports hold the entries that are zero in `free`.
+    pub fn new(options: StaticOptions, system: &System, free: Vec<f64>) -> Self {
+        let unknowns = Unknowns::new(system.dimension(), &free);
+        let surrogate = Surrogate::new(system);
+        let multigrid = surrogate.preconditioner(&unknowns);
+        let pieces = free_pieces(system, &surrogate, &unknowns);
+        let rigid = if options.fix_rigid_modes {
+            spread(&pieces, system)
+        } else {
+            Vec::new()
+        };
+        let entries = free.len();
+        let zeros = || vec![0.0; entries];
+        let reduced = || vec![0.0; unknowns.len()];
+        Self {
+            options,
+            multigrid,
+            pieces,
+            rigid,
+            krylov: KrylovWork::new(entries),
+            reduced: [reduced(), reduced()],
+            residual: zeros(),
+            correction: zeros(),
+            lift: zeros(),
+            trial: zeros(),
+            trial_residual: zeros(),
+            unknowns,
+            free,
+        }
+    }
+
+    /// 1 on free entries, 0 on held ones.
+    pub fn free(&self) -> &[f64] {
+        &self.free
+    }
+
+    /// The preconditioner.
+    pub fn multigrid(&self) -> &Multigrid {
+        &self.multigrid
+    }
+
+    /// Refuses rigid-body motions that nothing prevents, unless they are to be taken out.
+    ///
+    /// # Errors
+    /// [`StaticsError::Unconstrained`].
+    pub fn check_support(&self, system: &System) -> Result<()> {
+        match self.pieces.first() {
+            Some(piece) if !self.options.fix_rigid_modes => Err(StaticsError::Unconstrained {
+                motions: piece.motions.clone(),
+                points: piece.points.len(),
+                of: system.points(),
+            }
+            .into()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Moves `u` to the static state of a target.
+    ///
+    /// # Errors
+    /// [`StaticsError::NoEquilibrium`] if Newton's method does not converge, with a fraction of zero; [`StaticsError::Unbalanced`]; [`PericlesError::Interrupted`].
+    pub fn find(
+        &mut self,
+        system: &System,
+        target: &Target<'_>,
+        u: &mut [f64],
+        interrupt: Interrupt<'_>,
+    ) -> Result<Effort> {
+        let mut effort = Effort::default();
+        let load = self.load_norm(system, target)?;
+        let linear = system.operator().as_linear().is_some();
+        let mut lifted = self.set_lift(target, u);
+        let mut norm = self.evaluate(system, target, u, &mut effort);
+        let first = norm;
+        let mut forcing = FORCING;
+        let mut indefinite = false;
+        loop {
+            let acting = self.acting(system, load, target.largest, first);
+            if !lifted {
+                effort.acting = acting;
+                effort.residual = if norm == 0.0 { 0.0 } else { norm / acting };
+                if effort.residual <= self.options.tolerance {
+                    return Ok(effort);
+                }
+            }
+            let failed = StaticsError::NoEquilibrium {
+                t: target.t,
+                fraction: 0.0,
+                residual: effort.residual,
+                tolerance: self.options.tolerance,
+                indefinite,
+            };
+            if effort.newton == u64::from(self.options.newton_steps) || !norm.is_finite() {
+                return Err(failed.into());
+            }
+            effort.newton += 1;
+            /// Of the tolerance: linear problems are solved a little more accurately than asked for.
+            const MARGIN: f64 = 0.3;
+            let finest = MARGIN * self.options.tolerance;
+            let goal = Goal {
+                absolute: if linear || lifted {
+                    0.0
+                } else {
+                    forcing * norm
+                },
+                relative: if linear || !lifted { finest } else { FORCING },
+                acting: load.max(target.largest),
+                products: u64::from(self.options.products),
+                interrupt,
+            };
+            if lifted {
+                self.linearise_lift(system, target.t, u);
+                effort.products += 1;
+            }
+            let solved = self.solve(system, target.t, u, &goal)?;
+            effort.products += solved.products;
+            indefinite |= solved.end == End::Indefinite;
+            if lifted {
+                add_multiple(u, 1.0, &self.lift);
+                add_multiple(u, 1.0, &self.correction);
+                norm = self.evaluate(system, target, u, &mut effort);
+                lifted = false;
+                continue;
+            }
+            let Some(next) = self.search(system, target, u, norm, &mut effort) else {
+                return Err(failed.into());
+            };
+            let ratio = next / norm;
+            norm = next;
+            // Eisenstat & Walker 1996, choice 2.
+            forcing = (0.9 * ratio * ratio).min(FORCING);
+        }
+    }
+
+    /// The norm of the loads on free entries, N; refuses those that move a free body.
+    fn load_norm(&self, system: &System, target: &Target<'_>) -> Result<f64> {
+        let (n, volumes) = (system.points(), system.cloud().volumes());
+        let force = |k: usize| self.free[k] * volumes[k % n] * target.load[k];
+        let load = system
+            .domain()
+            .sum(self.free.len(), |k| force(k).powi(2))
+            .sqrt();
+        let along = |mode: &Vec<f64>| {
+            let part = system.domain().sum(mode.len(), |k| mode[k] * force(k));
+            part.abs() / load
+        };
+        let part = self.rigid.iter().map(along).fold(0.0, f64::max);
+        /// Rounding of sums and of positions.
+        const BALANCED: f64 = 1e-9;
+        if part > BALANCED.max(0.1 * self.options.tolerance) {
+            return Err(StaticsError::Unbalanced { t: target.t, part }.into());
+        }
+        Ok(load)
+    }
+
+    /// Notes how far held entries are from where they are to be; whether any is.
+    fn set_lift(&mut self, target: &Target<'_>, u: &[f64]) -> bool {
+        let mut any = false;
+        for k in 0..u.len() {
+            self.lift[k] = if self.free[k] == 0.0 {
+                target.supports[k] - u[k]
+            } else {
+                0.0
+            };
+            any |= self.lift[k] != 0.0;
+        }
+        any
+    }
+
+    /// Sets the residual V (f + b) at u and returns its norm on free entries.
+    fn evaluate(
+        &mut self,
+        system: &System,
+        target: &Target<'_>,
+        u: &[f64],
+        effort: &mut Effort,
+    ) -> f64 {
+        effort.forces += 1;
+        residual_into(system, target, u, &mut self.residual);
+        remove(system, &self.rigid, &mut self.residual);
+        free_norm(system, &self.free, &self.residual)
+    }
+
+    /// What the residual is compared with: loads or reactions, now or before; where none of them ever acted, the first residual.
+    fn acting(&self, system: &System, load: f64, largest: f64, first: f64) -> f64 {
+        let entries = self.residual.len();
+        let held = |k: usize| (1.0 - self.free[k]) * self.residual[k].powi(2);
+        let reactions = system.domain().sum(entries, held).sqrt();
+        match load.max(reactions).max(largest) {
+            0.0 => first,
+            acting => acting,
+        }
+    }
+
+    /// Changes the residual by the motion of the supports.
+    fn linearise_lift(&mut self, system: &System, t: f64, u: &[f64]) {
+        stiffness_into(system, t, u, &self.lift, &mut self.correction);
+        add_multiple(&mut self.residual, -1.0, &self.correction);
+        remove(system, &self.rigid, &mut self.residual);
+    }
+
+    /// The correction that the residual asks for.
+    fn solve(&mut self, system: &System, t: f64, u: &[f64], goal: &Goal<'_>) -> Result<Solution> {
+        let mut tangent = Tangent {
+            system,
+            t,
+            u,
+            unknowns: &self.unknowns,
+            multigrid: &mut self.multigrid,
+            rigid: &self.rigid,
+            work: &mut self.reduced,
+        };
+        conjugate_gradients(
+            &mut tangent,
+            (system.domain(), &self.free),
+            &mut self.residual,
+            &mut self.correction,
+            goal,
+            &mut self.krylov,
+        )
+    }
+
+    /// Goes along the correction as far as the residual falls; its norm there, or none if it does not fall.
+    fn search(
+        &mut self,
+        system: &System,
+        target: &Target<'_>,
+        u: &mut [f64],
+        before: f64,
+        effort: &mut Effort,
+    ) -> Option<f64> {
+        let mut length = 1.0;
+        for _ in 0..=HALVINGS {
+            self.trial.copy_from_slice(u);
+            add_multiple(&mut self.trial, length, &self.correction);
+            effort.forces += 1;
+            residual_into(system, target, &self.trial, &mut self.trial_residual);
+            remove(system, &self.rigid, &mut self.trial_residual);
+            let norm = free_norm(system, &self.free, &self.trial_residual);
+            if norm < before * (1.0 - 1e-4 * length) {
+                u.copy_from_slice(&self.trial);
+                self.residual.copy_from_slice(&self.trial_residual);
+                return Some(norm);
+            }
+            length *= 0.5;
+        }
+        None
+    }
+}
+
+/// `out` = V (f(u) + b), N.
+fn residual_into(system: &System, target: &Target<'_>, u: &[f64], out: &mut [f64]) {
+    out.copy_from_slice(target.load);
+    system.operator().add_force(target.t, u, On::All, out);
+    let (n, volumes) = (system.points(), system.cloud().volumes());
+    pericles::parallel::for_each_chunk(out, &|first, chunk| {
+        for (k, out) in chunk.iter_mut().enumerate() {
+            *out *= volumes[(first + k) % n];
+        }
+    });
+}
+
+/// The norm of the free entries of a vector.
+fn free_norm(system: &System, free: &[f64], vector: &[f64]) -> f64 {
+    system
+        .domain()
+        .sum(vector.len(), |k| free[k] * vector[k].powi(2))
+        .sqrt()
+}
+
+/// Whether an error is a request to stop, which no shorter step helps against.
+pub(crate) fn is_interrupt(error: &PericlesError) -> bool {
+    matches!(error, PericlesError::Interrupted)
+}

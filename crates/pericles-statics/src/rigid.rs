@@ -1,0 +1,207 @@
+//! Rigid-body motions that no support prevents.
+
+use pericles::System;
+use pericles::domain::Field;
+
+use crate::eigen::symmetric_eigen;
+use crate::surrogate::{RigidModes, Surrogate};
+use crate::unknowns::Unknowns;
+
+/// A part of the body that hangs together, and how it can move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreePiece {
+    /// Its points, ascending.
+    pub points: Vec<u32>,
+    /// Names of the motions that supports would have to prevent.
+    pub motions: Vec<&'static str>,
+    /// An orthonormal basis of these motions: component-major vectors on the points of the piece.
+    pub basis: Vec<Vec<f64>>,
+}
+
+/// The parts of a body with two points or more that some rigid-body motion does not deform, with the supports that hold the entries which are not unknowns.
+pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) -> Vec<FreePiece> {
+    let d = system.dimension();
+    let positions = system.cloud().positions();
+    let n = system.points();
+    let rotates = surrogate.rotations(d);
+    let mut free = Vec::new();
+    for points in pieces(system, surrogate) {
+        if points.len() < 2 {
+            continue;
+        }
+        let own: Vec<f64> = (0..d)
+            .flat_map(|c| points.iter().map(move |&i| positions[c * n + i as usize]))
+            .collect();
+        let modes = RigidModes::new(d, rotates, &own);
+        let held = |k: usize, c: usize| unknowns.number(points[k] as usize, c).is_none();
+        let found = unheld(&modes, points.len(), d, &held);
+        if found.is_empty() {
+            continue;
+        }
+        free.push(FreePiece {
+            motions: names(&modes, &found),
+            basis: orthonormal(&modes, &found, points.len(), d, &held),
+            points,
+        });
+    }
+    free
+}
+
+/// The motions of free pieces as vectors on the whole body.
+pub(crate) fn spread(pieces: &[FreePiece], system: &System) -> Vec<Vec<f64>> {
+    let (n, d) = (system.points(), system.dimension());
+    let mut all = Vec::new();
+    for piece in pieces {
+        let own = piece.points.len();
+        for motion in &piece.basis {
+            let mut vector = vec![0.0; n * d];
+            for c in 0..d {
+                for (k, &i) in piece.points.iter().enumerate() {
+                    vector[c * n + i as usize] = motion[c * own + k];
+                }
+            }
+            all.push(vector);
+        }
+    }
+    all
+}
+
+/// The parts of the body that bonds hold together.
+fn pieces(system: &System, surrogate: &Surrogate) -> Vec<Vec<u32>> {
+    let n = system.points();
+    let mut root: Vec<u32> = (0..n as u32).collect();
+    fn find(root: &mut [u32], mut i: u32) -> u32 {
+        while root[i as usize] != i {
+            root[i as usize] = root[root[i as usize] as usize];
+            i = root[i as usize];
+        }
+        i
+    }
+    let mut join = |a: usize, b: usize| {
+        let (a, b) = (find(&mut root, a as u32), find(&mut root, b as u32));
+        let (low, high) = (a.min(b), a.max(b));
+        root[high as usize] = low;
+    };
+    match system.operator().as_bonds() {
+        Some(view) => {
+            let rest = vec![0.0; n * system.dimension()];
+            for i in 0..n {
+                view.for_each_bond(Field::new(&rest, &[]), i, &mut |bond| {
+                    if bond.neighbour < n {
+                        join(i, bond.neighbour);
+                    }
+                });
+            }
+        }
+        None => surrogate.for_each_pair(&mut join),
+    }
+    let mut members: Vec<Vec<u32>> = vec![Vec::new(); n];
+    for i in 0..n as u32 {
+        let first = find(&mut root, i);
+        members[first as usize].push(i);
+    }
+    members.retain(|points| !points.is_empty());
+    members
+}
+
+/// Coefficients of motions that leave all held entries where they are.
+fn unheld(
+    modes: &RigidModes<'_>,
+    points: usize,
+    d: usize,
+    held: &dyn Fn(usize, usize) -> bool,
+) -> Vec<Vec<f64>> {
+    let count = modes.count();
+    let (mut gram, mut size) = (vec![0.0; count * count], vec![0.0; count]);
+    for k in 0..points {
+        for c in 0..d {
+            for a in 0..count {
+                let value = modes.value(a, k, c);
+                size[a] += value * value;
+                if held(k, c) {
+                    for b in 0..count {
+                        gram[a * count + b] += value * modes.value(b, k, c);
+                    }
+                }
+            }
+        }
+    }
+    // A motion that moves nothing, as the rotation of a bar about its axis, needs no support.
+    /// Of the squared size of a translation.
+    const NOTHING: f64 = 1e-20;
+    for a in 0..count {
+        if size[a] < NOTHING * points as f64 {
+            gram[a * count + a] += 1.0;
+        }
+    }
+    let (values, vectors) = symmetric_eigen(count, gram);
+    let largest = values.last().copied().unwrap_or(0.0);
+    /// Squared displacements of held entries, over the largest.
+    const HELD: f64 = 1e-12;
+    let free = values.iter().take_while(|&&value| value <= HELD * largest);
+    let free = if largest == 0.0 { count } else { free.count() };
+    let of_vector = |k: usize| vectors[k * count..(k + 1) * count].to_vec();
+    (0..free).map(of_vector).collect()
+}
+
+/// Names of as many motions as there are free ones, which supports must prevent: rotations first, as a rotation about some point is also a translation of the middle.
+fn names(modes: &RigidModes<'_>, found: &[Vec<f64>]) -> Vec<&'static str> {
+    let mut rows: Vec<(usize, Vec<f64>)> = (0..modes.count())
+        .rev()
+        .map(|mode| (mode, found.iter().map(|vector| vector[mode]).collect()))
+        .collect();
+    let mut named = Vec::new();
+    while named.len() < found.len() {
+        let square = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>();
+        /// A row that is left counts as independent from here on.
+        const INDEPENDENT: f64 = 0.02;
+        let Some(place) = rows.iter().position(|(_, row)| square(row) > INDEPENDENT) else {
+            break;
+        };
+        let (mode, pivot) = rows.remove(place);
+        named.push(mode);
+        let whole = square(&pivot);
+        for (_, row) in &mut rows {
+            let along: f64 = row.iter().zip(&pivot).map(|(a, b)| a * b).sum();
+            row.iter_mut()
+                .zip(&pivot)
+                .for_each(|(a, b)| *a -= along / whole * b);
+        }
+    }
+    named.sort_unstable();
+    named.into_iter().map(|mode| modes.name(mode)).collect()
+}
+
+/// The motions as orthonormal vectors, zero on held entries.
+fn orthonormal(
+    modes: &RigidModes<'_>,
+    found: &[Vec<f64>],
+    points: usize,
+    d: usize,
+    held: &dyn Fn(usize, usize) -> bool,
+) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for coefficients in found {
+        let mut vector = vec![0.0; d * points];
+        for (k, a) in coefficients.iter().enumerate() {
+            for c in 0..d {
+                for i in (0..points).filter(|&i| !held(i, c)) {
+                    vector[c * points + i] += a * modes.value(k, i, c);
+                }
+            }
+        }
+        for other in &basis {
+            let along: f64 = vector.iter().zip(other).map(|(a, b)| a * b).sum();
+            vector
+                .iter_mut()
+                .zip(other)
+                .for_each(|(a, b)| *a -= along * b);
+        }
+        let size = vector.iter().map(|a| a * a).sum::<f64>().sqrt();
+        if size > 0.0 {
+            vector.iter_mut().for_each(|a| *a /= size);
+            basis.push(vector);
+        }
+    }
+    basis
+}

@@ -1,0 +1,288 @@
+//! The integrator whose steps go from one static state to the next.
+
+use pericles::boundary::Exchange;
+use pericles::operator::On;
+use pericles::time::{InnerIterations, Integrator, State};
+use pericles::{
+    Interrupt, Need, Path, PericlesError, Requirement, Result, StepEnd, System, require,
+};
+
+use crate::equilibrium::{Effort, Equilibrium};
+use crate::options::StaticOptions;
+use crate::path::{Follower, LoadStep};
+
+/// Each step goes from one static state to the next: loads and supports take their values of its end, and f(u) + b = 0 is solved on the free entries by Newton's method.
+///
+/// Linear problems are solved by conjugate gradients on the body's exact tangent, preconditioned by smoothed-aggregation multigrid of springs between neighbouring points
+/// ([`Surrogate`](crate::surrogate::Surrogate)): the number of products does not grow with the body. They are solved only as accurately as Newton's method can make use of (Eisenstat & Walker, SIAM J. Sci.
+/// Comput. 17, 1996) and stopped at directions without positive curvature (Steihaug 1983). A correction that does not reduce the residual is shortened; a load step that
+/// does not converge is cut.
+///
+/// Bonds that are over-stretched in a static state break, by default those with the largest stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is found again at the same loads, until none does.
+///
+/// The energy balance: within a load step, loads and supports change linearly. For linear forces their work is that of the mean forces, exactly; for others it is integrated by Simpson's rule over static states in
+/// between, so that the balance closes to a small multiple of the tolerance. The run starts from the unloaded body. What the body gives up after bonds broke is reported as the
+/// scheme's correction, as by [`Relaxation`](pericles::time::Relaxation).
+#[derive(Debug, Clone)]
+pub struct StaticScheme {
+    options: StaticOptions,
+    entries: usize,
+    /// The solver, for the bonds and supports of the last static state.
+    equilibrium: Equilibrium,
+    /// Bonds broken when the solver was made.
+    broken: u64,
+    /// The largest norm of loads or reactions at a static state so far, N.
+    largest: f64,
+    /// Energy given up after bonds broke, J.
+    released: f64,
+    inner: InnerIterations,
+    /// What the last step took.
+    effort: Effort,
+}
+
+const NAME: &str = "static";
+
+impl StaticScheme {
+    /// What it needs of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
+        },
+    ];
+
+    /// The scheme for a system with the supports that act at the start.
+    ///
+    /// # Errors
+    /// Options out of their ranges, a system that does not meet the requirements, rigid-body motions that no support prevents.
+    pub fn new(options: StaticOptions, system: &System) -> Result<Self> {
+        if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
+            return Err(PericlesError::SchemeParameter {
+                parameter: "the tolerance",
+                value: options.tolerance,
+                allowed: "above 0 and below 1",
+            });
+        }
+        require(NAME, Self::REQUIREMENTS, system)?;
+        let equilibrium = Equilibrium::new(options, system, free_at(system, 0.0));
+        equilibrium.check_support(system)?;
+        Ok(Self {
+            options,
+            entries: system.dimension() * system.points(),
+            broken: system.operator().broken_bonds(),
+            equilibrium,
+            largest: 0.0,
+            released: 0.0,
+            inner: InnerIterations::default(),
+            effort: Effort::default(),
+        })
+    }
+
+    /// What the last step took.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
+    /// The solver, for the bonds and supports of the last static state.
+    pub fn equilibrium(&self) -> &Equilibrium {
+        &self.equilibrium
+    }
+
+    /// Makes the solver anew if supports or bonds are not those that it was made for.
+    fn prepare(&mut self, system: &System, t: f64) -> Result<()> {
+        let free = free_at(system, t);
+        let broken = system.operator().broken_bonds();
+        let held_anew = free != self.equilibrium.free();
+        if held_anew || broken != self.broken {
+            self.equilibrium = Equilibrium::new(self.options, system, free);
+            self.broken = broken;
+        }
+        // Parts that break off are left where they are; parts that are let go are not.
+        if held_anew {
+            self.equilibrium.check_support(system)?;
+        }
+        Ok(())
+    }
+
+    /// Moves `u` along a load step and returns the work done.
+    fn follow(
+        &mut self,
+        system: &System,
+        step: LoadStep<'_>,
+        (u, with_work): (&mut Vec<f64>, bool),
+        interrupt: Interrupt<'_>,
+    ) -> Result<f64> {
+        let mut follower = Follower {
+            system,
+            equilibrium: &mut self.equilibrium,
+            step,
+            interrupt,
+            exchanged: system.ledger().exchanged,
+        };
+        let followed = follower.follow(u, with_work)?;
+        self.effort.add(followed.effort);
+        self.largest = self.largest.max(followed.effort.acting);
+        Ok(followed.work)
+    }
+
+    /// Breaks over-stretched bonds and finds the static state again until none is left.
+    fn settle(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        (t, load): (f64, &[f64]),
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        loop {
+            let rule = self.options.breaking;
+            let Some(beyond) = rule.apply(system, t, &state.u, &mut state.a) else {
+                return Ok(());
+            };
+            self.released += beyond;
+            let before = state.u.clone();
+            let (elastic, work) = (system.operator().energy(t, &before), system.ledger().work);
+            let step = LoadStep {
+                t,
+                loads: [load; 2],
+                supports: [&before; 2],
+                largest: self.largest,
+            };
+            self.follow(system, step, (&mut state.u, false), interrupt)?;
+            system.book_equilibrium(&chord(t, 0.0, &state.u, &before, false), &mut state.a);
+            self.released +=
+                elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
+        }
+    }
+}
+
+fn chord<'a>(t: f64, dt: f64, u: &'a [f64], before: &'a [f64], first: bool) -> StepEnd<'a> {
+    let path = Path::Chord { u: before, first };
+    StepEnd { t, dt, u, path }
+}
+
+/// 1 for the entries that are free at a time, 0 for those that supports hold.
+fn free_at(system: &System, t: f64) -> Vec<f64> {
+    let mut free = vec![1.0; system.dimension() * system.points()];
+    system.hold_at(t, &mut free);
+    free
+}
+
+impl Integrator for StaticScheme {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn vector_length(&self) -> Option<usize> {
+        Some(self.entries)
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
+    }
+
+    /// Of the work between static states, in the length of load steps.
+    fn order(&self) -> u32 {
+        4
+    }
+
+    /// Load steps of any length.
+    fn stability_limit(&self) -> Option<f64> {
+        None
+    }
+
+    /// What the body gave up after bonds broke.
+    fn energy_correction(&self, _system: &System, _state: &State, _dt: f64) -> f64 {
+        self.released
+    }
+
+    fn inner_iterations(&self) -> Option<InnerIterations> {
+        Some(self.inner)
+    }
+
+    fn is_static(&self) -> bool {
+        true
+    }
+
+    /// Displacements are iterated in place, and bonds break between equilibria.
+    fn changes_within_step(&self) -> bool {
+        true
+    }
+
+    fn start(&mut self, system: &mut System, state: &mut State) {
+        state.v.fill(0.0);
+        system.note_unloaded(state.t, &state.u, &mut state.a);
+        state.a.fill(0.0);
+    }
+
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        self.effort = Effort::default();
+        self.prepare(system, t_next)?;
+        let first = state.step == 0;
+        let before = state.u.clone();
+        // An initial displacement is no static state: the way to the first one is a jump.
+        let displaced = first && before.iter().any(|u| *u != 0.0);
+        let elastic = if displaced {
+            system.operator().energy(state.t, &before)
+        } else {
+            0.0
+        };
+        let mut loads = [vec![0.0; self.entries], vec![0.0; self.entries]];
+        if !first {
+            system.load_density_into(state.t, &mut loads[0]);
+        }
+        system.load_density_into(t_next, &mut loads[1]);
+        let mut supports = before.clone();
+        system.place_on(t_next, &On::All, &mut supports);
+        let step = LoadStep {
+            t: t_next,
+            loads: [&loads[0], &loads[1]],
+            supports: [&before, &supports],
+            largest: self.largest,
+        };
+        let work = self.follow(system, step, (&mut state.u, !displaced), interrupt)?;
+        let booked = system.ledger().work;
+        let end = chord(t_next, t_next - state.t, &state.u, &before, first);
+        system.book_equilibrium(&end, &mut state.a);
+        let of_means = system.ledger().work - booked;
+        if displaced {
+            self.released += elastic - system.operator().energy(t_next, &state.u) + of_means;
+        } else {
+            system.book_exchange(Exchange {
+                work: work - of_means,
+                impulse: [0.0; 3],
+            });
+        }
+        if system.operator().can_break() {
+            self.settle(system, state, (t_next, &loads[1]), interrupt)?;
+        }
+        let InnerIterations { most, total, .. } = self.inner;
+        self.inner = InnerIterations {
+            last: self.effort.products,
+            change: self.effort.residual,
+            most: most.max(self.effort.products),
+            total: total.saturating_add(self.effort.products),
+        };
+        state.v.fill(0.0);
+        state.a.fill(0.0);
+        state.t = t_next;
+        state.step += 1;
+        Ok(())
+    }
+}
+
+pericles::saved! {
+    impl Saved for StaticScheme {
+        released, largest: array("static/account"),
+        inner: part,
+        options, entries: fixed,
+        equilibrium, effort: scratch,
+        broken: set(u64::MAX),
+    }
+}

@@ -1,0 +1,263 @@
+//! Sparse matrices in compressed rows.
+//!
+//! Every row is computed by one thread in a fixed order, so that no result depends on the number of threads.
+
+use pericles::parallel::{BLOCK, for_each_chunk};
+use rayon::prelude::*;
+
+/// A sparse matrix: the entries of row i are those from `start[i]` to `start[i + 1]`, their columns ascending.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SparseMatrix {
+    columns: usize,
+    start: Vec<usize>,
+    column: Vec<u32>,
+    value: Vec<f64>,
+}
+
+/// Some consecutive rows of a matrix.
+#[derive(Default)]
+struct Rows {
+    lengths: Vec<usize>,
+    column: Vec<u32>,
+    value: Vec<f64>,
+}
+
+/// One row in the making: a sum of sparse rows.
+struct Accumulator {
+    value: Vec<f64>,
+    present: Vec<bool>,
+    columns: Vec<u32>,
+}
+
+impl Accumulator {
+    fn new(columns: usize) -> Self {
+        Self {
+            value: vec![0.0; columns],
+            present: vec![false; columns],
+            columns: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, column: u32, value: f64) {
+        let k = column as usize;
+        if !self.present[k] {
+            self.present[k] = true;
+            self.columns.push(column);
+            self.value[k] = 0.0;
+        }
+        self.value[k] += value;
+    }
+
+    /// Moves the row to its place.
+    fn take_into(&mut self, rows: &mut Rows) {
+        self.columns.sort_unstable();
+        rows.lengths.push(self.columns.len());
+        for &column in &self.columns {
+            self.present[column as usize] = false;
+            rows.column.push(column);
+            rows.value.push(self.value[column as usize]);
+        }
+        self.columns.clear();
+    }
+}
+
+impl SparseMatrix {
+    /// A matrix with so many columns, from consecutive groups of rows.
+    fn of_rows(columns: usize, parts: Vec<Rows>) -> Self {
+        let entries = parts.iter().map(|part| part.column.len()).sum();
+        let mut matrix = Self {
+            columns,
+            start: vec![0],
+            column: Vec::with_capacity(entries),
+            value: Vec::with_capacity(entries),
+        };
+        let mut end = 0;
+        for part in parts {
+            for length in part.lengths {
+                end += length;
+                matrix.start.push(end);
+            }
+            matrix.column.extend(part.column);
+            matrix.value.extend(part.value);
+        }
+        matrix
+    }
+
+    /// Makes a matrix row by row: `fill(row, entries)` pushes the columns and values of a row, in any order; values of one column are added in the order given.
+    pub(crate) fn from_rows(
+        rows: usize,
+        columns: usize,
+        fill: &(dyn Fn(usize, &mut dyn FnMut(usize, f64)) + Sync),
+    ) -> Self {
+        let parts = (0..rows.div_ceil(BLOCK))
+            .into_par_iter()
+            .map_init(
+                || Accumulator::new(columns),
+                |accumulator, block| {
+                    let mut part = Rows::default();
+                    for row in block * BLOCK..rows.min((block + 1) * BLOCK) {
+                        fill(row, &mut |column, value| {
+                            accumulator.add(column as u32, value);
+                        });
+                        accumulator.take_into(&mut part);
+                    }
+                    part
+                },
+            )
+            .collect();
+        Self::of_rows(columns, parts)
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.start.len().saturating_sub(1)
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.value.len()
+    }
+
+    /// Columns and values of a row.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.start[i]..self.start[i + 1];
+        let columns = self.column[range.clone()].iter();
+        columns
+            .zip(&self.value[range])
+            .map(|(&column, &value)| (column as usize, value))
+    }
+
+    /// The entry of the diagonal in a row; zero if it is not stored.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.row(i).find(|(k, _)| *k == i).map_or(0.0, |(_, a)| a)
+    }
+
+    /// `out` = A x.
+    pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
+        for_each_chunk(out, &|first, chunk| {
+            for (k, out) in chunk.iter_mut().enumerate() {
+                *out = self.row_product(first + k, x);
+            }
+        });
+    }
+
+    /// `out` −= A x.
+    pub fn subtract_product(&self, x: &[f64], out: &mut [f64]) {
+        for_each_chunk(out, &|first, chunk| {
+            for (k, out) in chunk.iter_mut().enumerate() {
+                *out -= self.row_product(first + k, x);
+            }
+        });
+    }
+
+    /// `out` += A x.
+    pub fn add_product(&self, x: &[f64], out: &mut [f64]) {
+        for_each_chunk(out, &|first, chunk| {
+            for (k, out) in chunk.iter_mut().enumerate() {
+                *out += self.row_product(first + k, x);
+            }
+        });
+    }
+
+    fn row_product(&self, i: usize, x: &[f64]) -> f64 {
+        let range = self.start[i]..self.start[i + 1];
+        let columns = self.column[range.clone()].iter();
+        let terms = columns.zip(&self.value[range]);
+        terms.map(|(&k, a)| a * x[k as usize]).sum()
+    }
+
+    /// Aᵀ.
+    pub fn transposed(&self) -> Self {
+        let mut start = vec![0; self.columns + 1];
+        for &column in &self.column {
+            start[column as usize + 1] += 1;
+        }
+        for k in 0..self.columns {
+            start[k + 1] += start[k];
+        }
+        let mut next = start.clone();
+        let mut column = vec![0; self.column.len()];
+        let mut value = vec![0.0; self.value.len()];
+        for i in 0..self.rows() {
+            for (k, a) in self.row(i) {
+                column[next[k]] = i as u32;
+                value[next[k]] = a;
+                next[k] += 1;
+            }
+        }
+        Self {
+            columns: self.rows(),
+            start,
+            column,
+            value,
+        }
+    }
+
+    /// A B.
+    pub fn product(&self, other: &Self) -> Self {
+        Self::from_rows(self.rows(), other.columns, &|i, add| {
+            for (k, a) in self.row(i) {
+                for (column, b) in other.row(k) {
+                    add(column, a * b);
+                }
+            }
+        })
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        self.start.len() * size_of::<usize>()
+            + self.column.len() * size_of::<u32>()
+            + self.value.len() * size_of::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Entries that follow no pattern.
+    fn matrix(rows: usize, columns: usize, seed: usize) -> SparseMatrix {
+        SparseMatrix::from_rows(rows, columns, &|i, add| {
+            for k in 0..4 {
+                let column = (i * 7 + k * k * 5 + seed) % columns;
+                add(column, ((i + 3 * k + seed) as f64).sin());
+            }
+        })
+    }
+
+    fn noise(n: usize) -> Vec<f64> {
+        (0..n).map(|i| (1.3 * i as f64).cos()).collect()
+    }
+
+    #[test]
+    fn a_product_of_matrices_acts_as_both_in_turn() {
+        let (a, b) = (matrix(1100, 70, 1), matrix(70, 33, 2));
+        let x = noise(33);
+        let mut bx = vec![0.0; 70];
+        b.multiply_into(&x, &mut bx);
+        let (mut abx, mut at_once) = (vec![0.0; 1100], vec![0.0; 1100]);
+        a.multiply_into(&bx, &mut abx);
+        a.product(&b).multiply_into(&x, &mut at_once);
+        for (one, other) in abx.iter().zip(&at_once) {
+            assert!((one - other).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn the_transposed_matrix_is_the_adjoint() {
+        let a = matrix(50, 31, 3);
+        let (x, y) = (noise(31), noise(50));
+        let (mut ax, mut aty) = (vec![0.0; 50], vec![0.0; 31]);
+        a.multiply_into(&x, &mut ax);
+        a.transposed().multiply_into(&y, &mut aty);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        assert!((dot(&ax, &y) - dot(&x, &aty)).abs() < 1e-13);
+        assert_eq!(a.transposed().transposed(), a);
+    }
+}

@@ -1,0 +1,62 @@
+//! The tangent stiffness of a body as a linear problem.
+
+use pericles::System;
+use pericles::parallel::for_each_chunk;
+
+use crate::krylov::LinearProblem;
+use crate::multigrid::Multigrid;
+use crate::unknowns::Unknowns;
+
+/// The tangent stiffness at a displacement, A = −V ∂f/∂u (N/m), preconditioned by the multigrid of the surrogate.
+pub struct Tangent<'a> {
+    /// The body.
+    pub system: &'a System,
+    /// Time, s.
+    pub t: f64,
+    /// Displacement at which the force is linearised, m.
+    pub u: &'a [f64],
+    /// The free entries.
+    pub unknowns: &'a Unknowns,
+    /// The preconditioner.
+    pub multigrid: &'a mut Multigrid,
+    /// Orthonormal rigid-body motions that are taken out of residuals and displacements.
+    pub rigid: &'a [Vec<f64>],
+    /// Two vectors of unknowns to work with.
+    pub work: &'a mut [Vec<f64>; 2],
+}
+
+impl LinearProblem for Tangent<'_> {
+    fn multiply_into(&mut self, x: &[f64], out: &mut [f64]) {
+        stiffness_into(self.system, self.t, self.u, x, out);
+    }
+
+    fn precondition_into(&mut self, residual: &[f64], out: &mut [f64]) {
+        let [right, solution] = &mut *self.work;
+        self.unknowns.gather(residual, right);
+        self.multigrid.apply_into(right, solution);
+        self.unknowns.scatter(solution, out);
+        remove(self.system, self.rigid, out);
+    }
+}
+
+/// `out` = −V ∂f/∂u x at displacement u, on all entries.
+pub fn stiffness_into(system: &System, t: f64, u: &[f64], x: &[f64], out: &mut [f64]) {
+    match system.operator().as_linear() {
+        Some(linear) => linear.apply_into(x, out),
+        None => system.operator().tangent_into(t, u, x, out),
+    }
+    let (n, volumes) = (system.points(), system.cloud().volumes());
+    for_each_chunk(out, &|first, chunk| {
+        for (k, out) in chunk.iter_mut().enumerate() {
+            *out *= -volumes[(first + k) % n];
+        }
+    });
+}
+
+/// Takes the parts along orthonormal vectors out of a vector.
+pub fn remove(system: &System, basis: &[Vec<f64>], vector: &mut [f64]) {
+    for one in basis {
+        let along = system.domain().dot(one, vector);
+        crate::krylov::add_multiple(vector, -along, one);
+    }
+}

@@ -1,0 +1,6 @@
+//! Static equilibrium: iteration counts, closed forms, reference values, balances.
+
+mod bodies;
+mod equilibrium;
+mod modes;
+mod solver;

@@ -1,0 +1,76 @@
+//! The number of products with the tangent does not grow with the body.
+
+use pericles::prelude::*;
+use pericles_statics::{Effort, Equilibrium, StaticOptions, Target};
+
+use crate::bodies::{pulled_plate, sheared_bar};
+
+/// What the static state of a linear body at a tolerance of 1e-6 takes.
+fn effort(system: &System) -> Effort {
+    let entries = system.dimension() * system.points();
+    let mut free = vec![1.0; entries];
+    system.hold_at(0.0, &mut free);
+    let mut load = vec![0.0; entries];
+    system.load_density_into(0.0, &mut load);
+    let mut solver = Equilibrium::new(StaticOptions::default(), system, free);
+    let mut u = vec![0.0; entries];
+    let target = Target {
+        t: 0.0,
+        load: &load,
+        supports: &vec![0.0; entries],
+        largest: 0.0,
+    };
+    let found = solver.find(system, &target, &mut u, Interrupt::never());
+    let effort = found.unwrap();
+    println!(
+        "{} points: {effort:?}, levels {:?}",
+        system.points(),
+        solver.multigrid().sizes()
+    );
+    effort
+}
+
+#[test]
+fn a_plate_with_a_hole_takes_at_most_twenty_products_at_every_size() {
+    for cells in [40, 80] {
+        assert!(effort(&pulled_plate(cells, 1.0 / 3.0, vec![])).products <= 20);
+    }
+}
+
+#[test]
+fn a_poisson_ratio_of_0_4_takes_at_most_thirty_products_at_every_size() {
+    for cells in [40, 80] {
+        assert!(effort(&pulled_plate(cells, 0.4, vec![])).products <= 30);
+    }
+}
+
+#[test]
+fn a_half_cracked_plate_takes_at_most_twenty_products() {
+    let crack = || Crack::Segment {
+        from: [-0.5, 0.2],
+        to: [0.0, 0.2],
+    };
+    for cells in [40, 80] {
+        assert!(effort(&pulled_plate(cells, 1.0 / 3.0, vec![crack()])).products <= 20);
+    }
+}
+
+#[test]
+fn a_bar_in_space_takes_at_most_twenty_products_at_every_size() {
+    for n in [8, 12] {
+        assert!(effort(&sheared_bar(n, 0.25, vec![])).products <= 20);
+    }
+}
+
+#[test]
+fn a_bar_with_a_half_through_crack_takes_at_most_twenty_products() {
+    let crack = Crack::Polygon {
+        corners: vec![
+            [1.0, -1.0, 0.5],
+            [1.0, 2.0, 0.5],
+            [1.0, 2.0, 2.0],
+            [1.0, -1.0, 2.0],
+        ],
+    };
+    assert!(effort(&sheared_bar(8, 0.25, vec![crack])).products <= 20);
+}
