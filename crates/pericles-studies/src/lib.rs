@@ -16,6 +16,7 @@
 //! ```
 
 mod absorbing_boundaries;
+mod common;
 mod context;
 mod data;
 mod decks;

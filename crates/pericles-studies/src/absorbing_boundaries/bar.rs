@@ -7,7 +7,6 @@ use pericles::boundary::{MotionKind, PrescribedMotion, TimeCourse, TimeFunction}
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
 use pericles::operator::{BondForce, Breaking, DamageMeasure, On};
-use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{
     Archive, Control, Outcome, PericlesError, PointScalar, Saved, Simulation, System, Values,
@@ -18,6 +17,8 @@ use pericles_waves::absorbing::{
     AbsorbingEnd, GhostKernels, LatticeStencil, LatticeStep, OuterLayer, Side, contour_kernels,
     semi_discrete_kernels,
 };
+
+use crate::common::cells;
 
 pub(super) const SPACING: f64 = 0.1;
 /// Nodes from the middle to an end.
@@ -75,7 +76,7 @@ impl TimeCourse for Ricker {
 }
 
 /// C(ξ) = 4E/(δ³ √π) exp(−ξ²/δ²).
-fn micromodulus(xi: f64) -> f64 {
+pub(super) fn micromodulus(xi: f64) -> f64 {
     const DELTA: f64 = 0.25;
     4.0 / (DELTA.powi(3) * PI.sqrt()) * (-(xi / DELTA).powi(2)).exp()
 }
@@ -152,16 +153,9 @@ impl Bar {
     /// The equation of motion without absorbing ends, and the start.
     pub(super) fn system(&self) -> Result<(System, State), RunError> {
         let half = HALF + self.margin;
-        let grid = Grid {
-            shape: Shape::Box {
-                origin: [-(half as f64 + 0.5) * SPACING, 0.0, 0.0],
-                size: vec![(2 * half + 1) as f64 * SPACING],
-            },
-            spacing: SPACING,
-            section: 1.0,
-            holes: Vec::new(),
-        };
-        let cloud = Arc::new(grid.points()?);
+        let origin = [-(half as f64 + 0.5) * SPACING, 0.0, 0.0];
+        let size = vec![(2 * half + 1) as f64 * SPACING];
+        let cloud = Arc::new(cells(origin, size, SPACING)?);
         let horizon = (REACH as f64 + 0.5) * SPACING;
         let bonds = BondList::new(&cloud, horizon, VolumeCorrection::None)?;
         let x = cloud.axis(0).to_vec();

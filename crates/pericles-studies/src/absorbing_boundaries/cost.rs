@@ -1,15 +1,13 @@
 //! What absorbing ends cost: time and memory against the number of steps, beside simply enlarging the body.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Instant;
 
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
 use pericles::operator::{BondForce, Breaking, DamageMeasure};
-use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Control, PericlesError, PointScalar, Simulation, System};
+use pericles::{PericlesError, PointScalar, Simulation, System};
 use pericles_run::RunError;
 use pericles_waves::absorbing::history::{
     BlockedHistory, DirectHistory, ExponentialHistory, History, HistoryCost,
@@ -19,6 +17,8 @@ use pericles_waves::absorbing::{
     OuterLayer, Side, contour_kernels,
 };
 
+use super::bar::micromodulus;
+use crate::common::{cells, difference, finish, largest};
 use crate::data::{Case, Found};
 use crate::row::Row;
 
@@ -36,12 +36,6 @@ struct Bar {
     margin: usize,
 }
 
-/// 4E/(δ³√π) exp(−ξ²/δ²), δ = 0.25.
-fn gaussian(xi: f64) -> f64 {
-    const DELTA: f64 = 0.25;
-    4.0 / (DELTA.powi(3) * PI.sqrt()) * (-(xi / DELTA).powi(2)).exp()
-}
-
 /// 3E/δ³, δ = 1.
 fn constant(_: f64) -> f64 {
     3.0
@@ -56,7 +50,7 @@ const ENDLESS: usize = 1_000_000;
 impl Bar {
     fn of(case: &Case<'_>) -> Result<Self, RunError> {
         let micromoduli: [(&str, fn(f64) -> f64); 2] =
-            [("gaussian", gaussian), ("constant", constant)];
+            [("gaussian", micromodulus), ("constant", constant)];
         Ok(Self {
             name: case.text("name")?,
             reach: case.count("reach")?,
@@ -78,16 +72,9 @@ impl Bar {
     fn body(&self, margin: usize) -> Result<(System, State), RunError> {
         let half = (10.0 / self.spacing).round() as usize + margin;
         let nodes = 2 * half + 1;
-        let grid = Grid {
-            shape: Shape::Box {
-                origin: [-(half as f64 + 0.5) * self.spacing, 0.0, 0.0],
-                size: vec![nodes as f64 * self.spacing],
-            },
-            spacing: self.spacing,
-            section: 1.0,
-            holes: Vec::new(),
-        };
-        let cloud = Arc::new(grid.points()?);
+        let origin = [-(half as f64 + 0.5) * self.spacing, 0.0, 0.0];
+        let size = vec![nodes as f64 * self.spacing];
+        let cloud = Arc::new(cells(origin, size, self.spacing)?);
         let horizon = (self.reach as f64 + 0.5) * self.spacing;
         let bonds = BondList::new(&cloud, horizon, VolumeCorrection::None)?;
         let breaking = Breaking {
@@ -133,9 +120,7 @@ impl Bar {
             steps as u64,
         )?;
         let began = Instant::now();
-        simulation
-            .run(|_| Control::Continue)
-            .map_err(|error| RunError::of_run(error, String::new))?;
+        finish(&mut simulation)?;
         Ok((simulation.state().u.clone(), began.elapsed().as_secs_f64()))
     }
 
@@ -176,10 +161,7 @@ pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
     let cone = 0.5 * stencil.fastest() * case.dt * steps as f64;
     let (large, seconds_large) = case.run(steps, cone as usize + case.margin, Vec::new())?;
     let extra = (large.len() - case.run(0, 0, Vec::new())?.0.len()) / 2;
-    let apart = |u: &[f64]| {
-        let pairs = large[extra..].iter().zip(u);
-        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-    };
+    let apart = |u: &[f64]| difference(&large[extra..], u);
     let (_, interior) = case.run(steps, 0, Vec::new())?;
     let mut rows = vec![
         time("body alone", interior),
@@ -259,10 +241,7 @@ pub(super) fn million_steps(case: &Case<'_>) -> Result<Found, RunError> {
         ("kernels", seconds_kernels),
         ("seconds", made.seconds),
         ("megabytes", 1e-6 * made.bytes as f64),
-        (
-            "largest",
-            made.u.iter().fold(0.0, |a: f64, u| a.max(u.abs())),
-        ),
+        ("largest", largest(&made.u)),
     ]
     .into())
 }

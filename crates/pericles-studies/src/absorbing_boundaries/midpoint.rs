@@ -1,7 +1,7 @@
 //! Exact ends within implicit steps, against a larger body with the same step.
 
 use pericles::time::{Implicit, ImplicitRule};
-use pericles::{Control, PericlesError, Simulation};
+use pericles::{PericlesError, Simulation};
 use pericles_run::RunError;
 use pericles_waves::absorbing::history::BlockedHistory;
 use pericles_waves::absorbing::{
@@ -9,6 +9,7 @@ use pericles_waves::absorbing::{
 };
 
 use super::bar::Bar;
+use crate::common::{difference, finish};
 use crate::data::{Case, Found};
 
 /// The bar with a soft middle; `margin` nodes more on each side where there are no ends.
@@ -33,9 +34,7 @@ fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, RunErro
     }
     let scheme = Implicit::new(ImplicitRule::Midpoint, &system)?;
     let mut simulation = Simulation::new(system, Box::new(scheme), state, dt, steps)?;
-    simulation
-        .run(|_| Control::Continue)
-        .map_err(|error| RunError::of_run(error, String::new))?;
+    finish(&mut simulation)?;
     Ok(simulation)
 }
 
@@ -45,15 +44,8 @@ pub(super) fn midpoint(case: &Case<'_>) -> Result<Found, RunError> {
     // Ten nodes per unit of time and back; an implicit step reaches everywhere, decaying as exp(−2 n/(10 dt)).
     let margin = (5.0 * dt * steps as f64 + 200.0 * dt.max(1.0)) as usize + 100;
     let (small, large) = (run(dt, steps, None)?, run(dt, steps, Some(margin))?);
-    let fields = [
-        (&small.state().u, &large.state().u),
-        (&small.state().v, &large.state().v),
-    ];
-    let error = fields
-        .iter()
-        .flat_map(|(small, large)| small.iter().zip(&large[margin..]))
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max);
+    let (a, b) = (small.state(), large.state());
+    let error = difference(&a.u, &b.u[margin..]).max(difference(&a.v, &b.v[margin..]));
     let energies = small.snapshot().energies();
     Ok([
         ("error", error),

@@ -5,15 +5,16 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use pericles::family::VolumeCorrection;
-use pericles::space::{Grid, PointCloud, Shape};
+use pericles::space::PointCloud;
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Control, PericlesError, PointScalar, Simulation, System};
+use pericles::{PericlesError, PointScalar, Simulation, System};
 use pericles_io::{CellSize, ColourMap, FieldPicture};
 use pericles_run::RunError;
 use pericles_waves::absorbing::Side;
 use pericles_waves::absorbing::strip::{StripEnd, StripLattice};
 use pericles_waves::linear::ConvolutionForce;
 
+use crate::common::{cells, watch};
 use crate::context::Context;
 use crate::data::{Case, Found};
 
@@ -30,16 +31,9 @@ const MARGIN: usize = 60;
 /// A plate with some columns more on each side, and a bell beside its middle that is pushed upwards.
 fn strip(margin: usize) -> Result<(System, State), RunError> {
     let half = HALF + margin;
-    let grid = Grid {
-        shape: Shape::Box {
-            origin: [-(half as f64) - 0.5, 0.0, 0.0],
-            size: vec![(2 * half + 1) as f64, ROWS as f64],
-        },
-        spacing: 1.0,
-        section: 1.0,
-        holes: Vec::new(),
-    };
-    let cloud = Arc::new(grid.points()?);
+    let origin = [-(half as f64) - 0.5, 0.0, 0.0];
+    let size = vec![(2 * half + 1) as f64, ROWS as f64];
+    let cloud = Arc::new(cells(origin, size, 1.0)?);
     // Bonds k ξ⊗ξ/|ξ|³ with k such that long waves along x have about speed one.
     let force = ConvolutionForce::<2>::with_stiffness(
         Arc::clone(&cloud),
@@ -80,12 +74,7 @@ fn run(
         }
     };
     note(&simulation);
-    simulation
-        .run(|now| {
-            note(now);
-            Control::Continue
-        })
-        .map_err(|error| RunError::of_run(error, String::new))?;
+    watch(&mut simulation, &mut note)?;
     // The last state of a run is not asked about.
     note(&simulation);
     Ok((states, began.elapsed().as_secs_f64()))

@@ -4,6 +4,7 @@ use pericles::time::State;
 use pericles_run::RunError;
 
 use super::bar::{Bar, HALF, Kind, SEISMIC_BAR, SPACING, kernels};
+use crate::common::{difference, largest};
 use crate::data::{Case, Found};
 
 /// The step of the figures.
@@ -22,15 +23,10 @@ fn errors(case: &Case<'_>, kind: Kind, dt: f64) -> Result<Vec<f64>, RunError> {
     let states = case.once(format!("{kind:?} {dt}"), || bar.states(kind, dt, &times))?;
     let pairs = states.iter().zip(&*reference);
     let errors = pairs.map(|(a, b)| match velocity {
-        true => largest(&a.v, &b.v),
-        false => largest(&a.u, &b.u),
+        true => difference(&a.v, &b.v),
+        false => difference(&a.u, &b.u),
     });
     Ok(errors.collect())
-}
-
-fn largest(a: &[f64], b: &[f64]) -> f64 {
-    let pairs = a.iter().zip(b);
-    pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
 }
 
 /// The error at the time of this `number`, with the paper's ends and with those that are exact for the scheme.
@@ -55,12 +51,6 @@ pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
 struct History {
     t: Vec<f64>,
     u: Vec<f64>,
-}
-
-impl History {
-    fn largest(&self) -> f64 {
-        self.u.iter().fold(0.0, |a: f64, u| a.max(u.abs()))
-    }
 }
 
 /// The histories of nodes up to a time, with exact ends.
@@ -122,7 +112,7 @@ pub(super) fn interfaces(_: &Case<'_>) -> Result<Found, RunError> {
 /// The free end moves twice as far as the wavelet: the peaks at both ends.
 pub(super) fn wavelet(_: &Case<'_>) -> Result<Found, RunError> {
     let [left, right] = histories(&SEISMIC_BAR, [0, 2 * HALF], 40.0)?;
-    let found = Found::from([("absorbing", left.largest()), ("free", right.largest())]);
+    let found = Found::from([("absorbing", largest(&left.u)), ("free", largest(&right.u))]);
     let names = ["absorbing end", "free end"].map(|name| Some(name.to_owned()));
     let ends = names.into_iter().zip([&left, &right]);
     Ok(ends.fold(found, |found, (name, end)| {

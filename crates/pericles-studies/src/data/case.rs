@@ -118,13 +118,7 @@ impl<'a> Case<'a> {
         name: &'static str,
         all: &[(&str, T)],
     ) -> Result<T, RunError> {
-        let text = self.text(name)?;
-        let found = all.iter().find(|(word, _)| *word == text);
-        found.map(|(_, value)| value.clone()).ok_or_else(|| {
-            let words = all.iter().map(|(word, _)| *word);
-            let allowed = words.clone().collect::<Vec<_>>().join(", ");
-            RunError::unknown(name, &text, words, &format!("allowed: {allowed}"))
-        })
+        named(name, &self.text(name)?, all)
     }
 
     /// What is computed once in a study; `key` says with which arguments.
@@ -142,6 +136,20 @@ impl<'a> Case<'a> {
         self.shared.borrow_mut().insert(key, kept);
         Ok(made)
     }
+}
+
+/// What a word of the data stands for.
+pub(crate) fn named<T: Clone>(
+    kind: &'static str,
+    word: &str,
+    all: &[(&str, T)],
+) -> Result<T, RunError> {
+    let found = all.iter().find(|(known, _)| *known == word);
+    found.map(|(_, value)| value.clone()).ok_or_else(|| {
+        let words = all.iter().map(|(known, _)| *known);
+        let allowed = words.clone().collect::<Vec<_>>().join(", ");
+        RunError::unknown(kind, word, words, &format!("allowed: {allowed}"))
+    })
 }
 
 pub(super) fn number(value: &Value) -> Option<f64> {

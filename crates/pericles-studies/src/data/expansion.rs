@@ -267,3 +267,85 @@ fn number_of(cell: Option<&Value>, place: &Place, found: &Found) -> Result<Optio
     };
     Ok(value.filter(|value| !value.is_nan()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10 a + b, and how often it was computed.
+    fn sum(case: &Case<'_>) -> Result<Found, RunError> {
+        let [a, b] = [case.number("a")?, case.number("b")?];
+        let runs = case.once("runs".into(), || Ok(std::cell::Cell::new(0)))?;
+        runs.set(runs.get() + 1);
+        Ok([("value", 10.0 * a + b), ("runs", f64::from(runs.get()))].into())
+    }
+
+    fn rows_of(text: &str, full: bool) -> Result<Vec<Row>, RunError> {
+        let text = format!("paper = \"\"\ntitle = \"\"\n{text}");
+        let data = StudyData::read(&text).unwrap();
+        let context = Context {
+            full,
+            figures: None,
+            tell: &|_| {},
+        };
+        rows(&data, &[("sum", sum)], &context)
+    }
+
+    const AXES: &str = r#"
+[[row]]
+measure = "sum"
+with = { b = 0, name = "a = {a}" }
+axes = [{ a = [1, 2, 3], when = ["always", "full", "always"] }, { b = [4, 5] }]
+label = "{name}, b = {b}: {value:.1}"
+expected = [[14], [24, 25], [34, nan]]
+relative = 0.5
+note = [["first", ""], [], ["{runs} runs", ""]]
+[[row.row]]
+[[row.row]]
+label = "runs"
+value = "runs"
+expected = "value"
+absolute = 30
+"#;
+
+    #[test]
+    fn rows_of_axes() {
+        let found = rows_of(AXES, false).unwrap();
+        let labels: Vec<&str> = found.iter().map(|row| &row.case[..]).collect();
+        assert_eq!(labels[0], "a = 1, b = 4: 14.0");
+        assert_eq!(labels[1..3], ["runs", "a = 1, b = 5: 15.0"]);
+        assert_eq!(labels[4], "a = 3, b = 4: 34.0");
+        assert_eq!(labels.len(), 8);
+        assert_eq!(rows_of(AXES, true).unwrap().len(), 12);
+        // A list of one entry holds for all places, and NaN is no number.
+        let expected: Vec<Option<f64>> = found.iter().map(|row| row.expected).collect();
+        let numbers = [14.0, 14.0, 14.0, 15.0, 34.0, 34.0].map(Some);
+        assert_eq!(expected[..6], numbers);
+        assert_eq!(expected[6..], [None, Some(35.0)]);
+        assert_eq!((found[0].tolerance, found[0].absolute), (0.5, false));
+        assert_eq!((found[1].tolerance, found[1].absolute), (30.0, true));
+        assert_eq!((found[6].tolerance, found[6].absolute), (0.0, false));
+        // The measure runs once for each place.
+        assert_eq!(found[7].computed, Some(4.0));
+        let notes: Vec<&str> = found.iter().map(|row| &row.note[..]).collect();
+        assert_eq!(notes[..4], ["first", "first", "", ""]);
+        assert_eq!(notes[4], "3 runs");
+    }
+
+    #[test]
+    fn names_that_nothing_has_are_refused() {
+        let refused = |text: &str, part: &str| {
+            let error = rows_of(text, false).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+        };
+        refused("[[row]]\nmeasure = \"some\"", "measure \"some\"");
+        refused("[[row]]\nmeasure = \"sum\"", "number \"a\"");
+        let sum = "[[row]]\nmeasure = \"sum\"\nwith = { a = 1, b = 2 }";
+        refused(&format!("{sum}\nlabel = \"{{c}}\""), "\"c\"");
+        refused(
+            &format!("{sum}\nlabel = \"\"\nvalue = \"x\""),
+            "result \"x\"",
+        );
+        refused(&format!("{sum}\nlabel = \"\"\nexpected = \"y\""), "\"y\"");
+    }
+}

@@ -7,6 +7,6 @@ mod expansion;
 mod format;
 mod template;
 
-pub(crate) use case::{Case, Found, Measure};
+pub(crate) use case::{Case, Found, Measure, named};
 pub(crate) use expansion::rows;
 pub(crate) use format::StudyData;

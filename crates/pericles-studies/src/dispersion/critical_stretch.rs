@@ -6,12 +6,12 @@ use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, PairLaw,
     StressState,
 };
-use pericles::space::{Grid, Shape};
 use pericles_dispersion::BondLattice;
 use pericles_dispersion::tuning::{Method, influence_alebrahim, polygon};
 use pericles_run::RunError;
 
 use super::models::{model, tuned};
+use crate::common::cells;
 use crate::data::{Case, Found};
 
 /// Spacing, m; the horizon is 0.75 mm.
@@ -44,16 +44,7 @@ pub(super) fn critical_stretch(case: &Case<'_>) -> Result<Found, RunError> {
         ("unmodified", Calibration::Unmodified),
         ("continuum", Calibration::Continuum),
     ];
-    let cloud = Grid {
-        shape: Shape::Box {
-            origin: [0.0; 3],
-            size: vec![8.0 * DX; 2],
-        },
-        spacing: DX,
-        section: 1.0,
-        holes: Vec::new(),
-    }
-    .points()?;
+    let cloud = cells([0.0; 3], vec![8.0 * DX; 2], DX)?;
     let material = BondMaterial {
         law: PairLaw::BondStretch,
         density: 1.0,

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use pericles::material::StressState;
 use pericles_dispersion::trace;
 use pericles_dispersion::tuning::ScalingModel;
 use pericles_io::{Axis, Curve, LineChart};
 use pericles_run::RunError;
 use pericles_run::dispersion::{Curves, STEPS, write_classes};
 
-use super::models::targets;
+use super::models::{NamedTables, model, targets};
 use crate::context::Context;
 
 /// Draws and writes the curves of a table, if figures are wanted: `<name>.png`, `<name>.csv`.
@@ -36,7 +37,7 @@ pub(super) fn write_curves(
 }
 
 /// Draws one branch of several tables of a model over each other, if figures are wanted: `<name>-<branch>.png`.
-pub(super) fn write_comparison(
+fn write_comparison(
     context: &Context<'_>,
     model: &ScalingModel,
     name: &str,
@@ -87,6 +88,27 @@ pub(super) fn write_comparison(
 pub(super) fn figures(context: &Context<'_>, name: &str) -> (Option<PathBuf>, Option<PathBuf>) {
     let file = |ending: &str| context.figure(&format!("{name}.{ending}"));
     (file("png"), file("csv"))
+}
+
+/// Writes the coefficients of tables by N, and draws those of each group over each other: the ending of its file's name, how the tables' names begin, and whether they are bounded.
+pub(super) fn write_methods(
+    context: &Context<'_>,
+    (state, body): (StressState, &str),
+    tables: &[(f64, NamedTables)],
+    groups: &[(&str, &str, bool)],
+) -> Result<(), RunError> {
+    for (n, list) in tables {
+        let model = model(state, *n)?;
+        write_tables(context, &model, &format!("coefficients-{n}"), list)?;
+        for (ending, kind, bounded) in groups {
+            let wanted = |name: &str| name.starts_with(kind) && name.contains("α ≥") == *bounded;
+            let group = list.iter().filter(|(name, _)| wanted(name));
+            let group: Vec<_> = group.map(|(name, a)| (name.as_str(), &a[..])).collect();
+            let (file, title) = (format!("methods-{n}{ending}"), format!("{body}, N = {n}"));
+            write_comparison(context, &model, &file, &title, &group)?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes the coefficients of tables of one model.

@@ -10,7 +10,8 @@ use pericles_dispersion::tuning::{
 use pericles_run::RunError;
 
 use super::figures::write_curves;
-use super::models::{model, tuned, with_long_waves};
+use super::lattices::with_long_waves;
+use super::models::{model, tuned};
 use crate::data::{Case, Found};
 
 const N: f64 = 3.0;

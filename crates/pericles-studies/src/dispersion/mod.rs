@@ -7,6 +7,7 @@
 mod critical_stretch;
 mod figures;
 mod influence;
+mod lattices;
 mod models;
 mod one_dimensional;
 mod published;
@@ -29,9 +30,9 @@ pub(super) const TOPIC: Topic = Topic {
         data!("dispersion/pulse"),
     ],
     measures: &[
-        ("original", models::original),
-        ("tuned", models::of_choice),
-        ("write-coefficients", models::write_coefficients),
+        ("original", lattices::original),
+        ("tuned", lattices::of_choice),
+        ("write-coefficients", lattices::write_coefficients),
         ("published-bars", one_dimensional::published_bars),
         ("published-plates", two_dimensional::published_plates),
         ("plane-states", two_dimensional::plane_states),

@@ -1,18 +1,12 @@
 //! Models whose coefficients are tuned.
 
-use std::rc::Rc;
-
 use pericles::family::VolumeCorrection;
 use pericles::material::StressState;
-use pericles_dispersion::tuning::{
-    Combination, Method, ScalingModel, TunedTable, Tuning, continuum_speeds,
-};
-use pericles_dispersion::{BondLattice, long_wave_speeds};
+use pericles_dispersion::tuning::{Method, ScalingModel, TunedTable, Tuning, continuum_speeds};
 use pericles_run::RunError;
 
-use super::figures::{write_curves, write_tables};
-use crate::data::{Case, Found};
-use crate::row::Row;
+use crate::common::largest;
+use crate::data::Case;
 
 /// Coefficients with their names.
 pub(super) type NamedTables = Vec<(String, Vec<f64>)>;
@@ -66,121 +60,5 @@ pub(super) fn verdict(table: &TunedTable) -> &'static str {
 
 /// By how much the largest of the constraints is missed, 0 but for rounding.
 pub(super) fn constraint_residual(table: &TunedTable) -> f64 {
-    let constraints = table.assessment.constraints.iter();
-    constraints.map(|c| c.abs()).fold(0.0, f64::max)
-}
-
-/// Long waves in a direction over those of the continuum: pressure, then shear.
-fn long_waves(lattice: &BondLattice, state: StressState, direction: [f64; 3]) -> Vec<f64> {
-    let exact = targets(state).into_iter().flatten();
-    let speeds = long_wave_speeds(lattice, direction);
-    speeds
-        .iter()
-        .zip(exact)
-        .map(|(found, exact)| found / exact)
-        .collect()
-}
-
-/// Those at 0° and 45° with their names.
-pub(super) fn with_long_waves(found: Found, lattice: &BondLattice, state: StressState) -> Found {
-    let directions = [("0°", [1.0, 0.0, 0.0]), ("45°", [1.0, 1.0, 0.0])];
-    directions
-        .into_iter()
-        .fold(found, |found, (name, direction)| {
-            let ratios = long_waves(lattice, state, direction);
-            let named = ["pressure", "shear"].into_iter().zip(ratios);
-            named.fold(found, |found, (wave, ratio)| {
-                found.value(format!("{wave} at {name}"), ratio)
-            })
-        })
-}
-
-/// α = 1: errors, and long waves: ω²/k² along an axis, which is 1 + 1/N in bars, and speeds over those of the continuum.
-pub(super) fn original(case: &Case<'_>) -> Result<Found, RunError> {
-    let model = model_of(case)?;
-    let ones = vec![1.0; model.classes().len()];
-    let lattice = model.lattice(&ones);
-    let speed = long_wave_speeds(&lattice, [1.0, 0.0, 0.0])[0];
-    let closed = 1.0 + 1.0 / case.number("n")?;
-    let found = Found::from([("square", speed * speed), ("closed form", closed)]);
-    let found = match model.state() {
-        StressState::Uniaxial => found,
-        state => with_long_waves(found, &lattice, state),
-    };
-    // Large horizons take long.
-    if case.flag("without_error") {
-        return Ok(found);
-    }
-    let error = model.assess(&ones)?.error;
-    Ok(found
-        .value("error", error.absolute)
-        .value("error over N = 3", error.ratio))
-}
-
-/// A table tuned by a choice of method, combination and bound: rows of its coefficients, what it does to waves, and how well its conditions are met.
-pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
-    let (model, method) = (model_of(case)?, method_of(case)?);
-    let combinations = Combination::ALL.map(|combination| (combination.name(), combination));
-    let lower_bound = case.optional("lower_bound");
-    let table = model.tune(Tuning {
-        method,
-        combination: case.one_of("combination", &combinations)?,
-        lower_bound,
-        ..Default::default()
-    })?;
-    let (n, name) = (case.number("n")?, case.text("name")?);
-    let lattice = model.lattice(&table.alpha);
-    // How far long waves are from the speeds of the continuum along directions that no constraint names.
-    let anisotropy = [[1.0, 1.0, 1.0], [3.0, 1.0, 2.0]]
-        .into_iter()
-        .flat_map(|direction| long_waves(&lattice, model.state(), direction))
-        .map(|ratio| (ratio - 1.0).abs())
-        .fold(0.0, f64::max);
-    let coefficients = model
-        .classes()
-        .iter()
-        .zip(&table.alpha)
-        .map(|(class, alpha)| {
-            let [a, b, c] = class.offset;
-            Row::new(format!("N = {n}, {name}: α({a},{b},{c})"), "", Some(*alpha))
-        });
-    let coefficients: Vec<Row> = coefficients.collect();
-    if method == Method::LeastSquares {
-        let positive = lower_bound.map_or("", |_| "-positive");
-        let (file, title) = (
-            format!("curve-{n}{positive}"),
-            format!("cubic lattice, N = {n}, {name}"),
-        );
-        write_curves(case.context, &model, &file, &title, &table.alpha)?;
-    }
-    let tables = tables(case)?;
-    tables.borrow_mut().push((name, table.alpha.clone()));
-    let found = &table.assessment;
-    Ok(Found::from(coefficients)
-        .value("error", found.error.ratio)
-        .value("smallest", found.stability.smallest)
-        .value("ω_max", found.stability.omega_max)
-        .value("constraint", constraint_residual(&table))
-        .value("optimality", table.kkt)
-        .value("anisotropy", anisotropy)
-        .text("verdict", verdict(&table)))
-}
-
-/// The tables found for the case's N.
-fn tables(case: &Case<'_>) -> Result<Rc<std::cell::RefCell<NamedTables>>, RunError> {
-    case.once(format!("tables {}", case.number("n")?), || {
-        Ok(Default::default())
-    })
-}
-
-/// Writes the coefficients of all tables found for an N.
-pub(super) fn write_coefficients(case: &Case<'_>) -> Result<Found, RunError> {
-    let file = format!("coefficients-{}", case.number("n")?);
-    write_tables(
-        case.context,
-        &model_of(case)?,
-        &file,
-        &tables(case)?.borrow(),
-    )?;
-    Ok(Found::default())
+    largest(&table.assessment.constraints)
 }

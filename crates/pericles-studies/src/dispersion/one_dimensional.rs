@@ -3,7 +3,7 @@
 use pericles::material::StressState;
 use pericles_run::RunError;
 
-use super::figures::{write_comparison, write_curves, write_tables};
+use super::figures::{write_curves, write_methods};
 use super::models::{NamedTables, constraint_residual, model, tuned};
 use super::published::{method, number, numbers, published};
 use crate::data::{Case, Found};
@@ -69,15 +69,7 @@ pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
             _ => tables.push((n, vec![(name.into(), table.alpha)])),
         }
     }
-    for (n, list) in &tables {
-        let model = model(StressState::Uniaxial, *n)?;
-        write_tables(context, &model, &format!("coefficients-{n}"), list)?;
-        let tables: Vec<_> = list
-            .iter()
-            .map(|(name, a)| (name.as_str(), &a[..]))
-            .collect();
-        let (file, title) = (format!("methods-{n}"), format!("bars, N = {n}"));
-        write_comparison(context, &model, &file, &title, &tables)?;
-    }
+    let bars = (StressState::Uniaxial, "bars");
+    write_methods(context, bars, &tables, &[("", "", false)])?;
     Ok(rows.into())
 }

@@ -3,6 +3,8 @@
 use pericles_dispersion::tuning::{Combination, Method};
 use pericles_run::RunError;
 
+use crate::data::named;
+
 /// The rows of a table of published numbers: cells by column, comments and header left out.
 pub(super) fn published(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -28,27 +30,13 @@ pub(super) fn rounding(row: &[&str], column: usize) -> f64 {
 }
 
 pub(super) fn method(name: &str) -> Result<Method, RunError> {
-    let named = Method::ALL.map(|method| (method.name(), method));
-    known("method of tuning", name, &named)
+    let all = Method::ALL.map(|method| (method.name(), method));
+    named("method of tuning", name, &all)
 }
 
 pub(super) fn combination(name: &str) -> Result<Combination, RunError> {
-    let named = Combination::ALL.map(|combination| (combination.name(), combination));
-    known("combination of branches", name, &named)
-}
-
-/// The value that a word of a study's data names.
-fn known<T: Copy>(kind: &'static str, name: &str, all: &[(&str, T)]) -> Result<T, RunError> {
-    let found = all.iter().find(|(word, _)| *word == name);
-    found.map(|(_, value)| *value).ok_or_else(|| {
-        let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
-        RunError::unknown(
-            kind,
-            name,
-            &words,
-            &format!("allowed: {}", words.join(", ")),
-        )
-    })
+    let all = Combination::ALL.map(|combination| (combination.name(), combination));
+    named("combination of branches", name, &all)
 }
 
 #[cfg(test)]

@@ -7,15 +7,15 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use pericles::material::StressState;
-use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Control, PointScalar, Simulation, System};
+use pericles::{PointScalar, Simulation, System};
 use pericles_dispersion::BondLattice;
 use pericles_dispersion::spectrum::{Complex64, CubeTransform, PeriodicForce};
 use pericles_dispersion::tuning::{Tuning, Weights, continuum_speeds};
 use pericles_run::RunError;
 
 use super::models::model;
+use crate::common::{cells, finish};
 use crate::data::{Case, Found};
 
 /// Points along an axis.
@@ -68,18 +68,7 @@ fn cross(lattice: &BondLattice) -> Result<f64, RunError> {
     let end = WAVELENGTHS * WAVELENGTH / speed;
     let steps = (end / DT).ceil();
     let dt = end / steps;
-    let cloud = Arc::new(
-        Grid {
-            shape: Shape::Box {
-                origin: [0.0; 3],
-                size: vec![NODES as f64; 2],
-            },
-            spacing: 1.0,
-            section: 1.0,
-            holes: Vec::new(),
-        }
-        .points()?,
-    );
+    let cloud = Arc::new(cells([0.0; 3], vec![NODES as f64; 2], 1.0)?);
     let force = PeriodicForce::new(lattice, NODES, 1.0, 1.0)?;
     let system = System::new(
         Arc::clone(&cloud),
@@ -90,9 +79,7 @@ fn cross(lattice: &BondLattice) -> Result<f64, RunError> {
     state.u = continuum(0.0, speed);
     let mut simulation =
         Simulation::new(system, Box::new(VelocityVerlet), state, dt, steps as u64)?;
-    simulation
-        .run(|_| Control::Continue)
-        .map_err(|error| RunError::of_run(error, String::new))?;
+    finish(&mut simulation)?;
     let exact = continuum(end, speed);
     let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
     let pairs = simulation.state().u.iter().zip(&exact);

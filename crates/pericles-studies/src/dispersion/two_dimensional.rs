@@ -6,10 +6,10 @@ use pericles_dispersion::tuning::{Method, Tuning};
 use pericles_run::RunError;
 use pericles_run::dispersion::write_polar;
 
-use super::figures::{write_comparison, write_curves, write_tables};
+use super::figures::{write_curves, write_methods};
 use super::models::{NamedTables, constraint_residual, model, model_of, tuned, verdict};
 use super::published::{combination, method, number, numbers, published, rounding};
-use crate::context::Context;
+use crate::common::difference;
 use crate::data::{Case, Found};
 use crate::row::Row;
 
@@ -93,31 +93,14 @@ pub(super) fn published_plates(case: &Case<'_>) -> Result<Found, RunError> {
             _ => tables.push((n, vec![(name, table.alpha)])),
         }
     }
-    write_figures(case.context, &tables)?;
+    let groups = [
+        ("-separated", "separated", false),
+        ("-absolute", "absolute", false),
+        ("-positive", "separated", true),
+    ];
+    let plates = (StressState::PlaneStrain, "plates");
+    write_methods(case.context, plates, &tables, &groups)?;
     Ok(rows.into())
-}
-
-/// Writes the coefficients by N, and draws the methods over each other.
-fn write_figures(context: &Context<'_>, tables: &[(f64, NamedTables)]) -> Result<(), RunError> {
-    for (n, list) in tables {
-        let model = model(StressState::PlaneStrain, *n)?;
-        write_tables(context, &model, &format!("coefficients-{n}"), list)?;
-        for (file, kind, bounded) in [
-            ("separated", "separated", false),
-            ("absolute", "absolute", false),
-            ("positive", "separated", true),
-        ] {
-            let wanted = |name: &str| name.starts_with(kind) && name.contains("α ≥") == bounded;
-            let tables: Vec<_> = list
-                .iter()
-                .filter(|(name, _)| wanted(name))
-                .map(|(name, a)| (name.as_str(), &a[..]))
-                .collect();
-            let file = format!("methods-{n}-{file}");
-            write_comparison(context, &model, &file, &format!("plates, N = {n}"), &tables)?;
-        }
-    }
-    Ok(())
 }
 
 /// Draws the curves of α = 1 and of least squares, and the speeds of α = 1 by direction.
@@ -148,8 +131,7 @@ pub(super) fn polar(case: &Case<'_>) -> Result<Found, RunError> {
 pub(super) fn plane_states(_: &Case<'_>) -> Result<Found, RunError> {
     let of = |state| tuned(&model(state, 3.0)?, Method::LeastSquares, None);
     let (strain, stress) = (of(StressState::PlaneStrain)?, of(StressState::PlaneStress)?);
-    let pairs = strain.alpha.iter().zip(&stress.alpha);
-    Ok(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max).into())
+    Ok(difference(&strain.alpha, &stress.alpha).into())
 }
 
 /// Another Poisson's ratio has no coefficients: with ν = 0.3 the pair A = V_p², B = V_s² is met along an axis only, for at 45° pressure waves run at (A + 3B)/2.

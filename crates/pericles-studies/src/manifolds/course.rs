@@ -8,6 +8,7 @@ use pericles_io::observers::PictureOf;
 use pericles_manifold::{SurfaceMeasure, SurfaceReading};
 use pericles_run::{Resources, RunError, build};
 
+use crate::common::largest;
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
@@ -81,8 +82,7 @@ impl Course {
         course.see(&simulation, measure.as_ref());
         let loads = simulation.system().loads().iter();
         course.loaded = loads.map(|load| load.points.len()).sum();
-        let u = simulation.state().u.iter();
-        course.displacement = u.fold(0.0, |most: f64, x| most.max(x.abs()));
+        course.displacement = largest(&simulation.state().u);
         trouble.map_or(Ok(course), Err)
     }
 

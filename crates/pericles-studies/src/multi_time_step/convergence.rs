@@ -1,34 +1,32 @@
 //! Errors and orders of the schemes on bodies that do not fail.
 
+use std::rc::Rc;
+
 use pericles_run::RunError;
 
 use super::problem::{End, Method, Problem, relative};
+use crate::common::{difference, largest};
 use crate::data::{Case, Found};
-
-/// Steps of RK4 for the reference.
-const REFERENCE: u64 = 2048;
-
-/// The largest |u_x − other u_x| over the points.
-fn largest(end: &End, other: &End) -> f64 {
-    let pairs = end.x().iter().zip(other.x());
-    pairs
-        .map(|(u, exact)| (u - exact).abs())
-        .fold(0.0, f64::max)
-}
 
 /// The largest displacement along x by the reference.
 pub(super) fn largest_displacement(case: &Case<'_>) -> Result<Found, RunError> {
-    let end = Problem::of(case)?.end(Method::Uniform(4), REFERENCE, &[])?;
-    let most = end.x().iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-    Ok(most.into())
+    Ok(largest(reference(case)?.x()).into())
 }
 
-/// The error of the scheme `name` at the end in so many steps, with the changes `choice`.
+/// RK4 with `reference` steps.
+fn reference(case: &Case<'_>) -> Result<Rc<End>, RunError> {
+    Problem::of(case)?.end(Method::Uniform(4), case.count("reference")? as u64, &[])
+}
+
+/// The error of the scheme `name` at the end in so many steps, with the changes `choice`: the largest |u_x − reference| over the points, or with `relative` the relative distance of all displacements.
 fn error_in(case: &Case<'_>, name: &'static str, steps: u64) -> Result<f64, RunError> {
-    let problem = Problem::of(case)?;
-    let exact = problem.end(Method::Uniform(4), REFERENCE, &[])?;
-    let end = problem.end(Method::of(case, name)?, steps, &case.texts("choice")?)?;
-    Ok(largest(&end, &exact))
+    let choice = case.texts("choice")?;
+    let end = Problem::of(case)?.end(Method::of(case, name)?, steps, &choice)?;
+    let exact = reference(case)?;
+    Ok(match case.flag("relative") {
+        true => relative(&end.u, &exact.u),
+        false => difference(end.x(), exact.x()),
+    })
 }
 
 /// The error of a method, and that over the error of the method `beside`.
@@ -60,7 +58,7 @@ pub(super) fn equal_steps(case: &Case<'_>) -> Result<Found, RunError> {
     let difference = |steps| -> Result<f64, RunError> {
         let plain = problem.end(Method::Uniform(order), steps, &[])?;
         let zoned = problem.end(Method::Two(order, 1), steps, &[])?;
-        Ok(largest(&zoned, &plain))
+        Ok(difference(zoned.x(), plain.x()))
     };
     Ok((difference(128)? / difference(256)?).log2().into())
 }

@@ -15,27 +15,6 @@ use crate::data::{Case, Found};
 const STEPS: f64 = 128.0;
 const END: f64 = 15e-6;
 
-/// The relative error without failure.
-fn error_in(case: &Case<'_>, steps: u64) -> Result<f64, RunError> {
-    let problem = Problem::of(case)?;
-    let exact = problem.end(Method::Uniform(4), 1120, &[])?;
-    let end = problem.end(Method::of(case, "method")?, steps, &[])?;
-    Ok(relative(&end.u, &exact.u))
-}
-
-/// The relative error of a method.
-pub(super) fn relative_error(case: &Case<'_>) -> Result<Found, RunError> {
-    Ok(error_in(case, case.count("steps")? as u64)?.into())
-}
-
-/// The order of this error from half of the `steps` to all of them.
-pub(super) fn relative_order(case: &Case<'_>) -> Result<Found, RunError> {
-    let steps = case.count("steps")? as u64;
-    Ok((error_in(case, steps / 2)? / error_in(case, steps)?)
-        .log2()
-        .into())
-}
-
 /// The plate at a time, in steps of the length of the deck's over `ratio`.
 fn at(
     case: &Case<'_>,

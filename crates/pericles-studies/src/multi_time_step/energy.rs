@@ -1,20 +1,25 @@
 //! Energy and momentum of a free plate: what each scheme keeps.
 
-use pericles::{Control, Simulation};
+use pericles::Simulation;
 use pericles_run::RunError;
 
 use super::problem::{Method, Problem};
+use crate::common::watch;
 use crate::data::{Case, Found};
 
-/// What a run of so many `steps` at ω dt = `omega` does: the largest relative change of kinetic + elastic energy, that in the second half over that in the first, the relative change at the end, |change of
-/// momentum| over Σ |m v|, and evaluations per point and step.
+/// What a run of so many `steps` does at ω dt = `omega`, or at half the deck's step: the largest relative change of kinetic + elastic energy, looked at `every` so many steps, that in the second half over
+/// that in the first, the relative change at the end, |change of momentum| over Σ |m v| and over |momentum|, and evaluations per point and step.
 pub(super) fn kept(case: &Case<'_>) -> Result<Found, RunError> {
-    let steps = case.count("steps")? as u64;
+    let (steps, every) = (case.count("steps")? as u64, case.count("every")? as u64);
     let problem = Problem::of(case)?;
     let mut assembly = problem.assembly(Method::of(case, "method")?, &case.texts("choice")?)?;
-    let frequency = assembly.frequency;
-    assembly.dt =
-        case.number("omega")? / frequency.map_or(f64::NAN, |frequency| frequency.estimate);
+    let frequency = assembly
+        .frequency
+        .map_or(f64::NAN, |frequency| frequency.estimate);
+    assembly.dt = match case.optional("omega") {
+        Some(omega) => omega / frequency,
+        None => 0.5 * assembly.dt,
+    };
     assembly.steps = steps;
     let momentum = assembly.system.momentum(&assembly.state.v);
     let mut run = assembly.simulation()?;
@@ -25,19 +30,18 @@ pub(super) fn kept(case: &Case<'_>) -> Result<Found, RunError> {
         let energies = run.snapshot().energies();
         (energies.kinetic + energies.elastic) / at_start - 1.0
     };
-    run.run(|run| {
+    watch(&mut run, |run| {
         let step = run.state().step;
-        if step.is_multiple_of(steps.div_ceil(1500)) {
+        if step.is_multiple_of(every) {
             let half = &mut largest[usize::from(2 * step > steps)];
             *half = half.max(change(run).abs());
         }
-        Control::Continue
-    })
-    .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
+    })?;
     let (system, v) = (run.system(), &run.state().v);
     let n = system.points();
     let after = system.momentum(v);
-    let apart: f64 = (0..3).map(|c| (after[c] - momentum[c]).powi(2)).sum();
+    let size = |p: [f64; 3]| p.iter().map(|p| p.powi(2)).sum::<f64>().sqrt();
+    let apart = size([0, 1, 2].map(|c| after[c] - momentum[c]));
     let all: f64 = (0..n)
         .map(|i| system.density().at(i) * system.cloud().volumes()[i] * v[i].hypot(v[n + i]))
         .sum();
@@ -46,7 +50,11 @@ pub(super) fn kept(case: &Case<'_>) -> Result<Found, RunError> {
         ("largest", largest[0].max(largest[1])),
         ("halves", largest[1] / largest[0]),
         ("last", change(&run)),
-        ("momentum", apart.sqrt() / all),
+        ("momentum", apart / all),
+        (
+            "momentum over itself",
+            apart / size([0, 1, 2].map(|c| momentum[c])),
+        ),
         ("evaluations", evaluations / (n as u64 * steps) as f64),
     ]
     .into())

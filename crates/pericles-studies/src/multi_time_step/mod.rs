@@ -33,8 +33,6 @@ pub(super) const TOPIC: Topic = Topic {
         ("error", convergence::error),
         ("order", convergence::order),
         ("equal-steps", convergence::equal_steps),
-        ("relative-error", crack::relative_error),
-        ("relative-order", crack::relative_order),
         ("before-failure", crack::before_failure),
         ("fine-step", crack::fine_step),
         ("failure", crack::failure),
@@ -51,6 +49,5 @@ pub(super) const TOPIC: Topic = Topic {
         ("errors-of-set", convergence::errors_of_set),
         ("patch-test", two_grid::patch_test),
         ("frequencies", two_grid::frequencies),
-        ("conservation", two_grid::conservation),
     ],
 };

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 use std::rc::Rc;
 
+use pericles::Simulation;
 use pericles::time::{Integrator, RungeKutta, Tableau, VelocityVerlet};
-use pericles::{Control, Simulation};
 use pericles_run::{Assembly, Resources, RunError, build};
 
+use crate::common::finish;
 use crate::data::Case;
 use crate::decks::deck;
 
@@ -124,9 +125,7 @@ impl<'a> Problem<'a> {
         let mut all = vec![format!("time.dt={:?}", end / steps as f64)];
         all.extend_from_slice(changes);
         let mut simulation = self.assembly(method, &all)?.simulation()?;
-        simulation
-            .run(|_| Control::Continue)
-            .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
+        finish(&mut simulation)?;
         Ok(simulation)
     }
 

@@ -1,6 +1,5 @@
-//! A body with smaller cells, and a smaller horizon, in its middle: what the interface does to a uniform strain, and what is conserved.
+//! A body with smaller cells, and a smaller horizon, in its middle: what the interface does to a uniform strain.
 
-use pericles::Control;
 use pericles::operator::On;
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::time::highest_frequency;
@@ -8,6 +7,7 @@ use pericles_deck::Deck;
 use pericles_run::{Assembly, RunError};
 
 use super::problem::{Method, Problem};
+use crate::common::largest;
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
@@ -126,10 +126,7 @@ fn balanced_error(assembly: &Assembly, strained: &[f64], places: &Places) -> Res
         &mut Work::new(2 * n),
     )?;
     let [low, high] = system.cloud().bounds();
-    let most = correction
-        .iter()
-        .fold(0.0, |most: f64, x| most.max(x.abs()));
-    Ok(most / (STRAIN * (high[0] - low[0])))
+    Ok(largest(&correction) / (STRAIN * (high[0] - low[0])))
 }
 
 /// How much shorter the stable step of the small cells is.
@@ -138,34 +135,4 @@ pub(super) fn frequencies(case: &Case<'_>) -> Result<Found, RunError> {
     let whole = highest_frequency(&assembly.system, &assembly.state.u)?.estimate;
     let coarse = assembly.frequency.map(|frequency| frequency.estimate);
     Ok(Found::default().value("value", coarse.map(|coarse| whole / coarse)))
-}
-
-/// A free body at half the stable step: the change of momentum over momentum, and the largest change of energy in the second half over that in the first.
-pub(super) fn conservation(case: &Case<'_>) -> Result<Found, RunError> {
-    const STEPS: u64 = 2000;
-    let mut assembly = Problem::of(case)?.assembly(Method::of(case, "method")?, &[])?;
-    assembly.steps = STEPS;
-    assembly.dt *= 0.5;
-    let momentum = assembly.system.momentum(&assembly.state.v);
-    let mut run = assembly.simulation()?;
-    let at_start = run.start_energy().energy;
-    let mut worst = [0.0f64; 2];
-    run.run(|run| {
-        if run.state().step.is_multiple_of(10) {
-            let energies = run.snapshot().energies();
-            let change = (energies.kinetic + energies.elastic) / at_start - 1.0;
-            let half = usize::from(2 * run.state().step > STEPS);
-            worst[half] = worst[half].max(change.abs());
-        }
-        Control::Continue
-    })
-    .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
-    let after = run.system().momentum(&run.state().v);
-    let size = |p: &mut dyn Iterator<Item = f64>| p.map(|p| p.powi(2)).sum::<f64>().sqrt();
-    let apart = size(&mut (0..3).map(|c| after[c] - momentum[c]));
-    Ok([
-        ("momentum", apart / size(&mut momentum.iter().copied())),
-        ("energy", worst[1] / worst[0]),
-    ]
-    .into())
 }

@@ -10,7 +10,8 @@ use pericles::time::State;
 use pericles_run::RunError;
 use pericles_waves::exact::{BarMode, ExactSolution, StretchedBar};
 
-use super::line::{Method, UNIT, cells_of, integrator, largest, march, system};
+use super::line::{Method, UNIT, cells_of, integrator, march, system};
+use crate::common::difference;
 use crate::data::{Case, Found};
 
 const BAR: StretchedBar = StretchedBar {
@@ -51,7 +52,7 @@ pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let mut worst = 0.0;
     let visit = |_: &_, state: &State| {
         exact.displacement_into(state.t, &x[free.clone()], &mut expected);
-        worst = largest(&state.u[free.clone()], &expected, worst);
+        worst = difference(&state.u[free.clone()], &expected).max(worst);
     };
     march(&mut system, &mut *scheme, &mut state, dt, steps, visit)?;
     Ok(worst.into())

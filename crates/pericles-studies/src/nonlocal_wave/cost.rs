@@ -11,7 +11,8 @@ use pericles_run::RunError;
 use pericles_waves::linear::SpectralForce;
 use pericles_waves::{FunctionMethod, Trigonometric, TrigonometricOptions};
 
-use super::line::{UNIT, cells_of, largest, march, pulse, system};
+use super::line::{UNIT, cells_of, march, pulse, system};
+use crate::common::difference;
 use crate::data::{Case, Found};
 
 const T: f64 = 30.0;
@@ -38,7 +39,7 @@ pub(super) fn cost(case: &Case<'_>) -> Result<Found, RunError> {
     let (series, fast) = step(&mut body, FunctionMethod::Chebyshev)?;
     let (vectors, slow) = step(&mut body, FunctionMethod::Eigenvectors)?;
     Ok([
-        ("difference", largest(&series.u, &vectors.u, 0.0)),
+        ("difference", difference(&series.u, &vectors.u)),
         ("series", fast),
         ("eigenvectors", slow),
         ("ratio", slow / fast),
@@ -65,7 +66,7 @@ pub(super) fn million_points(_: &Case<'_>) -> Result<Found, RunError> {
     let (state, seconds) = step(&mut body, FunctionMethod::Fourier)?;
     let mirrored = state.u.iter().rev().copied().collect::<Vec<_>>();
     Ok([
-        ("asymmetry", largest(&state.u, &mirrored, 0.0)),
+        ("asymmetry", difference(&state.u, &mirrored)),
         ("product", product),
         ("seconds", seconds),
         ("ratio", seconds / product),

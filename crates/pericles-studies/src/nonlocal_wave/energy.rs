@@ -8,6 +8,7 @@ use pericles_manifold::EnergyInequality;
 use pericles_run::RunError;
 
 use super::line::{Method, UNIT, integrator, march, nodes, pulse, system};
+use crate::common::difference;
 use crate::data::{Case, Found};
 
 /// Figure 1: the asymmetry of the pulse by MSV on the piece of line, until waves have met its ends.
@@ -24,8 +25,8 @@ pub(super) fn pulse_on_line(_: &Case<'_>) -> Result<Found, RunError> {
         if state.step.is_multiple_of(60) {
             shown.push((format!("t = {}", state.step / 10), state.u.clone()));
         }
-        let pairs = state.u.iter().zip(state.u.iter().rev());
-        asymmetry = pairs.fold(asymmetry, |m, (a, b)| m.max((a - b).abs()));
+        let mirrored: Vec<f64> = state.u.iter().rev().copied().collect();
+        asymmetry = difference(&state.u, &mirrored).max(asymmetry);
     })?;
     let draw =
         |found: Found, (label, u): (String, Vec<f64>)| found.labelled("line", Some(label), x, &u);

@@ -8,7 +8,7 @@ use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
 use pericles::operator::BondBody;
-use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
+use pericles::space::{PointCloud, gauss_bar};
 use pericles::time::{Implicit, ImplicitRule, Integrator, State, VelocityVerlet};
 use pericles::{Interrupt, PointScalar, System};
 use pericles_run::RunError;
@@ -16,6 +16,7 @@ use pericles_waves::ForceForm;
 use pericles_waves::exact::{ExactSolution, LineSolution, TravellingPulse};
 use pericles_waves::{Trigonometric, TrigonometricOptions};
 
+use crate::common::{cells, difference};
 use crate::data::{Case, Found};
 
 /// The medium: ρ = 1, C(ξ) = 4E/(l³√π) exp(−(ξ/l)²).
@@ -107,26 +108,17 @@ const HALF: f64 = 10.0;
 
 /// The nodes of a method at spacing h: −10, −10 + h … 10, or two in each cell of [−10, 10].
 pub(super) fn nodes(method: Method, h: f64) -> Result<Arc<PointCloud>, RunError> {
-    let cells = (2.0 * HALF / h).round();
+    let count = (2.0 * HALF / h).round();
     let cloud = match method {
-        Method::Gt(_) => gauss_bar(-HALF, cells * h, h, 1.0)?,
-        _ => cells_of(-HALF - 0.5 * h, (cells + 1.0) * h, h)?,
+        Method::Gt(_) => gauss_bar(-HALF, count * h, h, 1.0)?,
+        _ => cells_of(-HALF - 0.5 * h, (count + 1.0) * h, h)?,
     };
     Ok(Arc::new(cloud))
 }
 
 /// The middles of cells of a bar.
 pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, RunError> {
-    let grid = Grid {
-        shape: Shape::Box {
-            origin: [origin, 0.0, 0.0],
-            size: vec![length],
-        },
-        spacing: h,
-        section: 1.0,
-        holes: Vec::new(),
-    };
-    Ok(grid.points()?)
+    cells([origin, 0.0, 0.0], vec![length], h)
 }
 
 /// A body with free ends.
@@ -218,7 +210,7 @@ impl Reference {
     /// The largest difference of two solutions.
     fn distance(&self, other: &Self) -> f64 {
         let pairs = self.fields.iter().zip(&other.fields);
-        pairs.fold(0.0, |worst, (a, b)| largest(a, b, worst))
+        pairs.map(|(a, b)| difference(a, b)).fold(0.0, f64::max)
     }
 
     /// The largest error of a method.
@@ -230,7 +222,7 @@ impl Reference {
         let mut exact = self.fields.iter();
         let visit = |_: &System, state: &State| {
             if let Some(exact) = exact.next() {
-                worst = largest(&state.u, exact, worst);
+                worst = difference(&state.u, exact).max(worst);
             }
         };
         let steps = self.fields.len();
@@ -244,12 +236,6 @@ impl Reference {
         )?;
         Ok(worst)
     }
-}
-
-/// The largest difference, if it exceeds `worst`.
-pub(super) fn largest(a: &[f64], b: &[f64], worst: f64) -> f64 {
-    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-    differences.fold(worst, f64::max)
 }
 
 /// The largest error of a method at spacing h over all nodes and steps; the step is h unless `dt` is given, the solution that of the medium unless `string` is set.

@@ -12,7 +12,8 @@ use pericles_run::RunError;
 use pericles_waves::ForceForm;
 use pericles_waves::{Trigonometric, TrigonometricOptions};
 
-use super::line::{Method, UNIT, cells_of, largest, march, nodes, pulse, system_as};
+use super::line::{Method, UNIT, cells_of, march, nodes, pulse, system_as};
+use crate::common::difference;
 use crate::data::{Case, Found};
 
 const END: f64 = 3.0;
@@ -76,7 +77,7 @@ pub(super) fn treatment(case: &Case<'_>) -> Result<Found, RunError> {
         case.once(key, || moved(body(law)?, &mut VelocityVerlet, height, 60))
     };
     let miss = |law, height| -> Result<f64, RunError> {
-        Ok(largest(&run(law, height)?, &run(exact, height)?, 0.0))
+        Ok(difference(&run(law, height)?, &run(exact, height)?))
     };
     let misses = [miss(treated, HEIGHT)?, miss(treated, 0.5 * HEIGHT)?];
     let cloud = nodes(Method::Msv, H)?;
@@ -116,10 +117,9 @@ pub(super) fn scheme(case: &Case<'_>) -> Result<Found, RunError> {
     let miss = |steps| -> Result<f64, RunError> {
         let body = body(law)?;
         let mut scheme = make(&body)?;
-        Ok(largest(
+        Ok(difference(
             &moved(body, &mut *scheme, HEIGHT, steps)?,
             &fine,
-            0.0,
         ))
     };
     let misses = [miss(60)?, miss(120)?];
@@ -138,7 +138,7 @@ pub(super) fn series(_: &Case<'_>) -> Result<Found, RunError> {
     let sums = system_as(&cloud, &material, ForceForm::List)?;
     let waves = system_as(&ring, &material, ForceForm::Spectral)?;
     let run = |body| moved(body, &mut VelocityVerlet, HEIGHT, 60);
-    Ok((largest(&run(sums)?, &run(waves)?, 0.0) / HEIGHT).into())
+    Ok((difference(&run(sums)?, &run(waves)?) / HEIGHT).into())
 }
 
 /// How far the force is from its linearisation at the start.

@@ -13,6 +13,7 @@ use pericles_waves::linear::SpectralForce;
 use pericles_waves::{Trigonometric, TrigonometricOptions};
 
 use super::line::{LINE, UNIT, cells_of, march, pulse};
+use crate::common::largest;
 use crate::data::{Case, Found};
 
 const T: f64 = 3.5;
@@ -55,11 +56,10 @@ pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let computed: Vec<f64> = points.iter().map(|&i| state.u[i]).collect();
     let pairs = computed.iter().zip(&exact);
     let difference: Vec<f64> = pairs.map(|(computed, exact)| computed - exact).collect();
-    let top = |values: &[f64]| values.iter().fold(0.0f64, |m, u| m.max(u.abs()));
     let squares = |values: &[f64]| values.iter().map(|u| u * u).sum::<f64>();
     let shown: Vec<f64> = difference.iter().map(|e| e.abs().max(1e-17)).collect();
     Ok(Found::from([
-        ("largest", top(&difference) / top(&computed)),
+        ("largest", largest(&difference) / largest(&computed)),
         ("squares", squares(&difference) / squares(&exact)),
     ])
     .curve("error", &x, &shown))

@@ -9,9 +9,10 @@ mod surface;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{BondFailure, GivenConstants, LinearSolid, StateInfluence, StressState};
-use pericles::space::{Grid, PointCloud, Shape};
+use pericles::space::PointCloud;
 use pericles_run::RunError;
 
+use crate::common;
 use crate::data::Case;
 use crate::study::{Topic, data};
 
@@ -60,17 +61,9 @@ fn horizon(spacings: usize) -> f64 {
 }
 
 /// A box of cells of 1 m.
-fn cells(counts: &[usize]) -> pericles::Result<PointCloud> {
-    let grid = Grid {
-        shape: Shape::Box {
-            origin: [0.0; 3],
-            size: counts.iter().map(|&count| count as f64).collect(),
-        },
-        spacing: 1.0,
-        section: 1.0,
-        holes: vec![],
-    };
-    grid.points()
+fn cells(counts: &[usize]) -> Result<PointCloud, RunError> {
+    let size = counts.iter().map(|&count| count as f64).collect();
+    common::cells([0.0; 3], size, 1.0)
 }
 
 /// The argument `state`.
