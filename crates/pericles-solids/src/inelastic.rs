@@ -1,1 +1,0 @@
-//! Viscoelastic and elastoplastic state-based solids.
