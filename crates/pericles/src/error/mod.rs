@@ -1,6 +1,9 @@
 //! The one error type of the library.
 
+mod check;
 mod text;
+
+pub use check::positive;
 
 use crate::step_kind::{StepKind, schemes_of};
 use crate::units::{precise, quantity};
@@ -491,12 +494,3 @@ impl PericlesError {
 
 /// Result with [`PericlesError`].
 pub type Result<T> = std::result::Result<T, PericlesError>;
-
-/// Checks that a quantity is positive and finite.
-pub fn positive(quantity: &'static str, value: f64) -> Result<f64> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(PericlesError::NotPositive { quantity, value })
-    }
-}
