@@ -167,18 +167,13 @@ pub enum PericlesError {
         /// The field.
         field: &'static str,
     },
-    /// The dilatation of a body that has none.
-    #[error(
-        "Dilatation is a field of state-based materials (model = \"state-based\"), which this body does not have: leave the field out"
-    )]
-    NoDilatation,
-    /// The plastic strain of a body whose materials do not yield.
-    #[error(
-        "{field} is a field of materials that yield, which this body does not have: give a material a `yield_stress` or leave the field out"
-    )]
-    NoPlasticStrain {
+    /// A field of materials that the body does not have.
+    #[error("{field} is a field of {of}, which this body does not have: leave the field out")]
+    NoMaterialOfField {
         /// The field.
         field: &'static str,
+        /// Which materials have it.
+        of: &'static str,
     },
     /// An influence function that cannot be used here.
     #[error("influence function: {reason}")]

@@ -255,15 +255,18 @@ impl<'a> Snapshot<'a> {
     /// A field that cannot.
     pub fn check(&self, field: Field) -> Result<()> {
         let capabilities = self.system.operator().capabilities();
-        if field == Field::Dilatation && capabilities.dilatation.is_none() {
-            return Err(PericlesError::NoDilatation);
-        }
-        if let Field::PlasticStrain | Field::YieldFlag = field
-            && capabilities.plastic.is_none()
-        {
-            return Err(PericlesError::NoPlasticStrain {
-                field: field.name(),
-            });
+        let of = match field {
+            Field::Dilatation if capabilities.dilatation.is_none() => {
+                Some("state-based materials (model = \"state-based\")")
+            }
+            Field::PlasticStrain | Field::YieldFlag if capabilities.plastic.is_none() => {
+                Some("materials with a `yield_stress`")
+            }
+            _ => None,
+        };
+        if let Some(of) = of {
+            let field = field.name();
+            return Err(PericlesError::NoMaterialOfField { field, of });
         }
         if field.is_of_bonds() && capabilities.bonds.is_none() {
             return Err(PericlesError::NoSuchField {

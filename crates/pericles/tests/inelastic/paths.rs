@@ -205,7 +205,7 @@ fn proportional_paths_follow_their_closed_form() {
             };
             let law = Inelasticity::Plastic(yields);
             let (cloud, constants, mut operator, middle) =
-                lattice::<3>(InfluenceFunction::Conical, 3.0, &law);
+                lattice::<3>(InfluenceFunction::Conical, 2.0, &law);
             let list = operator.force().solid().bonds();
             let family = bonds(list, &cloud, &constants.influence, middle);
             let unit = deviators(list, &family, middle, gradient);
