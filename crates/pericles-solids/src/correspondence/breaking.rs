@@ -166,7 +166,8 @@ impl<const D: usize> CorrespondenceForce<D> {
             let [more, stronger] = self.energy_and_power(i, &before.shape, rows, &velocities);
             self.intact[groups].copy_from_slice(&after);
             let volume = volumes.volumes()[i];
-            let lost = step.dissipated_energy(volume * (more - energy), volume * (stronger - power));
+            let lost =
+                step.dissipated_energy(volume * (more - energy), volume * (stronger - power));
             self.dissipated.add(lost);
             let count = |bits: &[u8]| -> u64 {
                 let ones = bits.iter().map(|byte| u64::from(byte.count_ones()));
@@ -246,6 +247,10 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
 
     fn broken_bonds(&self) -> u64 {
         self.cloud.domain().count(self.broken) / 2
+    }
+
+    fn dropped_points(&self) -> u64 {
+        CorrespondenceForce::dropped_points(self)
     }
 
     /// By breaking and by plastic flow.

@@ -1,7 +1,5 @@
 //! Control of zero-energy modes.
 
-use std::f64::consts::PI;
-
 use super::solid::Solid;
 use super::tensor::{Matrix, apply, combination, product, trace};
 
@@ -13,9 +11,9 @@ pub enum Stabilisation {
     /// Z = tr(C : K⁻¹)/D I with the elasticity tensor C: equal to [`Stabilisation::Wan`] within a lattice, and objective everywhere.
     #[default]
     Isotropic,
-    /// Z = C : K⁻¹ (Wan, Chen, Chu & Liu, Struct. Integr. Durab. 2019): not isotropic near surfaces and at irregular points, where it violates the balance of angular momentum at large rotations.
+    /// Z = C : K⁻¹ (Wan, Chen, Chu & Liu, Acta Mech. Sin. 35, 2019): not isotropic near surfaces and at irregular points, where it violates the balance of angular momentum at large rotations.
     Wan,
-    /// Z = (c/δ) (Σ b V/Σ w b V) I with the constant c of bond-based bonds of the same modulus of dilatation (Silling, Comput. Methods Appl. Mech. Eng. 322, 2017, with unit factor): stiffens waves of a few horizons.
+    /// Z = (c/δ) (V_δ/Σ w b V) I with the volume V_δ within the horizon δ of an interior point and the constant c of bond-based bonds of the same modulus of dilatation (Silling, Comput. Methods Appl. Mech. Eng. 322, 2017, with unit factor): stiffens waves of a few horizons.
     Silling,
     /// Z = 0.
     None,
@@ -31,7 +29,7 @@ pub enum Control<const D: usize> {
 }
 
 impl Stabilisation {
-    /// Z for the inverse shape tensor of a point; `spring` is c/δ Σ b V/Σ w b V.
+    /// Z for the inverse shape tensor of a point; `spring` is c/δ V_δ/Σ w b V.
     pub(super) fn control<const D: usize>(
         self,
         solid: &Solid,
@@ -39,9 +37,7 @@ impl Stabilisation {
         spring: f64,
     ) -> Control<D> {
         match self {
-            Self::Isotropic => {
-                Control::Scalar(trace(&solid.linear_stress(inverse)) / D as f64)
-            }
+            Self::Isotropic => Control::Scalar(trace(&solid.linear_stress(inverse)) / D as f64),
             Self::Wan => Control::Tensor(solid.linear_stress(inverse)),
             Self::Silling => Control::Scalar(spring),
             Self::None => Control::Scalar(0.0),
@@ -54,14 +50,15 @@ impl Stabilisation {
     }
 }
 
-/// The constant c of bonds f = c s of a constant influence function with the modulus of dilatation κ (Pa), N/m⁶: 2 κ/(A δ²) in a bar, 12 κ/(π h δ³) in the plane, 18 κ/(π δ⁴) in space; `section` is A, h or 1.
-pub(super) fn micromodulus(dimension: usize, kappa: f64, horizon: f64, section: f64) -> f64 {
-    let constant = match dimension {
-        1 => 2.0 / horizon.powi(2),
-        2 => 12.0 / (PI * horizon.powi(3)),
-        _ => 18.0 / (PI * horizon.powi(4)),
+/// c V_δ/δ of bonds f = c s of a constant influence function with the modulus of dilatation κ (Pa), N/m⁴. The constant c is 2 κ/(A δ²) in a bar, 12 κ/(π h δ³) in the plane and 18 κ/(π δ⁴) in space; the volume V_δ within
+/// the horizon is 2 A δ, π h δ² and 4 π δ³/3, so that the section A or thickness h drops out.
+pub(super) fn spring_of_horizon(dimension: usize, kappa: f64, horizon: f64) -> f64 {
+    let factor = match dimension {
+        1 => 4.0,
+        2 => 12.0,
+        _ => 24.0,
     };
-    constant * kappa / section
+    factor * kappa / horizon.powi(2)
 }
 
 impl<const D: usize> Control<D> {

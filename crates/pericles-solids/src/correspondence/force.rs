@@ -40,7 +40,7 @@ pub struct CorrespondenceForce<const D: usize> {
     /// Bits of the bonds that may break; all of them if none.
     pub(super) breakable: Option<Vec<u8>>,
     pub(super) damage: DamageMeasure,
-    /// c/δ Σ b V/Σ w b V of each point, N/m⁷.
+    /// c/δ V_δ/Σ w b V of each point, N/m⁷.
     spring: Vec<f64>,
     /// Bonds that are left, one byte a group.
     pub(super) intact: Vec<u8>,
@@ -151,25 +151,23 @@ impl<const D: usize> CorrespondenceForce<D> {
         for i in 0..n {
             let shape = force.shape(i);
             if shape.bonds > 0 && !shape.is_regular() {
-                return Err(SingularShape::new(&force.cloud, i, shape.bonds, shape.condition()).into());
+                return Err(
+                    SingularShape::new(&force.cloud, i, shape.bonds, shape.condition()).into(),
+                );
             }
         }
         force.rebuild_shapes();
         Ok(force)
     }
 
-    /// c/δ Σ b V/Σ w b V over the bonds of a point that exist at the start.
+    /// c/δ V_δ/Σ w b V over the bonds of a point that exist at the start.
     fn spring_of(&self, i: usize) -> f64 {
-        let here = self.bonds.list.site(i);
-        let (mut volume, mut weight) = (0.0, 0.0);
+        let mut weight = 0.0;
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-            let factor = self.bonds.list.volume_factor(here, bond.site);
-            volume += factor * self.bonds.list.volume(bond.site);
             weight += bond.weight;
         });
-        let constants = self.classes.constants(i);
         match weight > 0.0 {
-            true => constants.spring(self.cloud.section()) * volume / weight,
+            true => self.classes.constants(i).spring() / weight,
             false => 0.0,
         }
     }
@@ -355,12 +353,14 @@ impl<const D: usize> CorrespondenceForce<D> {
             }
         });
         let points = &points;
-        out.par_chunks_mut(n).enumerate().for_each(|(slot, values)| {
-            on.for_each(n, |i| {
-                let PointValues { state, dilatation } = &points[i];
-                values[i] = Values::slot(state, *dilatation, slot);
+        out.par_chunks_mut(n)
+            .enumerate()
+            .for_each(|(slot, values)| {
+                on.for_each(n, |i| {
+                    let PointValues { state, dilatation } = &points[i];
+                    values[i] = Values::slot(state, *dilatation, slot);
+                });
             });
-        });
     }
 
     /// Sets the values of the points named by `on`.

@@ -52,20 +52,34 @@ pub(super) fn stress(law: ElasticLaw, moduli: &Moduli, f: &Matrix<3>) -> (f64, M
         let second = second_stress(moduli, &strain);
         return (0.5 * contraction(&second, &strain), product(f, &second));
     }
-    let invariant = contraction(f, f);
+    // Differences that vanish with the strain are taken of H = F − I, so that energies of small strains keep their digits.
+    let h = combination(1.0, f, -1.0, &unit());
+    let growth = volume_change(&h);
+    let log = growth.ln_1p();
+    // ½ (tr FᵀF − 3)
+    let stretch = trace(&h) + 0.5 * contraction(&h, &h);
     let inverse = transpose(&inverse(f, j));
     if law == ElasticLaw::NeoHookeSplit {
-        let scale = j.powf(-2.0 / 3.0);
-        let square = j * j;
-        // J² + J⁻² − 2 = (J − 1/J)².
-        let energy = 0.5 * shear * (scale * invariant - 3.0) + 0.125 * bulk * (j - 1.0 / j).powi(2);
-        let pressure = 0.25 * bulk * (square - 1.0 / square);
+        let less = (-2.0 / 3.0 * log).exp_m1();
+        let scale = 1.0 + less;
+        let invariant = 2.0 * stretch + 3.0;
+        // J − 1/J, of which J² + J⁻² − 2 is the square.
+        let swelling = growth * (2.0 + growth) / j;
+        let energy =
+            0.5 * shear * (less * invariant + 2.0 * stretch) + 0.125 * bulk * swelling * swelling;
+        let pressure = 0.25 * bulk * swelling * (j + 1.0 / j);
         let along = pressure - shear * scale * invariant / 3.0;
         return (energy, combination(shear * scale, f, along, &inverse));
     }
-    let log = j.ln();
-    let energy = 0.5 * shear * (invariant - 3.0) - shear * log + 0.5 * lame * log * log;
+    let energy = shear * (stretch - log) + 0.5 * lame * log * log;
     (energy, combination(shear, f, lame * log - shear, &inverse))
+}
+
+/// J − 1 for F = I + H: the sum of the invariants of H.
+fn volume_change(h: &Matrix<3>) -> f64 {
+    let trace = trace(h);
+    let second = 0.5 * (trace * trace - contraction(h, &transpose(h)));
+    trace + second + determinant(h)
 }
 
 /// The change of P in a direction dF.

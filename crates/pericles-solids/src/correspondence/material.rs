@@ -8,7 +8,7 @@ use pericles::material::{
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result, positive};
 
-use super::control::{Stabilisation, micromodulus};
+use super::control::{Stabilisation, spring_of_horizon};
 use super::law::{ElasticLaw, Moduli};
 use super::plasticity::Plasticity;
 use super::solid::Solid;
@@ -116,7 +116,11 @@ impl CorrespondenceMaterial {
     }
 
     /// The critical stretch: s₀² is the fracture energy over the energy of a unit area of crack at unit stretch, counted in the closing deformation, where only the bonds that cross the crack are stretched.
-    fn set_limits(&self, constants: &mut CorrespondenceConstants, cloud: &PointCloud) -> Result<()> {
+    fn set_limits(
+        &self,
+        constants: &mut CorrespondenceConstants,
+        cloud: &PointCloud,
+    ) -> Result<()> {
         let sides = cloud.cell_sides();
         let planes = |fine: bool| constants.crack_planes(&self.solid, cloud, fine);
         let (stretch, energy, calibration) = match self.solid.failure {
@@ -130,7 +134,11 @@ impl CorrespondenceMaterial {
             BondFailure::Stretch {
                 definition: StretchDefinition::Bond | StretchDefinition::Isotropic,
                 ..
-            } => return Err(no_such_failure("a stretch definition other than \"closing\"")),
+            } => {
+                return Err(no_such_failure(
+                    "a stretch definition other than \"closing\"",
+                ));
+            }
             BondFailure::Stretch {
                 fracture_energy,
                 calibration,
@@ -185,24 +193,18 @@ impl CorrespondenceConstants {
                 VolumeCorrection::None,
             ),
         };
-        let cell = cloud.section() * sides.iter().product::<f64>();
         let weight = |xi: [f64; 3]| self.solid.influence.alpha_of(xi, horizon);
         let energy = |layer: &LayerMoments| match dimension {
-            1 => self.closing_energy::<1>(layer, cell, cloud.section()),
-            2 => self.closing_energy::<2>(layer, cell, cloud.section()),
-            _ => self.closing_energy::<3>(layer, cell, cloud.section()),
+            1 => self.closing_energy::<1>(layer),
+            2 => self.closing_energy::<2>(layer),
+            _ => self.closing_energy::<3>(layer),
         };
         CrackPlane::by_layers(&sides, (horizon, correction), &weight, &energy)
     }
 
     /// The energy density (J/m³) of a point whose bonds across a crack are stretched by one, η = ξ, and whose other bonds are not: with the moment M of the former and the shape tensor K, the displacement gradient is
     /// H = M K⁻¹, and Σ w z ⊗ z = M − M K⁻¹ M.
-    fn closing_energy<const D: usize>(
-        &self,
-        layer: &LayerMoments,
-        cell: f64,
-        section: f64,
-    ) -> f64 {
+    fn closing_energy<const D: usize>(&self, layer: &LayerMoments) -> f64 {
         let whole: Matrix<D> = in_body(&layer.whole);
         let crossing: Matrix<D> = in_body(&layer.crossing);
         let inverse = super::shape::inverse_of(&whole);
@@ -210,8 +212,8 @@ impl CorrespondenceConstants {
         let strain = symmetric(&gradient);
         let stress = self.point.linear_stress(&strain);
         let left = combination(1.0, &crossing, -1.0, &product(&gradient, &crossing));
-        let spring = self.spring(section) * cell * layer.volume / layer.weight;
-        // The penalty by the shape tensor does not depend on the volume of a cell; the spring does.
+        let spring = self.spring() / layer.weight;
+        // Moments are in units of the volume of a cell, of which neither penalty depends.
         let control = self.stabilisation.control(&self.point, &inverse, spring);
         0.5 * contraction(&stress, &strain) + 0.5 * control.contraction(&symmetric(&left))
     }
@@ -226,10 +228,13 @@ impl CorrespondenceConstants {
         }
     }
 
-    /// c/δ, N/m⁷.
-    pub(super) fn spring(&self, section: f64) -> f64 {
-        let (dimension, horizon) = (self.point.state.dimension(), self.solid.horizon);
-        let kappa = self.point.dilatation_modulus();
-        micromodulus(dimension, kappa, horizon, section) / horizon
+    /// c V_δ/δ, N/m⁴.
+    pub(super) fn spring(&self) -> f64 {
+        let dimension = self.point.state.dimension();
+        spring_of_horizon(
+            dimension,
+            self.point.dilatation_modulus(),
+            self.solid.horizon,
+        )
     }
 }

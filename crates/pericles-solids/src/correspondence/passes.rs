@@ -1,10 +1,10 @@
 //! The two passes of correspondence materials.
 
+use pericles::StepEnd;
 use pericles::domain::Field;
 use pericles::lanes::Row;
 use pericles::operator::{AtPoints, BondView, Breakable, Inversion, On, TwoPass};
 use pericles::parallel::for_each_chunk;
-use pericles::StepEnd;
 
 use super::bonds::{SiteState, Values};
 use super::control::Control;

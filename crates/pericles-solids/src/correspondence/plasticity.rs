@@ -135,9 +135,7 @@ pub(super) fn returned(
         axes,
         tau: deviator.map(|s| s + 3.0 * moduli.bulk * mean),
         elastic: strain,
-        moduli: matrix(|a, b| {
-            moduli.bulk - shear / 3.0 + if a == b { shear } else { 0.0 }
-        }),
+        moduli: matrix(|a, b| moduli.bulk - shear / 3.0 + if a == b { shear } else { 0.0 }),
         secant: shear,
         increment: 0.0,
     };
@@ -210,7 +208,11 @@ impl Returned {
     /// (τ_a − τ_b)/(b_a − b_b): τ_a − τ_b is the secant times ε_a − ε_b = ½ ln(b_a/b_b).
     fn quotient(&self, a: usize, b: usize) -> f64 {
         let excess = self.squares[a] / self.squares[b] - 1.0;
-        let slope = if excess == 0.0 { 1.0 } else { excess.ln_1p() / excess };
+        let slope = if excess == 0.0 {
+            1.0
+        } else {
+            excess.ln_1p() / excess
+        };
         0.5 * self.secant * slope / self.squares[b]
     }
 

@@ -97,8 +97,6 @@ pub struct LayerMoments {
     pub whole: [[f64; 3]; 3],
     /// The same over the bonds that cross the crack.
     pub crossing: [[f64; 3]; 3],
-    /// Σ κ over all bonds.
-    pub volume: f64,
     /// Σ κ w over all bonds.
     pub weight: f64,
 }
@@ -121,7 +119,6 @@ impl CrackPlane {
         for_each_offset(cells, horizon, correction, |offset, xi, r| {
             let volume = correction.factor(r, horizon, cells.size());
             let weight = volume * weight(xi);
-            whole.volume += volume;
             whole.weight += weight;
             add_square(&mut whole.whole, weight, xi);
             for (plane, sums) in planes.iter().zip(&mut crossing) {
@@ -136,7 +133,12 @@ impl CrackPlane {
             let mut layer = whole;
             // From the layer that is farthest from the crack, on both of its sides.
             let layers = sums[1..].iter().rev().map(|sum| {
-                for (row, more) in layer.crossing.iter_mut().flatten().zip(sum.iter().flatten()) {
+                for (row, more) in layer
+                    .crossing
+                    .iter_mut()
+                    .flatten()
+                    .zip(sum.iter().flatten())
+                {
                     *row += more;
                 }
                 2.0 * energy_density(&layer)

@@ -10,7 +10,12 @@ pub trait Breakable {
     /// Bonds broken so far, each counted once.
     fn broken_bonds(&self) -> u64;
 
-    /// Energy dissipated by breaking so far, J.
+    /// Points that lost all of their bonds because those that were left determined no deformation; none of forces whose bonds break for their own reasons alone.
+    fn dropped_points(&self) -> u64 {
+        0
+    }
+
+    /// Energy dissipated by breaking so far, and by plastic flow where the material yields, J.
     fn dissipated(&self) -> f64;
 
     /// Books energy that breaking dissipated beside what was booked when it was decided, J.

@@ -212,6 +212,11 @@ impl Breakable for Forces {
             .sum()
     }
 
+    fn dropped_points(&self) -> u64 {
+        let dropped = self.breaking().map(|breaking| breaking.dropped_points());
+        dropped.sum()
+    }
+
     fn dissipated(&self) -> f64 {
         self.breaking().map(|breaking| breaking.dissipated()).sum()
     }

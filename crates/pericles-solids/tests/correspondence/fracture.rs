@@ -1,0 +1,258 @@
+//! Bonds that break: calibration, energy balance, points that lose all bonds, resumed runs, threads.
+
+use std::sync::Arc;
+
+use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::material::{
+    BondFailure, CrackPlane, FractureCalibration, StressState, StretchDefinition,
+};
+use pericles::operator::{BondForm, Force, On};
+use pericles::round_trip::check_resume;
+use pericles::space::PointCloud;
+use pericles::time::{State, VelocityVerlet, highest_frequency};
+use pericles::{Control, PointScalar, Simulation, StepEnd, System};
+use pericles_solids::correspondence::{
+    CorrespondenceBody, CorrespondenceMaterial, ElasticLaw, Stabilisation,
+};
+
+use crate::bodies::{lattice, material};
+
+const G0: f64 = 2e-3;
+
+fn breaking(calibration: FractureCalibration) -> CorrespondenceMaterial {
+    let mut material = material(
+        0.3,
+        3.0 * (1.0 + 1e-6),
+        ElasticLaw::NeoHooke,
+        Stabilisation::Isotropic,
+    );
+    material.solid.failure = BondFailure::Stretch {
+        fracture_energy: G0,
+        definition: StretchDefinition::Closing,
+        calibration,
+    };
+    material
+}
+
+/// With lattice calibration the mean over planes is the fracture energy; the integrals of the continuum are within some percent of it.
+#[test]
+fn critical_stretches_follow_from_the_fracture_energy() {
+    for (sides, state) in [
+        (&[8.0, 8.0][..], StressState::PlaneStrain),
+        (&[8.0, 8.0], StressState::PlaneStress),
+        (&[7.0, 7.0, 7.0], StressState::Spatial),
+    ] {
+        let cloud = lattice(sides);
+        let constants = |calibration| breaking(calibration).constants(&cloud, state).unwrap();
+        let own = constants(FractureCalibration::Lattice).solid;
+        let mean = CrackPlane::mean(&own.crack_planes);
+        assert!((mean / G0 - 1.0).abs() < 1e-12, "{mean}");
+        let continuum = constants(FractureCalibration::Continuum).solid;
+        let ratio = own.limits.stretch / continuum.limits.stretch;
+        assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
+    }
+}
+
+/// A half of a body is moved away from the other so that every bond across is stretched by the critical stretch: what breaks takes the calibrated energy of the plane.
+#[test]
+fn closing_cracks_take_the_calibrated_energy() {
+    let cloud = lattice(&[9.0, 16.0]);
+    let constants = breaking(FractureCalibration::Lattice)
+        .constants(&cloud, StressState::PlaneStrain)
+        .unwrap();
+    let plane = constants.solid.crack_planes[0].clone();
+    assert_eq!(plane.to_string(), "(10)");
+    // The energy of points in the middle of the width, whose bonds lead to no side of the body; bonds stretch by the same share, which no displacement gives. Instead the energy is that of the stretched bonds in
+    // the deformation y → y (1 + s) on one side for points on the other, one layer at a time.
+    let (n, s) = (cloud.len(), 1e-6 * constants.solid.limits.stretch);
+    let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
+    let operator = body.operator(BondForm::List).unwrap().operator;
+    let mut energy = 0.0;
+    for layer in 0..3 {
+        // The point, and what lies beyond the plane at y = 8 moved as its own bonds want.
+        let (x, y) = (4.5, 7.5 - f64::from(layer));
+        let i = (0..n).find(|&i| cloud.point(i)[..2] == [x, y]).unwrap();
+        let mut u = vec![0.0; 2 * n];
+        for j in (0..n).filter(|&j| cloud.point(j)[1] > 8.0) {
+            u[j] = s * (cloud.point(j)[0] - x);
+            u[n + j] = s * (cloud.point(j)[1] - y);
+        }
+        let mut density = vec![0.0; n];
+        operator.add_energy_density(0.0, &u, &mut density);
+        energy += 2.0 * density[i];
+    }
+    let stretch = constants.solid.limits.stretch;
+    let per_area = energy * (stretch / s).powi(2);
+    assert!(
+        (per_area / plane.energy() - 1.0).abs() < 1e-5,
+        "{per_area} {}",
+        plane.energy()
+    );
+}
+
+/// A plate with a notch.
+fn plate() -> (Arc<PointCloud>, Box<dyn Force>) {
+    let cloud = lattice(&[18.0, 16.0]);
+    let material = breaking(FractureCalibration::Lattice);
+    let constants = material
+        .constants(&cloud, StressState::PlaneStrain)
+        .unwrap();
+    let notch = Crack::Segment {
+        from: [0.0, 8.0],
+        to: [5.0, 8.0],
+    };
+    let no_fail: Vec<u32> = (0..cloud.len() as u32)
+        .filter(|&i| cloud.point(i as usize)[0] > 16.0)
+        .collect();
+    let body = CorrespondenceBody {
+        cracks: &[(notch, EndRule::Closed)],
+        no_fail: &no_fail,
+        ..CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None)
+    };
+    let operator = body.operator(BondForm::List).unwrap().operator;
+    (cloud, operator)
+}
+
+/// The plate torn apart: upper and lower part move away from each other.
+fn torn(part: f64) -> Simulation {
+    let (cloud, operator) = plate();
+    let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
+    let n = cloud.len();
+    let mut start = State::at_rest(2 * n);
+    for i in 0..n {
+        let [x, y, _] = cloud.point(i);
+        start.v[i] = 0.002 * (0.3 * y).sin();
+        start.v[n + i] = 0.04 * ((y - 8.0) / 8.0) + 0.004 * (0.2 * x).cos();
+    }
+    let dt = highest_frequency(&system, &start.u)
+        .unwrap()
+        .stable_step(2.0, 0.5);
+    let steps = (12.0 / dt / part) as u64;
+    Simulation::new(system, Box::new(VelocityVerlet), start, part * dt, steps).unwrap()
+}
+
+/// The bounds were chosen after seeing the result.
+#[test]
+fn energy_and_momentum_are_accounted_for_while_bonds_break() {
+    let mut run = torn(1.0);
+    let started = run.system().momentum(&run.state().v);
+    run.run(|_| Control::Continue).unwrap();
+    let broken = run.system().operator().broken_bonds();
+    assert!(broken > 60, "{broken}");
+    let energies = run.snapshot().energies();
+    assert!(
+        energies.dissipated > 0.02 * energies.initial,
+        "{energies:?}"
+    );
+    let error = energies.balance() / energies.dissipated;
+    assert!(error.abs() < 1e-3, "{error:e}");
+    let ended = run.system().momentum(&run.state().v);
+    for c in 0..2 {
+        assert!((ended[c] - started[c]).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_resumed_run_goes_on_bit_for_bit() {
+    check_resume(|| torn(1.0), [5, 30]).unwrap();
+}
+
+#[test]
+fn results_do_not_depend_on_threads() {
+    let end = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut run = torn(1.0);
+            run.run(|_| Control::Continue).unwrap();
+            let energies = run.snapshot().energies();
+            let bits: Vec<u64> = run.state().u.iter().map(|u| u.to_bits()).collect();
+            (
+                bits,
+                energies.dissipated.to_bits(),
+                energies.elastic.to_bits(),
+            )
+        })
+    };
+    assert_eq!(end(1), end(3));
+}
+
+/// A point that is pulled off its body loses its last bonds together: those left when fewer than three remain break too, and the energy of body and dissipation stays.
+#[test]
+fn a_point_with_too_few_bonds_loses_all_of_them() {
+    let cloud = lattice(&[8.0, 8.0]);
+    let material = breaking(FractureCalibration::Lattice);
+    let constants = material
+        .constants(&cloud, StressState::PlaneStrain)
+        .unwrap();
+    let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
+    let (mut force, _) = body.list::<2>().unwrap();
+    assert_eq!(force.dropped_points(), 0);
+    let n = cloud.len();
+    let corner = (0..n).find(|&i| cloud.point(i)[..2] == [0.5, 0.5]).unwrap();
+    // Along −x: bonds along y stretch last.
+    let mut u = vec![0.0; 2 * n];
+    u[corner] = -0.3;
+    let mut values = vec![0.0; n * pericles::operator::TwoPass::values_per_point(&force)];
+    let step = StepEnd::sub_step(0.0, 1.0, &u);
+    let field = pericles::domain::Field::new(&u, &[]);
+    pericles::operator::TwoPass::end_values_into(
+        &mut force,
+        &step,
+        field,
+        &On::All,
+        &On::All,
+        &mut values,
+    );
+    let mut damage = vec![0.0; n];
+    pericles::operator::Breakable::damage_into(&force, &mut damage);
+    let broken = pericles::operator::Breakable::broken_bonds(&force);
+    assert!(broken > 0);
+    // Whatever is left, it spans the plane or is nothing.
+    let left = (0..n).all(|i| damage[i] == 0.0 || damage[i] <= 1.0);
+    assert!(left && values.iter().all(|value| value.is_finite()));
+    assert_eq!(damage[corner] == 1.0, force.dropped_points() > 0);
+}
+
+/// The end of a bar whose horizon is one spacing has a single bond.
+#[test]
+fn points_whose_bonds_do_not_span_the_space_are_refused() {
+    let cloud = lattice(&[6.0]);
+    let mut material = material(0.0, 1.0, ElasticLaw::NeoHooke, Stabilisation::Isotropic);
+    material.solid.elastic.poisson_ratio = None;
+    let constants = material.constants(&cloud, StressState::Uniaxial).unwrap();
+    let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
+    let error = body.operator(BondForm::List).err().unwrap().to_string();
+    assert!(
+        error.contains("shape tensor of point 0") && error.contains("1 bonds"),
+        "{error}"
+    );
+}
+
+/// A bar that is turned inside out stops the run, with the point.
+#[test]
+fn an_inverted_point_stops_the_run() {
+    let cloud = lattice(&[8.0, 8.0]);
+    let material = material(
+        0.3,
+        2.1,
+        ElasticLaw::StVenantKirchhoff,
+        Stabilisation::Isotropic,
+    );
+    let constants = material
+        .constants(&cloud, StressState::PlaneStrain)
+        .unwrap();
+    let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
+    let operator = body.operator(BondForm::List).unwrap().operator;
+    let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
+    let n = cloud.len();
+    let mut start = State::at_rest(2 * n);
+    for i in 0..n {
+        start.v[i] = -8.0 * (cloud.point(i)[0] - 4.0);
+    }
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, 0.02, 100).unwrap();
+    let error = run.run(|_| Control::Continue).unwrap_err().to_string();
+    assert!(error.contains("determinant"), "{error}");
+}
