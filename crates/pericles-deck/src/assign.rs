@@ -26,7 +26,7 @@ pub struct Assignment {
 pub(crate) enum Assignable<'m> {
     /// Bond-based materials of these names, and stiffnesses.
     Bonds(&'m [String]),
-    /// State-based materials of these names.
+    /// State-based or correspondence materials of these names.
     StateBased(&'m [String]),
     /// Stiffnesses.
     Surface,
@@ -63,7 +63,7 @@ pub(crate) fn read(
         Assignable::StateBased(_) => {
             table.forbid(
                 "stiffness",
-                "it scales the constant of bonds, which state-based materials do not have; assign a material with elastic constants of its own",
+                "it scales the constant of bonds, which state-based and correspondence materials do not have; assign a material with elastic constants of its own",
             );
             Some(None)
         }

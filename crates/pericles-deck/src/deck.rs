@@ -263,7 +263,9 @@ fn several_of(
     let names = &materials.names[..];
     let own = materials.own.as_ref();
     let assignable = match own.map(|own| &own.model) {
-        Some(MaterialModel::StateBased(_)) => Assignable::StateBased(names),
+        Some(MaterialModel::StateBased(_) | MaterialModel::Correspondence(_)) => {
+            Assignable::StateBased(names)
+        }
         _ => Assignable::Bonds(names),
     };
     let assignments = match own {

@@ -34,7 +34,7 @@ pub struct MaterialInterface {
 pub enum InterfaceFailure {
     /// Of bond-based materials.
     Bonds(#[serde(with = "crate::form")] Fracture),
-    /// Of state-based materials.
+    /// Of state-based and correspondence materials.
     StateBased(#[serde(with = "crate::form")] BondFailure),
 }
 
@@ -104,14 +104,22 @@ fn interface(
             let fracture = rules.fracture(constants::fracture(&table));
             (stiffness, fracture.map(InterfaceFailure::Bonds))
         }
-        MaterialModel::StateBased(_) => {
+        model => {
             for key in INTERFACE_STIFFNESSES {
                 table.forbid(
                     key,
                     "each end of a bond has the constants of its own material: there is nothing to average",
                 );
             }
-            let failure = state_based_failure(&table, state, calibration);
+            let failure = match model {
+                MaterialModel::Correspondence(_) => {
+                    for key in ["failure", "stretch_definition"] {
+                        table.forbid(key, "it belongs to model = \"state-based\"");
+                    }
+                    SolidRules::closing(state, calibration).failure(&table)
+                }
+                _ => state_based_failure(&table, state, calibration),
+            };
             (Some(None), failure.map(InterfaceFailure::StateBased))
         }
     };

@@ -95,6 +95,19 @@ impl SolidRules {
         }
     }
 
+    /// The rules of materials whose bonds break by their stretch in the closing deformation, and whose tables do not say so.
+    pub(crate) fn closing(
+        state: Option<StressState>,
+        calibration: Option<FractureCalibration>,
+    ) -> Self {
+        Self {
+            state,
+            criterion: Some(Criterion::Stretch),
+            definition: Some(StretchDefinition::Closing),
+            calibration,
+        }
+    }
+
     /// The elastic constants in a table: two of four, of a bar Young's modulus.
     pub(crate) fn elastic(&self, table: &Table<'_>) -> Option<GivenConstants> {
         table.together(MODULI);

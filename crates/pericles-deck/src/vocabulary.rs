@@ -49,6 +49,8 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "modulus",
     "fracture_energy",
     "critical_stretch",
+    "yield_stress",
+    "hardening",
 ];
 /// How limits follow from a fracture energy: a material or interface that gives one takes these over from the first material.
 pub(crate) const FAILURE_RULES: &[&str] =

@@ -14,6 +14,7 @@ use pericles_dispersion::tuning::{Combination, Method};
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
+use pericles_solids::correspondence::{ElasticLaw, Stabilisation};
 use pericles_waves::absorbing::history::HistoryForm;
 use pericles_waves::absorbing::{KernelMethod, Side};
 use pericles_waves::{ForceForm, FunctionMethod, LoadRule};
@@ -89,6 +90,18 @@ words! {
         ("closing", StretchDefinition::Closing),
         ("bond", StretchDefinition::Bond),
         ("iso", StretchDefinition::Isotropic),
+    ];
+    ElasticLaw: [
+        ("st-venant-kirchhoff", ElasticLaw::StVenantKirchhoff),
+        ("neo-hooke", ElasticLaw::NeoHooke),
+        ("neo-hooke-split", ElasticLaw::NeoHookeSplit),
+        ("hencky", ElasticLaw::Hencky),
+    ];
+    Stabilisation: [
+        ("isotropic", Stabilisation::Isotropic),
+        ("wan", Stabilisation::Wan),
+        ("silling", Stabilisation::Silling),
+        ("none", Stabilisation::None),
     ];
     InterfaceRule: [
         ("harmonic", InterfaceRule::Harmonic),

@@ -249,7 +249,7 @@ impl Facts {
             stiffness_error: constants.map(|constants| match constants {
                 MaterialConstants::Bonds(constants) => constants.stiffness_error,
                 // The bulk stiffness is exact on any points.
-                MaterialConstants::StateBased(_) => 0.0,
+                MaterialConstants::StateBased(_) | MaterialConstants::Correspondence(_) => 0.0,
             }),
             diagonal_shear_error: shear.map(|shear| shear.diagonals - 1.0),
             shear_error: bonds

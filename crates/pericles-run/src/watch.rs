@@ -8,6 +8,7 @@
 //! | loads and reactions of a static state | [`REACTIONS`] of the reactions |
 //! | bonds that break in masses, once while the run goes on | [`BROKEN_AT_ONCE`] of the bonds in one step, [`BROKEN_IN_ALL`] in all |
 //! | points near breaking, where nothing broke | [`ENDANGERED`] of the points have bonds beyond [`NEAR`] of the critical stretch |
+//! | points of correspondence materials that lost all bonds because those that were left did not span the space | any |
 //! | breaking within coarse steps | [`COARSE`] of the broken bonds |
 //! | displacements of a run that began as its own mirror image | they differ from their image by [`ASYMMETRY`] of the largest |
 //!
@@ -98,9 +99,21 @@ pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
         reactions(simulation),
         endangered(simulation, audit),
         coarse_breaking(audit),
+        dropped(simulation),
         asymmetry(audit),
     ];
     found.into_iter().flatten().collect()
+}
+
+/// Points of correspondence materials whose last bonds broke together.
+fn dropped(simulation: &Simulation) -> Option<String> {
+    let breaking = simulation.system().operator().capabilities().breaking?;
+    match breaking.dropped_points() {
+        0 => None,
+        points => Some(format!(
+            "{points} points lost all of their bonds because those that were left did not span the space: they are fragments without stress"
+        )),
+    }
 }
 
 fn energy(simulation: &Simulation, audit: &Audit) -> Option<String> {

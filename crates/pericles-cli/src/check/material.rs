@@ -4,12 +4,15 @@ use pericles::kernel::ActsOn;
 use pericles::material::{
     BondConstants, BondMaterial, Calibration, LinearSolidConstants, StateInfluence,
 };
-use pericles_deck::{MaterialModel, NamedMaterial, Solid, StateBased, SurfaceBody, VertexAreas};
+use pericles_deck::{
+    Correspondence, MaterialModel, NamedMaterial, Solid, StateBased, SurfaceBody, VertexAreas,
+};
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
 use pericles_manifold::surface::AreaRule;
 use pericles_run::units::{percent, quantity, significant};
 use pericles_run::{Facts, MaterialConstants};
+use pericles_solids::correspondence::{CorrespondenceConstants, ElasticLaw, Stabilisation};
 use serde_json::json;
 
 use super::line::Line;
@@ -26,6 +29,9 @@ pub(super) fn material(
         }
         (MaterialModel::StateBased(material), MaterialConstants::StateBased(constants)) => {
             state_based(material, constants, facts)
+        }
+        (MaterialModel::Correspondence(material), MaterialConstants::Correspondence(constants)) => {
+            correspondence(material, constants, facts)
         }
         _ => Vec::new(),
     };
@@ -83,18 +89,7 @@ fn state_based(
     constants: &LinearSolidConstants,
     facts: &Facts,
 ) -> Vec<Line> {
-    let mut text = format!("E = {}", quantity(constants.elastic.young(), "Pa"));
-    if let (Some(ratio), Some(bulk), Some(shear)) =
-        (facts.poisson_ratio, facts.bulk_modulus, facts.shear_modulus)
-    {
-        text += &format!(
-            ", ν = {}, K = {}, G = {}",
-            significant(ratio, 4),
-            quantity(bulk, "Pa"),
-            quantity(shear, "Pa")
-        );
-    }
-    let mut lines = vec![Line::new("elastic constants", text)];
+    let mut lines = vec![elastic_constants(constants, facts)];
     if let (Some(axes), Some(diagonals)) = (facts.shear_error, facts.diagonal_shear_error) {
         /// Worth a word.
         const NOTICED: f64 = 0.01;
@@ -108,6 +103,64 @@ fn state_based(
             text += "; influence = { function = \"isotropic\" } makes both 0";
         }
         lines.push(Line::new("stiffness error", text));
+    }
+    lines
+}
+
+fn elastic_constants(constants: &LinearSolidConstants, facts: &Facts) -> Line {
+    let mut text = format!("E = {}", quantity(constants.elastic.young(), "Pa"));
+    if let (Some(ratio), Some(bulk), Some(shear)) =
+        (facts.poisson_ratio, facts.bulk_modulus, facts.shear_modulus)
+    {
+        text += &format!(
+            ", ν = {}, K = {}, G = {}",
+            significant(ratio, 4),
+            quantity(bulk, "Pa"),
+            quantity(shear, "Pa")
+        );
+    }
+    Line::new("elastic constants", text)
+}
+
+/// Elastic constants, the law of finite strain, the control of zero-energy modes and plastic constants.
+fn correspondence(
+    material: &Correspondence,
+    constants: &CorrespondenceConstants,
+    facts: &Facts,
+) -> Vec<Line> {
+    let law = match constants.point.law {
+        ElasticLaw::StVenantKirchhoff => {
+            "St Venant–Kirchhoff: for small strain and any rotation; it softens in compression"
+        }
+        ElasticLaw::NeoHooke => "neo-Hookean",
+        ElasticLaw::NeoHookeSplit => "neo-Hookean, volume and shape apart",
+        ElasticLaw::Hencky => "Hencky: linear in the logarithmic strain",
+    };
+    let control = match material.stabilisation {
+        Stabilisation::Isotropic => "isotropic: objective everywhere",
+        Stabilisation::Wan => {
+            "Wan: violates the balance of angular momentum near surfaces at large rotations"
+        }
+        Stabilisation::Silling => "Silling: stiffens waves of a few horizons",
+        Stabilisation::None => {
+            "none: short waves are too slow, and the checkerboard costs no energy"
+        }
+    };
+    let mut lines = vec![
+        elastic_constants(&constants.solid, facts),
+        Line::new("elastic law", law),
+        Line::new("stabilisation", control),
+    ];
+    if let Some(plasticity) = &material.plasticity {
+        let yields = format!(
+            "von Mises, yield stress {}, hardening modulus {}",
+            quantity(plasticity.yield_stress, "Pa"),
+            quantity(plasticity.hardening, "Pa")
+        );
+        lines.push(Line::new("plasticity", yields).with(
+            "plasticity",
+            json!({ "yield_stress": plasticity.yield_stress, "hardening": plasticity.hardening }),
+        ));
     }
     lines
 }

@@ -34,6 +34,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-waves",
             "pericles-manifold",
             "pericles-dispersion",
+            "pericles-solids",
         ],
     ),
     (

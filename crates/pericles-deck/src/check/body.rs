@@ -199,6 +199,12 @@ impl Check {
                 self.influence(key, &bonds.influence, dimension, bonds.horizon);
             }
             MaterialModel::StateBased(solid) => self.state_based(key, solid, state, dimension),
+            MaterialModel::Correspondence(given) => {
+                self.state_based(key, &given.as_state_based(), state, dimension);
+                if let Some(plasticity) = &given.plasticity {
+                    self.engine(key.key("yield_stress"), plasticity.check());
+                }
+            }
         }
     }
 

@@ -8,6 +8,7 @@ use pericles::material::{
     StateInfluence, StretchDefinition,
 };
 use pericles::operator::DamageMeasure;
+use pericles_solids::correspondence::Plasticity;
 use serde::{Deserialize, Serialize};
 
 use super::described;
@@ -131,6 +132,14 @@ enum InterfaceStiffnessForm {
 }
 
 #[derive(Serialize, Deserialize)]
+#[serde(remote = "Plasticity", deny_unknown_fields)]
+struct PlasticityForm {
+    yield_stress: f64,
+    #[serde(default)]
+    hardening: f64,
+}
+
+#[derive(Serialize, Deserialize)]
 #[serde(remote = "DamageMeasure", deny_unknown_fields)]
 struct DamageMeasureForm {
     count: bool,
@@ -148,4 +157,5 @@ described!(
     BondFailure: BondFailureForm,
     InterfaceStiffness: InterfaceStiffnessForm,
     DamageMeasure: DamageMeasureForm,
+    Plasticity: PlasticityForm,
 );

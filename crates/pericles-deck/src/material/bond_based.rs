@@ -10,6 +10,7 @@ use crate::body::BodyRead;
 use crate::constants::{
     ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
 };
+use crate::correspondence;
 use crate::influence::{InfluenceRead, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -22,6 +23,7 @@ pub(super) fn read(
     shared: bool,
 ) -> Option<Material> {
     forbid_former_tables(&table);
+    correspondence::forbid_keys(&table);
     for key in ["strains", "failure", "stretch_definition"] {
         table.forbid(key, "it belongs to model = \"state-based\"");
     }

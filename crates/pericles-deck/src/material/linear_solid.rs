@@ -9,6 +9,7 @@ use super::keys::{
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
+use crate::correspondence;
 use crate::influence::state_influence;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -21,6 +22,7 @@ pub(super) fn read(
     shared: bool,
 ) -> Option<Material> {
     forbid_former_tables(&table);
+    correspondence::forbid_keys(&table);
     table.forbid(
         "treatment",
         "it belongs to model = \"green-strain\" or \"literal57\"",

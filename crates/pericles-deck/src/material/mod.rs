@@ -1,6 +1,7 @@
 //! `[material]` and `[materials.NAME]`: constants, horizon, influence function and breaking.
 
 mod bond_based;
+mod correspondence;
 mod keys;
 mod linear_solid;
 mod several;
@@ -23,6 +24,7 @@ use crate::set::SetNames;
 fn material(table: Table<'_>, body: &BodyRead, sets: &SetNames, shared: bool) -> Option<Material> {
     match model(&table) {
         Some(ModelWord::StateBased) => linear_solid::read(table, body, sets, shared),
+        Some(ModelWord::Correspondence) => correspondence::read(table, body, sets, shared),
         Some(ModelWord::Law(law)) => bond_based::read(table, Some(law), body, sets, shared),
         None => bond_based::read(table, None, body, sets, shared),
     }
@@ -33,6 +35,7 @@ fn material(table: Table<'_>, body: &BodyRead, sets: &SetNames, shared: bool) ->
 enum ModelWord {
     Law(PairLaw),
     StateBased,
+    Correspondence,
 }
 
 fn model(table: &Table<'_>) -> Option<ModelWord> {
@@ -45,6 +48,7 @@ fn model(table: &Table<'_>) -> Option<ModelWord> {
             ("green-strain", ModelWord::Law(PairLaw::GreenStrain)),
             ("literal57", ModelWord::Law(PairLaw::Literal57)),
             ("state-based", ModelWord::StateBased),
+            ("correspondence", ModelWord::Correspondence),
         ],
     )
 }

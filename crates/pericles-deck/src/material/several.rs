@@ -132,6 +132,7 @@ fn other(
     match &mut model {
         MaterialModel::Bonds(bonds) => bonds.horizon = own.horizon(),
         MaterialModel::StateBased(state) => state.solid.horizon = own.horizon(),
+        MaterialModel::Correspondence(state) => state.solid.horizon = own.horizon(),
     }
     Some(model)
 }

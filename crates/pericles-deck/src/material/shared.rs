@@ -16,12 +16,17 @@ pub(crate) fn difference(a: &MaterialModel, b: &MaterialModel) -> Option<&'stati
             let influence = a.solid.influence != b.solid.influence;
             (a.strains != b.strains, influence)
         }
+        (MaterialModel::Correspondence(a), MaterialModel::Correspondence(b)) => {
+            let influence = a.solid.influence != b.solid.influence;
+            (a.stabilisation != b.stabilisation, influence)
+        }
         _ => return Some("model"),
     };
     let law_key = match (a.name() == b.name(), a) {
         (false, _) => "model",
         (true, MaterialModel::Bonds(_)) => "treatment",
         (true, MaterialModel::StateBased(_)) => "strains",
+        (true, MaterialModel::Correspondence(_)) => "stabilisation",
     };
     let keys = [
         (law, law_key),

@@ -7,6 +7,7 @@ use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
 use serde::{Deserialize, Serialize};
 
+use crate::correspondence::Correspondence;
 use crate::state_based::StateBased;
 
 /// The material with what goes with it.
@@ -46,6 +47,8 @@ pub enum MaterialModel {
     Bonds(#[serde(with = "crate::form")] BondMaterial),
     /// Forces that depend on all bonds of both ends: any Poisson's ratio.
     StateBased(StateBased),
+    /// Forces from the stress of a deformation gradient: any Poisson's ratio, large strain, plastic flow.
+    Correspondence(Correspondence),
 }
 
 impl From<BondMaterial> for Material {
@@ -59,6 +62,13 @@ impl From<StateBased> for Material {
     /// One material for the whole body.
     fn from(solid: StateBased) -> Self {
         Self::from(MaterialModel::StateBased(solid))
+    }
+}
+
+impl From<Correspondence> for Material {
+    /// One material for the whole body.
+    fn from(solid: Correspondence) -> Self {
+        Self::from(MaterialModel::Correspondence(solid))
     }
 }
 
@@ -93,6 +103,7 @@ impl MaterialModel {
         match self {
             Self::Bonds(bonds) => bonds.density,
             Self::StateBased(state) => state.solid.density,
+            Self::Correspondence(state) => state.solid.density,
         }
     }
 
@@ -101,6 +112,7 @@ impl MaterialModel {
         match self {
             Self::Bonds(bonds) => bonds.horizon,
             Self::StateBased(state) => state.solid.horizon,
+            Self::Correspondence(state) => state.solid.horizon,
         }
     }
 
@@ -109,13 +121,16 @@ impl MaterialModel {
         match self {
             Self::Bonds(bonds) => bonds.volume_correction,
             Self::StateBased(state) => state.solid.volume_correction,
+            Self::Correspondence(state) => state.solid.volume_correction,
         }
     }
 
     /// The word of `model`, whatever the treatment of a law.
     pub fn name(&self) -> &'static str {
-        let Self::Bonds(bonds) = self else {
-            return "state-based";
+        let bonds = match self {
+            Self::Bonds(bonds) => bonds,
+            Self::StateBased(_) => return "state-based",
+            Self::Correspondence(_) => return "correspondence",
         };
         match bonds.law {
             PairLaw::BondStretch => "bond-stretch",
@@ -144,7 +159,7 @@ impl Material {
     pub fn bonds(&self) -> Option<&BondMaterial> {
         match &self.model {
             MaterialModel::Bonds(bonds) => Some(bonds),
-            MaterialModel::StateBased(_) => None,
+            MaterialModel::StateBased(_) | MaterialModel::Correspondence(_) => None,
         }
     }
 
@@ -152,15 +167,23 @@ impl Material {
     pub fn bonds_mut(&mut self) -> Option<&mut BondMaterial> {
         match &mut self.model {
             MaterialModel::Bonds(bonds) => Some(bonds),
-            MaterialModel::StateBased(_) => None,
+            MaterialModel::StateBased(_) | MaterialModel::Correspondence(_) => None,
         }
     }
 
     /// The state-based material, if it is one.
     pub fn state_based(&self) -> Option<&StateBased> {
         match &self.model {
-            MaterialModel::Bonds(_) => None,
             MaterialModel::StateBased(solid) => Some(solid),
+            MaterialModel::Bonds(_) | MaterialModel::Correspondence(_) => None,
+        }
+    }
+
+    /// The correspondence material, if it is one.
+    pub fn correspondence(&self) -> Option<&Correspondence> {
+        match &self.model {
+            MaterialModel::Correspondence(solid) => Some(solid),
+            MaterialModel::Bonds(_) | MaterialModel::StateBased(_) => None,
         }
     }
 

@@ -228,6 +228,10 @@ dt = 1
 const STATE_BASED: &str = "material={ model = 'state-based', strains = 'small', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, volume_correction = 'none', \
      surface_correction = 'energy', influence = { function = 'inverse' }, fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond', fracture_calibration = 'lattice', no_fail = 'top' }";
 
+/// A material with every key of correspondence materials.
+const CORRESPONDENCE: &str = "material={ model = 'correspondence', law = 'hencky', stabilisation = 'silling', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, yield_stress = 0.1, hardening = 0.2, horizon_ratio = 3, \
+     volume_correction = 'none', influence = { function = 'constant' }, fracture_energy = 1, fracture_calibration = 'lattice', no_fail = 'top', bonds = 'list' }";
+
 /// Materials with every key that they may give for themselves.
 const MATERIALS: &str = "materials={ \
      a = { density = 1, youngs_modulus = 1, modulus = 'lattice', poisson_ratio = 0.25, fracture_energy = 1, fracture_calibration = 'lattice', horizon_ratio = 3 }, \
@@ -314,6 +318,10 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &["material={ model = 'state-based', density = 1, bulk_modulus = 2, shear_modulus = 1, horizon_ratio = 3, influence = { function = 'isotropic' } }"]),
     specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'bond-energy', fracture_energy = 1 }"]),
     specimen(BAR, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, horizon = 3, critical_stretch = 1, failure = 'stretch' }"]),
+    // Correspondence materials.
+    specimen(PLATE, &[CORRESPONDENCE]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, bulk_modulus = 2, shear_modulus = 1, horizon_ratio = 3, law = 'neo-hooke', critical_stretch = 1 }"]),
+    specimen(BAR, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, horizon = 3 }"]),
     // Several materials.
     specimen(PLATE, &[MATERIALS, ASSIGN, INTERFACES]),
     specimen(PLATE, &[STATE_BASED, STATE_BASED_MATERIALS, "assign=[{ set = 'top', material = 'a' }]", STATE_BASED_INTERFACES]),

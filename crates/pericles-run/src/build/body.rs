@@ -44,6 +44,9 @@ impl Assembler<'_> {
             MaterialModel::StateBased(material) => {
                 self.state_based_parts(solid, material, discretisation, warnings)
             }
+            MaterialModel::Correspondence(material) => {
+                self.correspondence_parts(solid, material, discretisation, warnings)
+            }
         }
     }
 
@@ -144,7 +147,7 @@ impl Assembler<'_> {
         }
         let fault = Fault::NoFields {
             fields: "the field Dilatation is",
-            reason: "only state-based materials (model = \"state-based\") have a dilatation",
+            reason: "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
         };
         Err(at_path(self.field_key(is_dilatation), fault))
     }

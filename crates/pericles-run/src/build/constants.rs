@@ -3,6 +3,7 @@
 use pericles::material::{
     BondConstants, CrackPlane, ElasticWaves, FractureCalibration, LinearSolidConstants, StressState,
 };
+use pericles_solids::correspondence::CorrespondenceConstants;
 
 /// The constants of a material's forces.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +12,8 @@ pub enum MaterialConstants {
     Bonds(BondConstants),
     /// Of a state-based material.
     StateBased(LinearSolidConstants),
+    /// Of a correspondence material.
+    Correspondence(CorrespondenceConstants),
 }
 
 impl MaterialConstants {
@@ -18,15 +21,16 @@ impl MaterialConstants {
     pub fn bonds(&self) -> Option<&BondConstants> {
         match self {
             Self::Bonds(constants) => Some(constants),
-            Self::StateBased(_) => None,
+            Self::StateBased(_) | Self::Correspondence(_) => None,
         }
     }
 
-    /// Those of a state-based material.
+    /// Elastic constants and limits of a state-based or correspondence material.
     pub fn state_based(&self) -> Option<&LinearSolidConstants> {
         match self {
             Self::Bonds(_) => None,
             Self::StateBased(constants) => Some(constants),
+            Self::Correspondence(constants) => Some(&constants.solid),
         }
     }
 
@@ -35,6 +39,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(constants) => constants.young,
             Self::StateBased(constants) => constants.elastic.young(),
+            Self::Correspondence(constants) => constants.solid.elastic.young(),
         }
     }
 
@@ -43,6 +48,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(constants) => state.longitudinal_modulus(constants.young),
             Self::StateBased(constants) => constants.elastic.longitudinal_modulus(state),
+            Self::Correspondence(constants) => constants.solid.elastic.longitudinal_modulus(state),
         }
     }
 
@@ -53,6 +59,9 @@ impl MaterialConstants {
             Self::StateBased(constants) => {
                 ElasticWaves::of_solid(&constants.elastic, density, state)
             }
+            Self::Correspondence(constants) => {
+                ElasticWaves::of_solid(&constants.solid.elastic, density, state)
+            }
         }
     }
 
@@ -61,6 +70,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(constants) => constants.critical_stretch,
             Self::StateBased(constants) => constants.limits.stretch,
+            Self::Correspondence(constants) => constants.solid.limits.stretch,
         }
     }
 
@@ -69,6 +79,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(_) => f64::INFINITY,
             Self::StateBased(constants) => constants.limits.energy,
+            Self::Correspondence(constants) => constants.solid.limits.energy,
         }
     }
 
@@ -77,6 +88,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(constants) => constants.fracture_energy,
             Self::StateBased(constants) => constants.fracture_energy,
+            Self::Correspondence(constants) => constants.solid.fracture_energy,
         }
     }
 
@@ -85,6 +97,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(constants) => constants.fracture_calibration,
             Self::StateBased(constants) => constants.fracture_calibration,
+            Self::Correspondence(constants) => constants.solid.fracture_calibration,
         }
     }
 
@@ -93,6 +106,7 @@ impl MaterialConstants {
         match self {
             Self::Bonds(constants) => &constants.crack_planes,
             Self::StateBased(constants) => &constants.crack_planes,
+            Self::Correspondence(constants) => &constants.solid.crack_planes,
         }
     }
 }

@@ -6,6 +6,8 @@
 //! | a bond of a grid | a bit |
 //! | a bond of a list | [`LISTED`] while families are found, of which three stay; [`KEPT`] more where the stiffness of every bond is kept |
 //! | a point of a state-based material | [`SOLID`] besides |
+//! | a point of a correspondence material | [`TENSORS`] besides |
+//! | a bond of a correspondence material | [`NUMBER`] besides |
 //! | a bond that breaks by its energy | [`WORKED`] besides |
 //! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
 //! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
@@ -35,6 +37,8 @@ const LISTED: f64 = 16.0;
 const KEPT: f64 = 4.0;
 /// Rows of displacements, references and dilatations of a state-based point, and its constants.
 const SOLID: f64 = 160.0;
+/// Rows of displacements, references, force states, shape tensors and plastic history of a correspondence point: by the sizes of these arrays.
+const TENSORS: f64 = 900.0;
 const WORKED: f64 = 24.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
@@ -219,6 +223,7 @@ impl Assembler<'_> {
         let listed = self.bytes_of_listed_bond(solid);
         let bonds = match solid.material.form {
             ForceForm::List => listed * neighbours,
+            _ if solid.material.correspondence().is_some() => listed * neighbours,
             _ if solid.material.state_based().is_some() => match self.is_on_solid_stencil(solid) {
                 true => neighbours / 8.0,
                 false => listed * neighbours,
@@ -230,9 +235,10 @@ impl Assembler<'_> {
             _ if solid.shape.is_periodic() => transform,
             _ => (neighbours / 8.0).max(transform),
         };
-        let own = match solid.material.state_based() {
-            Some(_) => SOLID,
-            None => 0.0,
+        let own = match &solid.material.model {
+            MaterialModel::StateBased(_) => SOLID,
+            MaterialModel::Correspondence(_) => TENSORS,
+            MaterialModel::Bonds(_) => 0.0,
         };
         self.bytes_of_state(dimension) + own + bonds
     }
@@ -272,6 +278,9 @@ impl Assembler<'_> {
 
     /// Bytes of a bond of a list while families are found.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
+        if solid.material.correspondence().is_some() {
+            return LISTED + NUMBER;
+        }
         let worked = self.breaks_by_energy(solid);
         let kept = match solid.material.state_based() {
             Some(_) => solid.material.surface_correction != Default::default(),
@@ -306,7 +315,7 @@ impl Assembler<'_> {
         own.is_some_and(|own| by_energy(&own.solid.failure))
             || others.into_iter().any(|model| match model {
                 MaterialModel::StateBased(state) => by_energy(&state.solid.failure),
-                MaterialModel::Bonds(_) => false,
+                MaterialModel::Bonds(_) | MaterialModel::Correspondence(_) => false,
             })
             || self.model.interfaces.iter().any(|interface| {
                 matches!(&interface.failure, Some(InterfaceFailure::StateBased(failure)) if by_energy(failure))

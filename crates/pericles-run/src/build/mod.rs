@@ -11,6 +11,7 @@ mod breaking;
 mod conditions;
 mod constants;
 mod content;
+mod correspondence;
 mod cracks;
 mod damping;
 mod discretisation;

@@ -234,7 +234,7 @@ fn facts_have_the_elastic_constants_and_the_isotropy_of_the_lattice() {
     let built = build(&constant);
     let shear = match built.assembly.constants.as_ref().unwrap() {
         MaterialConstants::StateBased(constants) => constants.lattice_shear.unwrap(),
-        MaterialConstants::Bonds(_) => panic!("state-based"),
+        MaterialConstants::Bonds(_) | MaterialConstants::Correspondence(_) => panic!("state-based"),
     };
     assert!((shear.axes - 0.9647).abs() < 1e-4 && (shear.diagonals - 1.0353).abs() < 1e-4);
 }

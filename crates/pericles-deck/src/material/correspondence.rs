@@ -1,0 +1,96 @@
+//! Correspondence materials.
+
+use pericles::kernel::Influence;
+use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
+
+use super::keys::{
+    damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
+};
+use super::types::Material;
+use crate::body::BodyRead;
+use crate::constants::fracture_calibration;
+use crate::correspondence::{Correspondence, law, plasticity};
+use crate::influence::state_influence;
+use crate::reader::Table;
+use crate::set::SetNames;
+use crate::state_based::SolidRules;
+
+pub(super) fn read(
+    table: Table<'_>,
+    body: &BodyRead,
+    sets: &SetNames,
+    shared: bool,
+) -> Option<Material> {
+    forbid_former_tables(&table);
+    for (key, reason) in FORBIDDEN {
+        table.forbid(key, reason);
+    }
+    let name = table.maybe("name", |item| item.text());
+    let density = density(&table);
+    let extent = horizon(&table, body.frame);
+    let volume_correction = volume_correction(&table);
+    let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));
+    let given = match &influence {
+        Some(StateInfluence::Function(function)) => Some(Influence {
+            function: function.clone(),
+            ..Influence::default()
+        }),
+        _ => None,
+    };
+    let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
+    let calibration = fracture_calibration(&table, body, shared);
+    let rules = SolidRules::closing(body.state, calibration);
+    let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
+    let plasticity = plasticity(&table);
+    let law = law(&table, table.has("yield_stress"));
+    let stabilisation = table.worded("stabilisation", "stabilisation");
+    let no_fail = no_fail(&table, sets);
+    let damage = damage(&table);
+    let form = form(&table);
+    table.finish();
+    let solid = LinearSolid {
+        density: density?,
+        elastic: elastic?,
+        horizon: horizon?,
+        influence: influence?,
+        volume_correction: volume_correction?,
+        failure: failure?,
+    };
+    Some(Material {
+        name: name?,
+        no_fail: no_fail?,
+        surface_correction: SurfaceCorrection::None,
+        damage: damage?,
+        form: form?,
+        ..Material::from(Correspondence {
+            solid,
+            law: law?,
+            stabilisation: stabilisation?,
+            plasticity: plasticity?,
+        })
+    })
+}
+
+/// Keys of other models.
+const FORBIDDEN: [(&str, &str); 5] = [
+    (
+        "treatment",
+        "it belongs to model = \"green-strain\" or \"literal57\"",
+    ),
+    (
+        "strains",
+        "it belongs to model = \"state-based\": correspondence materials are for displacements of any size",
+    ),
+    (
+        "surface_correction",
+        "the shape tensor of a correspondence material accounts for missing bonds already: a uniform deformation has the right stress at surfaces too",
+    ),
+    (
+        "failure",
+        "it belongs to model = \"state-based\": bonds of correspondence materials break by their stretch",
+    ),
+    (
+        "stretch_definition",
+        "it belongs to model = \"state-based\": the critical stretch of correspondence materials is counted in the closing deformation",
+    ),
+];
