@@ -1,6 +1,6 @@
 //! Forces of a body of correspondence materials.
 
-use pericles::material::BondLimits;
+use pericles::material::{BondFailure, BondLimits};
 use pericles::operator::Feature;
 use pericles::space::PointCloud;
 use pericles_deck::{
@@ -46,10 +46,11 @@ impl Assembler<'_> {
             .iter()
             .map(constants)
             .collect::<Result<_, BuildError>>()?;
-        for ((path, _), constants) in materials.iter().zip(&all) {
-            let key = match constants.solid.fracture_calibration {
-                Some(_) => "fracture_energy",
-                None => "critical_stretch",
+        for ((path, material), constants) in materials.iter().zip(&all) {
+            let key = match material.solid.failure {
+                BondFailure::Unbreakable => continue,
+                BondFailure::CriticalStretch(_) => "critical_stretch",
+                BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
             };
             self.judge_stretch(constants.solid.limits.stretch, path.key(key), warnings);
         }

@@ -144,7 +144,7 @@ pub(super) fn returned(
     };
     let limit = plasticity.yield_stress + plasticity.hardening * history.accumulated;
     let excess = size - root * limit;
-    if !(excess > 1e-12 * root * limit) {
+    if excess.is_nan() || excess <= 1e-12 * root * limit {
         return result;
     }
     let flow = excess / (shear + 2.0 / 3.0 * plasticity.hardening);
