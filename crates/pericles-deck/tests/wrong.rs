@@ -138,11 +138,11 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndt = 1", (36, 1), "dt", &["`dt` has no place in [time]", "give load_steps"]),
     wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
     wrong("dt = \"auto\"", "scheme = \"relaxation\"\ntolerance = 0", (36, 13), "0", &["forces out of balance"]),
-    wrong("dt = \"auto\"", "scheme = \"static\"\ntolerance = 2", (36, 13), "2", &["residual over loads"]);
-    wrong("dt = \"auto\"", "scheme = \"static\"\nnewton_steps = 4000", (36, 16), "4000", &["from 1 to 1000"]);
-    wrong("dt = \"auto\"", "scheme = \"static\"\nrigid_modes = \"keep\"", (36, 15), "\"keep\"", &["rigid", "refuse", "fix"]);
-    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"event\"", (36, 12), "\"event\"", &["rule for breaking", "worst-first", "all"]);
-    wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["no place", "scheme = \"static\""]);
+    wrong("dt = \"auto\"", "scheme = \"static\"\ntolerance = 2", (36, 13), "2", &["residual over loads"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\nnewton_steps = 4000", (36, 16), "4000", &["from 1 to 1000"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\nrigid_modes = \"keep\"", (36, 15), "\"keep\"", &["rigid", "refuse", "fix"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"event\"", (36, 12), "\"event\"", &["rule for breaking", "worst-first", "all"]),
+    wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["no place", "scheme = \"static\""]),
     wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
     wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a share of the body's mass"]),
     // State-based materials.
