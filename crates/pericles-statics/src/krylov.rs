@@ -3,6 +3,8 @@
 use pericles::domain::Domain;
 use pericles::{Interrupt, Result};
 
+use crate::sparse::add_multiple;
+
 /// A linear problem A d = r on the free entries of vectors that also have held entries.
 ///
 /// Products give all rows: those of held entries are the change of the reactions, so that the accuracy asked for can be measured by the reactions of the solution itself.
@@ -138,16 +140,6 @@ pub fn conjugate_gradients(
         add_multiple(solution, length, direction);
         add_multiple(residual, -length, product);
     }
-}
-
-/// y += factor x
-pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
-    pericles::parallel::for_each_chunk(y, &|first, chunk| {
-        let length = chunk.len();
-        for (y, x) in chunk.iter_mut().zip(&x[first..first + length]) {
-            *y += factor * x;
-        }
-    });
 }
 
 /// y = x + factor y

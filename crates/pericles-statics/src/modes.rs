@@ -4,9 +4,9 @@ use pericles::{Interrupt, Result, System};
 
 use crate::eigen::symmetric_eigen;
 use crate::error::StaticsError;
-use crate::krylov::add_multiple;
 use crate::multigrid::Multigrid;
 use crate::rigid::{free_pieces, spread};
+use crate::sparse::add_multiple;
 use crate::surrogate::Surrogate;
 use crate::tangent::stiffness_into;
 use crate::unknowns::Unknowns;

@@ -217,6 +217,16 @@ impl SparseMatrix {
     }
 }
 
+/// y += factor x
+pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
+    pericles::parallel::for_each_chunk(y, &|first, chunk| {
+        let length = chunk.len();
+        for (y, x) in chunk.iter_mut().zip(&x[first..first + length]) {
+            *y += factor * x;
+        }
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

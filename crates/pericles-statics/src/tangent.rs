@@ -57,6 +57,6 @@ pub fn stiffness_into(system: &System, t: f64, u: &[f64], x: &[f64], out: &mut [
 pub fn remove(system: &System, basis: &[Vec<f64>], vector: &mut [f64]) {
     for one in basis {
         let along = system.domain().dot(one, vector);
-        crate::krylov::add_multiple(vector, -along, one);
+        crate::sparse::add_multiple(vector, -along, one);
     }
 }

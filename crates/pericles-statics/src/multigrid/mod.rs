@@ -1,7 +1,7 @@
 //! Smoothed-aggregation multigrid: an approximate inverse of a sparse symmetric positive definite matrix at a cost proportional to its size.
 //!
 //! Neighbouring points are grouped to aggregates. On each aggregate the displacements that hardly any energy resists, the rigid-body motions, are represented exactly; one step of
-//! damped Jacobi iteration smooths them to the prolongation P, and PᵀAP is the matrix of the next level, until it is small enough for a dense factor. One application is a V-cycle with Chebyshev smoothing, which
+//! damped Jacobi iteration smooths them to the prolongation P, and PᵀAP is the matrix of the next level, until it is small enough for a dense factor. One application is a W-cycle with Chebyshev smoothing, which
 //! is symmetric and positive definite, so that it can precondition conjugate gradients.
 //!
 //! Aggregates follow from the order of the points alone and every sum has a fixed order, so that results do not depend on the number of threads.
@@ -17,7 +17,7 @@ mod tentative;
 pub use dense::DenseCholesky;
 pub use nodes::NearKernel;
 
-use crate::sparse::SparseMatrix;
+use crate::sparse::{SparseMatrix, add_multiple};
 use nodes::Nodes;
 use smoother::Smoother;
 use tentative::Tentative;
@@ -37,6 +37,7 @@ struct Level {
     right: Vec<f64>,
     residual: Vec<f64>,
     direction: Vec<f64>,
+    first: Vec<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -81,6 +82,7 @@ impl Multigrid {
                 right: zeros(),
                 residual: zeros(),
                 direction: zeros(),
+                first: zeros(),
                 matrix: present,
             });
             present = next;
@@ -112,7 +114,22 @@ impl Multigrid {
         });
     }
 
-    /// One V-cycle from a level on: its `solution` from its `right`.
+    /// Two cycles from a coarse level on: its `solution` from its `right`, which changes. With one cycle the number of iterations would grow slowly with the number of levels.
+    fn correct(&mut self, number: usize) {
+        self.cycle(number);
+        let Some(level) = self.levels.get_mut(number) else {
+            return;
+        };
+        level.first.copy_from_slice(&level.solution);
+        level
+            .matrix
+            .subtract_product(&level.solution, &mut level.right);
+        self.cycle(number);
+        let level = &mut self.levels[number];
+        add_multiple(&mut level.solution, 1.0, &level.first);
+    }
+
+    /// One cycle from a level on: its `solution` from its `right`.
     fn cycle(&mut self, number: usize) {
         let Some(level) = self.levels.get_mut(number) else {
             let [solution, right, residual, direction] = &mut self.work;
@@ -144,7 +161,7 @@ impl Multigrid {
             None => &mut self.work[1],
         };
         level.restriction.multiply_into(&level.residual, right);
-        self.cycle(number + 1);
+        self.correct(number + 1);
         let (above, below) = self.levels.split_at_mut(number + 1);
         let level = &mut above[number];
         let correction = match below.first() {
@@ -181,7 +198,7 @@ impl Multigrid {
     pub fn bytes(&self) -> usize {
         let of_level = |level: &Level| {
             let matrices = [&level.matrix, &level.prolongation, &level.restriction];
-            let numbers = 5 * level.solution.len() * size_of::<f64>();
+            let numbers = 6 * level.solution.len() * size_of::<f64>();
             numbers + matrices.iter().map(|one| one.bytes()).sum::<usize>()
         };
         let last = self.sizes().last().map_or(0, |[_, entries]| entries * 12);
