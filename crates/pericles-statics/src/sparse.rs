@@ -5,6 +5,9 @@
 use pericles::parallel::{BLOCK, for_each_chunk};
 use rayon::prelude::*;
 
+/// Takes the column and value of an entry.
+type Push<'a> = dyn FnMut(usize, f64) + 'a;
+
 /// A sparse matrix: the entries of row i are those from `start[i]` to `start[i + 1]`, their columns ascending.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SparseMatrix {
@@ -87,7 +90,7 @@ impl SparseMatrix {
     pub(crate) fn from_rows(
         rows: usize,
         columns: usize,
-        fill: &(dyn Fn(usize, &mut dyn FnMut(usize, f64)) + Sync),
+        fill: &(dyn Fn(usize, &mut Push<'_>) + Sync),
     ) -> Self {
         let parts = (0..rows.div_ceil(BLOCK))
             .into_par_iter()
