@@ -22,13 +22,15 @@ use crate::common::{cells, difference, finish, largest};
 use crate::data::{Case, Found};
 use crate::row::Row;
 
+type Micromodulus = fn(f64) -> f64;
+
 /// A homogeneous bar −10 … 10 with a bell in the middle, E = ρ = 1.
 struct Bar {
     name: String,
     reach: usize,
     spacing: f64,
     /// C(ξ).
-    micromodulus: fn(f64) -> f64,
+    micromodulus: Micromodulus,
     dt: f64,
     /// Asked of the exponentials.
     tolerance: f64,
@@ -49,7 +51,7 @@ const ENDLESS: usize = 1_000_000;
 
 impl Bar {
     fn of(case: &Case<'_>) -> Result<Self, RunError> {
-        let micromoduli: [(&str, fn(f64) -> f64); 2] =
+        let micromoduli: [(&str, Micromodulus); 2] =
             [("gaussian", micromodulus), ("constant", constant)];
         Ok(Self {
             name: case.text("name")?,

@@ -69,16 +69,19 @@ pub(super) fn tableau(order: u32) -> Result<Tableau, RunError> {
     })
 }
 
+/// How a case changes the initial state of its deck.
+type Start = fn(&mut Assembly);
+
 /// The deck of a case, with what decks cannot say: the argument `start`.
 #[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     case: &'a Case<'a>,
-    start: fn(&mut Assembly),
+    start: Start,
 }
 
 impl<'a> Problem<'a> {
     pub(super) fn of(case: &'a Case<'a>) -> Result<Self, RunError> {
-        let starts: [(&str, fn(&mut Assembly)); 5] = [
+        let starts: [(&str, Start); 5] = [
             ("deck", |_| ()),
             ("shaken", |assembly| shake(assembly, 0.0, 1.0)),
             ("moving", |assembly| shake(assembly, 1.0, 1.0)),
