@@ -1,14 +1,13 @@
 //! `model = "correspondence"`: solids at large strain.
 
-use pericles::material::{Inelasticity, LinearSolid, Strains};
+use pericles::material::{Inelasticity, LinearSolid, Strains, Yield};
 use pericles_solids::correspondence::{
     CorrespondenceMaterial, ElasticLaw, Plasticity, Stabilisation,
 };
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::Quantity;
 use crate::reader::Table;
-use crate::state_based::StateBased;
+use crate::state_based::{StateBased, read_yield};
 
 /// A correspondence material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -81,23 +80,9 @@ pub(crate) fn law(table: &Table<'_>, yields: bool) -> Option<ElasticLaw> {
 
 /// `yield_stress` and `hardening`.
 pub(crate) fn plasticity(table: &Table<'_>) -> Option<Option<Plasticity>> {
-    let yield_stress = table.maybe("yield_stress", |item| item.positive(Quantity::Modulus));
-    if !table.has("yield_stress") {
-        table.forbid(
-            "hardening",
-            "it is the slope of the yield stress: give `yield_stress`",
-        );
-        return Some(None);
-    }
-    let hardening = table.or("hardening", 0.0, |item| {
-        item.within(
-            Quantity::Modulus,
-            "zero or a positive modulus: softening needs a length that the model does not have",
-            |hardening| hardening >= 0.0,
-        )
-    });
-    Some(Some(Plasticity {
-        yield_stress: yield_stress??,
-        hardening: hardening?,
+    let yields = read_yield(table)?;
+    Some(yields.map(|Yield { stress, hardening }| Plasticity {
+        yield_stress: stress,
+        hardening,
     }))
 }

@@ -2,7 +2,7 @@
 
 use pericles::material::{
     BondFailure, Fracture, FractureCalibration, GivenConstants, Inelasticity, LinearSolid,
-    StateInfluence, Strains, StressState, StretchDefinition,
+    StateInfluence, Strains, StressState, StretchDefinition, Yield,
 };
 use serde::{Deserialize, Serialize};
 
@@ -172,4 +172,27 @@ impl SolidRules {
             },
         })
     }
+}
+
+/// `yield_stress` and `hardening`, of any model.
+pub(crate) fn read_yield(table: &Table<'_>) -> Option<Option<Yield>> {
+    let stress = table.maybe("yield_stress", |item| item.positive(Quantity::Modulus));
+    if !table.has("yield_stress") {
+        table.forbid(
+            "hardening",
+            "it is the slope of the yield stress: give `yield_stress`",
+        );
+        return Some(None);
+    }
+    let hardening = table.or("hardening", 0.0, |item| {
+        item.within(
+            Quantity::Modulus,
+            "zero or a positive modulus: softening needs a length that the model does not have",
+            |hardening| hardening >= 0.0,
+        )
+    });
+    Some(Some(Yield {
+        stress: stress??,
+        hardening: hardening?,
+    }))
 }

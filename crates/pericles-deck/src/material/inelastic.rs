@@ -1,9 +1,10 @@
 //! Viscosity and plasticity of state-based materials.
 
-use pericles::material::{Inelasticity, StressState, ViscousTerm, Yield};
+use pericles::material::{Inelasticity, StressState, ViscousTerm};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
+use crate::state_based::read_yield;
 
 /// How the shear of the material in a table departs from elasticity.
 pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inelasticity> {
@@ -18,22 +19,7 @@ pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inel
             let terms: Vec<_> = table.tables("viscosity").into_iter().map(term).collect();
             Inelasticity::Viscous(terms.into_iter().collect::<Option<_>>()?)
         }
-        false => match table.maybe("yield_stress", |item| item.positive(Quantity::Modulus))? {
-            None => {
-                table.forbid("hardening", "it belongs to `yield_stress`");
-                Inelasticity::Elastic
-            }
-            Some(stress) => Inelasticity::Plastic(Yield {
-                stress,
-                hardening: table.or("hardening", 0.0, |item| {
-                    item.within(
-                        Quantity::Modulus,
-                        "a number that is not negative",
-                        |modulus| modulus >= 0.0,
-                    )
-                })?,
-            }),
-        },
+        false => read_yield(table)?.map_or(Inelasticity::Elastic, Inelasticity::Plastic),
     };
     table.accept(law.check(state?))?;
     Some(law)
