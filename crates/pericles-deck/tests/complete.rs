@@ -308,7 +308,7 @@ fn defaults_are_filled_in_and_recorded() {
         },
         "time": { "end": 1e-3, "dt": "auto", "safety": 0.95, "scheme": "velocity-verlet", "allow_unstable": false },
         "output": {
-            "fields": { "count": 20, "format": "vtu" }, "history": { "count": 200 },
+            "fields": { "count": 20, "format": "vtu", "blocks": "groups" }, "history": { "count": 200 },
             "cracks": { "count": 200, "threshold": 0.35 }, "precision": "double",
         },
         "checkpoint": { "wall": 600.0 },
