@@ -171,7 +171,7 @@ const WRONG: &[Wrong] = &[
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 0.6, time = 0 }]\n", (14, 36), "0", &["out of range", "positive"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 0.6, time = 1 }]\nyield_stress = 1\n", (15, 1), "yield_stress", &["no place", "viscous or plastic"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"0 MPa\"\n", (14, 16), "\"0 MPa\"", &["out of range", "positive"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"1 MPa\"\nhardening = -1\n", (15, 13), "-1", &["out of range", "not negative"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"1 MPa\"\nhardening = -1\n", (15, 13), "-1", &["out of range", "zero or a positive modulus"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nhardening = 1\n", (14, 1), "hardening", &["no place", "yield_stress"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nyield_stress = 1\n", (12, 1), "yield_stress", &["no place", "state-based"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nstrains = \"small\"\n", (12, 1), "strains", &["no place", "state-based"]),

@@ -26,11 +26,14 @@ impl BreakingRule {
     ///
     /// The worst bonds are those that exceed their critical stretch in displacements scaled down by a common factor. They dissipate their energy there, as they would have if loads had grown in steps too
     /// small to stretch them further; what the body loses beyond that it gives up like the energy released after bonds broke. Where the scaled displacements do not single out the same points, as in large rotations or
-    /// for bonds that break by their energy, all over-stretched bonds break, and dissipate their energy at `u`.
+    /// for bonds that break by their energy, and in path-dependent bodies, whose history goes on from the states they were in, all over-stretched bonds break, and dissipate their energy at `u`.
     pub fn apply(self, system: &mut System, t: f64, u: &[f64], work: &mut [f64]) -> Option<f64> {
         let broken = system.operator().broken_bonds();
         let mut beyond = 0.0;
         match self {
+            Self::WorstFirst { .. } if system.operator().capabilities().path_dependent => {
+                end_step(system, t, u, work);
+            }
             Self::WorstFirst { fraction } => match scaled(system, u, fraction) {
                 Scaled::Nothing => return None,
                 Scaled::All => end_step(system, t, u, work),

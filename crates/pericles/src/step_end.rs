@@ -74,6 +74,11 @@ impl<'a> StepEnd<'a> {
         }
     }
 
+    /// Whether it is the initial state of a run.
+    pub fn is_start(&self) -> bool {
+        self.dt == 0.0 && matches!(self.path, Path::MeanVelocity(_))
+    }
+
     /// The end of a sub-step of a part of the body, over which forces acted all the time.
     pub fn sub_step(t: f64, dt: f64, u: &'a [f64]) -> Self {
         Self {

@@ -156,7 +156,7 @@ fn bar_with(condition: Condition, time: &str) -> String {
 fn conditions_are_refused_where_the_table_says() {
     let static_ones = [
         "scheme = \"relaxation\", tolerance = 1e-6",
-        "scheme = \"static\", tolerance = 1e-6",
+        "scheme = \"static\", tolerance = 1e-6, rigid_modes = \"fix\"",
     ];
     let schemes = ONE_STEP.iter().chain(&TWO_STEPS).map(|scheme| scheme.time);
     for time in schemes.chain(static_ones) {

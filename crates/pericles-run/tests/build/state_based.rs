@@ -291,7 +291,7 @@ fn what_state_based_bodies_do_not_represent_is_refused_with_its_reason() {
         .replace("poisson_ratio = 0.3, ", "");
     refuse(
         &bond_based,
-        "only state-based materials (model = \"state-based\") have a dilatation",
+        "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
     );
     // At six spacings the isotropic function of a plate is negative near the horizon.
     let signed = strained(

@@ -148,6 +148,10 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         Some(Values::dilatation::<D>())
     }
 
+    fn is_path_dependent(&self) -> bool {
+        !self.history.is_empty()
+    }
+
     /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
     fn bonds(&self) -> Option<&dyn BondView> {
         (!self.cloud.domain().is_divided()).then_some(self)

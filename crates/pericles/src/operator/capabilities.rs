@@ -23,6 +23,8 @@ pub struct Capabilities<'a> {
     pub dilatation: Option<&'a dyn DilatationView>,
     /// Its points can yield.
     pub plastic: Option<&'a dyn PlasticView>,
+    /// It depends on the states that the body has gone through: schemes end a step at every state that they accept, whether bonds can break or not.
+    pub path_dependent: bool,
 }
 
 /// Whether a force is linear in the displacement as long as no bond breaks.

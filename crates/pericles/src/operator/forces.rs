@@ -160,6 +160,7 @@ impl Force for Forces {
             single_precision: self
                 .iter()
                 .any(|force| force.capabilities().single_precision),
+            path_dependent: self.iter().any(|force| force.capabilities().path_dependent),
         }
     }
 

@@ -95,6 +95,11 @@ pub trait TwoPass: Saved + Send + Sync {
         None
     }
 
+    /// Whether it depends on the states that the body has gone through.
+    fn is_path_dependent(&self) -> bool {
+        false
+    }
+
     /// Its plastic strain, if its points can yield.
     fn plastic(&self) -> Option<&dyn PlasticView> {
         None
@@ -262,6 +267,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             bonds: self.force.bonds(),
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
             plastic: self.force.plastic(),
+            path_dependent: self.force.is_path_dependent(),
             ..Capabilities::default()
         }
     }

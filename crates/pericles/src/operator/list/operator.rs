@@ -120,6 +120,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
             single_precision: false,
             dilatation: None,
             plastic: None,
+            path_dependent: false,
         }
     }
 

@@ -256,7 +256,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             influence: self.influence.as_ref(),
             terms: self.laws.terms,
             t: step.t,
-            starts: step.dt == 0.0,
+            starts: step.is_start(),
         }
     }
 

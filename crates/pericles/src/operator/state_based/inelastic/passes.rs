@@ -127,6 +127,10 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         Some(0)
     }
 
+    fn is_path_dependent(&self) -> bool {
+        true
+    }
+
     fn plastic(&self) -> Option<&dyn PlasticView> {
         self.laws.yields().then_some(self)
     }
