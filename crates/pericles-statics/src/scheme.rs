@@ -259,7 +259,7 @@ impl Integrator for StaticScheme {
                 impulse: [0.0; 3],
             });
         }
-        if system.operator().can_break() {
+        if system.operator().changes_at_step_ends() {
             self.settle(system, state, (t_next, &loads[1]), interrupt)?;
         }
         let InnerIterations { most, total, .. } = self.inner;

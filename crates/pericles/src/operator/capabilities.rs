@@ -74,6 +74,11 @@ impl dyn Force + '_ {
         breaking.is_some_and(|breaking| breaking.can_break())
     }
 
+    /// Whether the end of a step changes more than time: bonds may break, or the body keeps a history.
+    pub fn changes_at_step_ends(&self) -> bool {
+        self.can_break() || self.capabilities().path_dependent
+    }
+
     /// Bonds broken so far, each counted once.
     pub fn broken_bonds(&self) -> u64 {
         let breaking = self.capabilities().breaking;

@@ -377,7 +377,7 @@ impl Integrator for Relaxation {
             self.damped +=
                 elastic - system.operator().energy(t_next, &state.u) + system.ledger().work - work;
         }
-        if system.operator().can_break() {
+        if system.operator().changes_at_step_ends() {
             residual = self.settle(system, state, t_next, residual, interrupt)?;
         }
         self.inner.count(self.iterations, residual);
