@@ -327,11 +327,6 @@ fn faults_have_their_place_and_what_is_allowed() {
         let message = fault(ending, content.as_bytes());
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
-    let hdf = fault("e", b"\x89HDF\r\n\x1a\n");
-    assert!(
-        hdf.contains("netCDF-4 (HDF5)") && hdf.contains("nccopy"),
-        "{hdf}"
-    );
     // The node of an element beyond the nodes.
     let mut wrong = files::exodus(2);
     let place = wrong
