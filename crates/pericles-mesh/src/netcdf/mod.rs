@@ -165,9 +165,12 @@ impl<'a> NetCdf<'a> {
             )));
         };
         let mut bytes = Bytes::new(&data, 0, variable.little);
-        (0..variable.len)
-            .map(|_| read(&mut bytes, scalar))
-            .collect()
+        // All bytes are there: the length is no more than theirs.
+        let mut numbers = Vec::with_capacity(variable.len as usize);
+        for _ in 0..variable.len {
+            numbers.push(read(&mut bytes, scalar)?);
+        }
+        Ok(numbers)
     }
 
     /// The values of a variable, or of its record, as whole numbers.
