@@ -97,6 +97,11 @@ impl Format {
         memory: u64,
         include: &Include<'_>,
     ) -> Result<RawMesh, Fault> {
+        // Editors on Windows write a mark of the byte order before a text. The header of an STL file may be any bytes.
+        let content = match content.strip_prefix(b"\xef\xbb\xbf") {
+            Some(text) if self != Self::Stl => text,
+            _ => content,
+        };
         match self {
             Self::Obj => obj::parse(content),
             Self::Ply => ply::parse(content),

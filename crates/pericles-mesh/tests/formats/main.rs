@@ -69,6 +69,20 @@ fn one_mesh_in_all_formats_gives_equal_points_and_sets() {
 }
 
 #[test]
+fn a_byte_order_mark_and_line_ends_of_windows_change_nothing() {
+    let text = String::from_utf8(files::abaqus()).unwrap();
+    let windows = format!("\u{feff}{}", text.replace('\n', "\r\n"));
+    let (plain, other) = (
+        read("inp", text.as_bytes()),
+        read("inp", windows.as_bytes()),
+    );
+    let (plain, other) = (plain.unwrap(), other.unwrap());
+    assert_eq!(plain.nodes, other.nodes);
+    let sets = |mesh: &RawMesh| mesh.points(&PointOptions::default()).unwrap().sets;
+    assert_eq!(sets(&plain), sets(&other));
+}
+
+#[test]
 fn elements_of_gmsh_2_in_two_groups_are_one_element() {
     let (mesh, _) = points("msh", &files::gmsh_2(false));
     assert_eq!(

@@ -76,17 +76,11 @@ fn small_cells_follow_a_curved_outline_more_closely() {
     };
     let (coarse, fine) = (error(""), error("refine = [{ all = true, ratio = 8 }]"));
     assert!(fine < 0.3 * coarse && fine < 5e-3, "{fine} {coarse}");
-    // Small cells of large ones whose own centres are outside belong to the body too.
-    let reach = |refine: &str| {
-        let cloud = body(refine).cloud;
-        let radius = |i: usize| cloud.point(i)[0].hypot(cloud.point(i)[1]);
-        let covered = cloud.volumes().iter().map(|v| 0.5 * v.sqrt());
-        (0..cloud.len())
-            .map(radius)
-            .zip(covered)
-            .fold(0.0, |most: f64, (r, half)| most.max(r + half))
-    };
-    assert!(reach("refine = [{ all = true, ratio = 8 }]") > 4.3e-3);
+    // The cell about (4 mm, 2 mm) has its centre outside, but small cells inside.
+    let small = [3.5625e-3, 1.5625e-3, 0.0];
+    let refined = body("refine = [{ all = true, ratio = 8 }]");
+    let found = refined.cloud.point(refined.cloud.nearest(small));
+    assert!((0..2).all(|c| (found[c] - small[c]).abs() < 1e-9), "{found:?}");
 }
 
 #[test]
