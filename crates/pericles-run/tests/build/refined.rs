@@ -80,7 +80,10 @@ fn small_cells_follow_a_curved_outline_more_closely() {
     let small = [3.5625e-3, 1.5625e-3, 0.0];
     let refined = body("refine = [{ all = true, ratio = 8 }]");
     let found = refined.cloud.point(refined.cloud.nearest(small));
-    assert!((0..2).all(|c| (found[c] - small[c]).abs() < 1e-9), "{found:?}");
+    assert!(
+        (0..2).all(|c| (found[c] - small[c]).abs() < 1e-9),
+        "{found:?}"
+    );
 }
 
 #[test]
