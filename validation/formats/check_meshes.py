@@ -75,13 +75,16 @@ cells = np.vstack([block.data for block in mesh.cells if block.type == "tetra"])
 cells = np.unique(cells, axis=0)
 plain = meshio.Mesh(mesh.points, [("tetra", cells)])
 meshio.write(folder / "meshio.vtu", plain)
-# meshio writes netCDF-4, which Pericles refuses with the command that converts it: written again as CDF-1, CDF-2 and CDF-5 here.
+# meshio writes netCDF-4, which Pericles reads if it is built with the feature netcdf4, and else refuses with the command that converts it: written again as CDF-1, CDF-2 and CDF-5 here.
 meshio.write(folder / "meshio.exo", plain, file_format="exodus")
 answer = subprocess.run([program, str(folder / "meshio.exo")], capture_output=True, text=True, check=True).stdout
-assert "refused" in answer and "nccopy -k cdf5" in answer, answer
-print("meshio.exo: netCDF-4, refused with the command that converts it")
-source = netCDF4.Dataset(folder / "meshio.exo")
 paths = [folder / "meshio.vtu"]
+if "refused" in answer:
+    assert "nccopy -k cdf5" in answer and "feature netcdf4" in answer, answer
+    print("meshio.exo: netCDF-4, refused with the command that converts it")
+else:
+    paths.append(folder / "meshio.exo")
+source = netCDF4.Dataset(folder / "meshio.exo")
 for form in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"):
     paths.append(folder / f"{form}.exo")
     target = netCDF4.Dataset(paths[-1], "w", format=form)
@@ -120,18 +123,9 @@ for name, mode, compressed in (("ascii", 0, True), ("binary", 1, True), ("append
     assert count == 2 and abs(volume - 1.5) < 1e-14
     print(f"vtk-{name}.vtu: 2 points, volume as expected")
 
-# VTK's writer of Exodus: a block for each part of a multi-block data set, with two outputs of a field.
-blocks = vtk.vtkMultiBlockDataSet()
-for number, (kind, corners) in enumerate(((vtk.VTK_HEXAHEDRON, range(8)), (vtk.VTK_WEDGE, (1, 8, 2, 5, 9, 6)))):
-    block = vtk.vtkUnstructuredGrid()
-    block.SetPoints(points)
-    block.InsertNextCell(kind, len(corners), list(corners))
-    blocks.SetBlock(number, block)
-for name, data in (("grid", grid), ("blocks", blocks)):
-    writer = vtk.vtkExodusIIWriter()
-    writer.SetFileName(str(folder / f"vtk-{name}.exo"))
-    writer.SetInputData(data)
-    writer.Write()
+# VTK's writer of Exodus, in a program of its own: the parallel writer, which `import vtk` puts in the place of the serial one, crashes without a controller.
+subprocess.run([sys.executable, str(Path(__file__).with_name("vtk_exodus.py")), str(folder)], check=True)
+for name in ("grid", "blocks"):
     count, volume, sets = report(folder / f"vtk-{name}.exo")
     assert count == 2 and abs(volume - 1.5) < 1e-14, (count, volume)
     assert sorted(points for points, _ in sets.values()) == [1, 1], sets

@@ -25,6 +25,7 @@
 //! Positions have three coordinates, plane meshes the same z everywhere. This crate reads no files but writes some: readers take the content of a file.
 
 mod cell;
+mod digits;
 pub mod element;
 mod fault;
 pub mod fill;

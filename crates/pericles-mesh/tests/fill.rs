@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use pericles_mesh::fill::{
-    FillError, Filled, Outline, TriangleSurface, WindingTree, fill, fill_open, fill_open_partially,
-    fill_partially,
+    FillError, Filled, Lattice, Outline, TriangleSurface, WindingTree, fill, fill_nodes, fill_open,
+    fill_open_nodes, fill_open_partially, fill_partially,
 };
 
 type Point = [f64; 3];
@@ -255,6 +255,56 @@ fn balls_overlaps_and_cavities_hold_the_right_nodes() {
         assert!(checked > lattice.len() * 99 / 100);
         assert_eq!(filled.nodes().count(), filled.len());
     }
+}
+
+#[test]
+fn small_cells_in_a_box_are_those_of_the_divided_lattice() {
+    let (x, t) = ball(3, 1.0, [0.01, 0.02, 0.03]);
+    let surface = TriangleSurface::new(x, t).unwrap();
+    let tree = WindingTree::new(&surface);
+    let corner = |k: u32| {
+        let angle = f64::from(k) / 17.0 * std::f64::consts::TAU;
+        [angle.cos(), 0.7 * angle.sin()]
+    };
+    let outline = Outline::new(vec![(0..17).map(corner).collect()]).unwrap();
+    let large = Lattice::around(surface.bounds(), [0.25; 3]).unwrap();
+    let plane = Lattice::around(outline.bounds(), [0.25, 0.25, 1.0]).unwrap();
+    const RATIO: usize = 3;
+    let compare = |whole: &Filled, part: &Filled, first: [usize; 3], dimension: usize| {
+        let [nx, ny, nz] = part.lattice().counts;
+        let mut inside = 0;
+        for node in (0..nx * ny * nz).map(|n| [n % nx, n / nx % ny, n / (nx * ny)]) {
+            let there = std::array::from_fn(|c| match c < dimension {
+                true => node[c] + RATIO * first[c],
+                false => node[c],
+            });
+            let (a, b) = (
+                part.lattice().position(node),
+                whole.lattice().position(there),
+            );
+            assert!((0..3).all(|c| (a[c] - b[c]).abs() < 1e-14));
+            assert_eq!(part.contains(node), whole.contains(there), "{node:?}");
+            inside += usize::from(part.contains(node));
+        }
+        assert!(inside > 0 && inside < nx * ny * nz, "{inside}");
+    };
+    let first = [1, 2, 5];
+    let all = large.divided_box([0; 3], large.counts, 3, RATIO);
+    let part = large.divided_box(first, [3, 4, 3], 3, RATIO);
+    let whole = fill_nodes(&surface, all).unwrap();
+    // The divided lattice has the volume of the ball.
+    assert!((whole.volume() / whole.enclosed_volume() - 1.0).abs() < 1e-2);
+    compare(&whole, &fill_nodes(&surface, part).unwrap(), first, 3);
+    let whole = fill_open_nodes(&surface, &tree, all);
+    compare(&whole, &fill_open_nodes(&surface, &tree, part), first, 3);
+    let all = plane.divided_box([0; 3], plane.counts, 2, RATIO);
+    let part = plane.divided_box([0, 1, 0], [3, 3, 1], 2, RATIO);
+    compare(
+        &outline.fill_nodes(all),
+        &outline.fill_nodes(part),
+        [0, 1, 0],
+        2,
+    );
 }
 
 #[test]

@@ -96,6 +96,18 @@ fn originals() -> Vec<Original> {
             });
         }
     }
+    #[cfg(feature = "netcdf4")]
+    all.extend(
+        [
+            ("meshio", &include_bytes!("files/meshio.exo")[..]),
+            ("compressed", include_bytes!("files/compressed.exo")),
+        ]
+        .map(|(name, content)| Original {
+            name: format!("netCDF-4 {name}"),
+            format: Format::Exodus,
+            content: content.to_vec(),
+        }),
+    );
     all
 }
 

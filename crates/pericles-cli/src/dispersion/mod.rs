@@ -336,10 +336,7 @@ fn left_out(model: &Model, solid: &Solid) -> Vec<String> {
         _ => Some(format!("{count} {} are left out", what[1])),
     };
     let stiffnesses = model.assignments.iter().filter_map(|one| one.stiffness);
-    let refined = solid
-        .shape
-        .lattice()
-        .map_or(0, |lattice| lattice.finer.len());
+    let refined = solid.shape.finer().len();
     let correction = solid.material.surface_correction != Default::default();
     [
         counted(model.materials.len(), ["other material", "other materials"]),

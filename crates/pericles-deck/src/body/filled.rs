@@ -1,12 +1,12 @@
 //! Bodies that fill a closed surface or an outline with the cells of a lattice.
 
-use pericles::space::Region;
+use pericles::space::{Finer, Region};
 
 use super::plane::{section, state};
-use super::positions;
 use super::sources::{Boundary, FilledCells, FilledShape};
 use super::types::{BodyRead, SolidShape};
 use super::unit::unit;
+use super::{finer, positions};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -32,6 +32,19 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
     let positions = positions::read(&table);
     let random = positions.is_some_and(|positions| positions.are_random());
     let cells = cells(&table, random);
+    let finer: Vec<Option<Finer>> = table
+        .tables("refine")
+        .into_iter()
+        .map(|part| finer(part, read.frame))
+        .collect();
+    if !finer.is_empty() && random {
+        table.forbid("refine", "random positions have no cells to divide");
+    } else if !finer.is_empty() && cells == Some(FilledCells::Partial) {
+        table.forbid(
+            "refine",
+            "only whole cells can be divided: leave `cells` out, or `refine`",
+        );
+    }
     table.finish();
     read.frame.cells = !random && cells == Some(FilledCells::Whole);
     read.shape = (|| {
@@ -40,6 +53,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
             spacing: read.frame.spacing?,
             section: section?,
             holes: holes.into_iter().collect::<Option<_>>()?,
+            finer: finer.into_iter().collect::<Option<_>>()?,
             cells: cells?,
             positions: positions?,
         }))

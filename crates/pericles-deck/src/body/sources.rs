@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pericles::space::Region;
+use pericles::space::{Finer, Region};
 use serde::{Deserialize, Serialize};
 
 use super::positions::Positions;
@@ -41,6 +41,9 @@ pub struct FilledShape {
     /// Regions without material.
     #[serde(default, rename = "hole", with = "crate::form")]
     pub holes: Vec<Region>,
+    /// Parts with smaller cells and horizon, later ones before earlier ones.
+    #[serde(default, rename = "refine", with = "crate::form")]
+    pub finer: Vec<Finer>,
     /// Which cells are points.
     #[serde(default)]
     pub cells: FilledCells,

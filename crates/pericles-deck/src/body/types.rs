@@ -136,8 +136,16 @@ impl SolidShape {
 
     /// Whether parts have smaller cells.
     pub fn is_refined(&self) -> bool {
-        let lattice = self.lattice();
-        lattice.is_some_and(|lattice| !lattice.finer.is_empty())
+        !self.finer().is_empty()
+    }
+
+    /// The parts with smaller cells.
+    pub fn finer(&self) -> &[Finer] {
+        match self {
+            Self::Lattice(lattice) => &lattice.finer,
+            Self::Filled(filled) => &filled.finer,
+            Self::Points(_) | Self::Mesh(_) => &[],
+        }
     }
 
     /// Whether the points are Gauss nodes.

@@ -5,7 +5,7 @@ use pericles::material::{
     BondFailure, ElasticModulus, Fracture, InterfaceStiffness, Modulus, StressState,
     SurfaceCorrection,
 };
-use pericles::space::{Region, Shape};
+use pericles::space::{Finer, Region, Shape};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use super::ranges::{Check, POSITIVE};
@@ -74,6 +74,11 @@ impl Check {
         let right = filled.cells == FilledCells::Whole || !filled.positions.are_random();
         let allowed = "allowed: \"whole\" with random positions";
         self.within(right, key.key("cells"), "partial", allowed);
+        let whole = filled.cells == FilledCells::Whole && !filled.positions.are_random();
+        let allowed = "allowed: with whole cells on a lattice";
+        let right = whole || filled.finer.is_empty();
+        self.within(right, key.key("refine"), filled.finer.len(), allowed);
+        self.finer(key, &filled.finer);
         self.holes(key, &filled.holes);
         self.positions(key, filled.positions);
     }
@@ -140,7 +145,11 @@ impl Check {
         let right = plain || !lattice.positions.are_random();
         let allowed = "allowed: \"lattice\" in periodic bodies, with Gauss nodes and with cells of several sizes";
         self.within(right, key.key("positions"), "random", allowed);
-        for (k, part) in lattice.finer.iter().enumerate() {
+        self.finer(key, &lattice.finer);
+    }
+
+    fn finer(&mut self, key: &KeyPath, finer: &[Finer]) {
+        for (k, part) in finer.iter().enumerate() {
             let key = key.key("refine").index(k);
             let right = (2..=16).contains(&part.ratio);
             let allowed = "allowed: a whole number from 2 to 16";

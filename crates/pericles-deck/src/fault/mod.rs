@@ -1,6 +1,7 @@
 //! Kinds of wrong in a deck, and what is allowed instead.
 
 mod advice;
+mod words;
 
 use pericles::PericlesError;
 use pericles::units::quantity;

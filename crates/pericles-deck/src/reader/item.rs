@@ -6,11 +6,9 @@ use super::{Form, Ledger};
 use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
-use crate::nearest::nearest;
 use crate::quantity::Quantity;
 use crate::source::Place;
 use crate::units::{self, UnitError};
-use crate::wording::shortened;
 
 /// A range in words.
 pub(crate) const POSITIVE: &str = "a positive number";
@@ -280,20 +278,7 @@ impl<'a> Item<'a> {
         text: &str,
         allowed: impl Iterator<Item = &'w str> + Clone,
     ) {
-        /// Nobody reads more; a deck with as many wrong names would take as many copies.
-        const MOST: usize = 30;
-        let few = allowed.clone().nth(100 * MOST).is_none();
-        let nearest = if few {
-            nearest(text, allowed.clone())
-        } else {
-            None
-        };
-        self.report(Fault::UnknownWord {
-            what,
-            value: shortened(text),
-            nearest: nearest.map(String::from),
-            allowed: allowed.take(MOST).map(String::from).collect(),
-        });
+        self.report(Fault::unknown_word(what, text, allowed));
     }
 
     /// The entries of a list.

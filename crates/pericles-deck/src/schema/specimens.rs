@@ -276,7 +276,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
         &["body={ shape = 'mesh', file = 'a.msh', unit = 'mm', spacing = 1, dimension = 2, plane = 'stress', thickness = 1, blocks = 'steel' }", "sets.grip={ near_faces = { faces = 'left', cells = 1 } }", "load=[{ set = 'right', pressure = { expression = 'x' } }]", "output.fields={ format = ['vtu', 'vtkhdf'] }"],
     ),
     specimen(BAR, &["body={ shape = 'solid', file = 'a.stl', unit = 'mm', spacing = 1 }", "crack=[{ file = 'crack.stl', unit = 'mm' }]"]),
-    specimen(BAR, &["body={ shape = 'solid', file = 'a.stl', unit = 'mm', spacing = 1, open = true, hole = [{ all = true }] }"]),
+    specimen(BAR, &["body={ shape = 'solid', file = 'a.stl', unit = 'mm', spacing = 1, open = true, hole = [{ all = true }], refine = [{ all = true, ratio = 2 }] }"]),
     specimen(BAR, &["body={ shape = 'solid', file = 'a.stl', unit = 'mm', spacing = 1, cells = 'partial' }"]),
     specimen(BAR, &["body={ shape = 'outline', polygons = [[[0, 0], [9, 0], [0, 9]]], spacing = 1, plane = 'stress', positions = 'jittered', jitter = 0.2, seed = 2 }"]),
     specimen(BAR, &["body={ shape = 'outline', file = 'a.txt', unit = 'mm', spacing = 1, plane = 'stress', cells = 'partial' }"]),

@@ -16,7 +16,14 @@ use super::surface::TriangleSurface;
 /// # Errors
 /// An open surface, and a lattice with too many nodes.
 pub fn fill(surface: &TriangleSurface, spacing: [f64; 3]) -> Result<Filled, FillError> {
-    let lattice = Lattice::around(surface.bounds(), spacing)?;
+    fill_nodes(surface, Lattice::around(surface.bounds(), spacing)?)
+}
+
+/// [`fill`] with a lattice, which need not cover the surface.
+///
+/// # Errors
+/// An open surface.
+pub fn fill_nodes(surface: &TriangleSurface, lattice: Lattice) -> Result<Filled, FillError> {
     let rows = Rows::new(surface, lattice);
     let enclosed = surface.signed_volume();
     let outward = if enclosed < 0.0 { -1 } else { 1 };

@@ -85,6 +85,25 @@ impl Lattice {
         begin.min(count)..end.min(count)
     }
 
+    /// The lattice of the parts of a box of cells, of which `first` is the first one and which has `counts` cells: each is divided into `ratio` along the first `dimension` axes.
+    pub fn divided_box(
+        &self,
+        first: [usize; 3],
+        counts: [usize; 3],
+        dimension: usize,
+        ratio: usize,
+    ) -> Self {
+        let mut fine = *self;
+        for c in 0..dimension {
+            let ends = [first[c], first[c] + counts[c].max(1) - 1];
+            let [low, high] = ends.map(|number| self.coordinate(c, number));
+            fine.centre[c] = 0.5 * (low + high);
+            fine.spacing[c] /= ratio as f64;
+            fine.counts[c] = counts[c] * ratio;
+        }
+        fine
+    }
+
     /// The lattice of parts: each cell is divided into so many along x and y.
     pub(super) fn divided(&self, parts: usize) -> Self {
         let mut fine = *self;

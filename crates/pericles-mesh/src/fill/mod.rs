@@ -4,6 +4,7 @@
 //! |---|---|
 //! | nodes of a lattice inside a closed surface, exactly | [`fill`] |
 //! | the same of a surface with holes, by the winding number | [`fill_open`] |
+//! | the same for a given lattice, such as that of smaller cells in a part of the body | [`fill_nodes`], [`fill_open_nodes`], [`Outline::fill_nodes`] |
 //! | parts of cells, for cells on the boundary | [`fill_partially`], [`fill_open_partially`] |
 //! | nodes of a plane lattice inside polygons | [`Outline::fill`] |
 //! | parts of plane cells | [`Outline::fill_partially`] |
@@ -19,13 +20,13 @@ mod rows;
 mod surface;
 mod winding;
 
-pub use columns::fill;
+pub use columns::{fill, fill_nodes};
 pub use lattice::{Filled, Lattice};
 pub use open_parts::fill_open_partially;
 pub use outline::Outline;
 pub use partial::{PartialCells, fill_partially};
 pub use surface::TriangleSurface;
-pub use winding::{WindingTree, fill_open};
+pub use winding::{WindingTree, fill_open, fill_open_nodes};
 
 /// Why a surface or an outline cannot be filled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -86,15 +87,15 @@ pub enum FillError {
     },
     /// Lines through the surface that enter it more often than they leave it, or the reverse.
     #[error(
-        "the surface is open: {columns} of {all} lines along z leave it more or less often than they enter it, one of them at x = {}, y = {}. Close the surface, or fill it by the winding number",
-        at[0], at[1]
+        "the surface is open: {columns} of {all} lines along z leave it more or less often than they enter it, one of them at {}. Close the surface, or fill it by the winding number",
+        crate::digits::place(*at)
     )]
     Open {
         /// The number of these lines.
         columns: usize,
         /// The number of all lines.
         all: usize,
-        /// x and y of one of them.
+        /// x and y of one of them, m.
         at: [f64; 2],
     },
 }

@@ -6,7 +6,7 @@ use super::FillError;
 use super::lattice::{Filled, Lattice};
 use super::partial::{PartialCells, gathered};
 use super::surface::TriangleSurface;
-use super::winding::{WindingTree, fill_by_winding};
+use super::winding::{WindingTree, fill_open_nodes};
 
 /// Samples of a cell along each axis.
 const SAMPLES: usize = 4;
@@ -22,8 +22,8 @@ pub fn fill_open_partially(
     spacing: [f64; 3],
 ) -> Result<PartialCells, FillError> {
     let tree = WindingTree::new(surface);
-    let filled = fill_by_winding(surface, &tree, spacing)?;
-    let lattice = *filled.lattice();
+    let lattice = Lattice::around(surface.bounds(), spacing)?;
+    let filled = fill_open_nodes(surface, &tree, lattice);
     let outward = if filled.was_turned() { -1.0 } else { 1.0 };
     let mut is_sampled = cells_at_triangles(surface, &lattice);
     mark_sides(&filled, &mut is_sampled);

@@ -205,18 +205,23 @@ impl Outline {
     /// A spacing that is not positive, too many nodes.
     pub fn fill(&self, spacing: [f64; 2]) -> Result<Filled, FillError> {
         let lattice = Lattice::around(self.bounds(), [spacing[0], spacing[1], 1.0])?;
+        Ok(self.fill_nodes(lattice))
+    }
+
+    /// [`Outline::fill`] with a lattice, which need not cover the outline.
+    pub fn fill_nodes(&self, lattice: Lattice) -> Filled {
         let [nx, ny, _] = lattice.counts;
         let columns: Vec<Vec<bool>> = (0..nx)
             .into_par_iter()
             .map(|column| self.column(&lattice, column))
             .collect();
         let inside = (0..nx * ny).map(|node| columns[node % nx][node / nx]);
-        Ok(Filled {
+        Filled {
             lattice,
             inside: inside.collect(),
             enclosed: self.area(),
             was_turned: false,
-        })
+        }
     }
 
     /// Which nodes of a line along y are inside.

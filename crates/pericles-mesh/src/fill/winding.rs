@@ -174,16 +174,13 @@ fn solid_angle(corners: &[[f64; 3]; 3], point: [f64; 3]) -> f64 {
 /// # Errors
 /// A lattice with too many nodes.
 pub fn fill_open(surface: &TriangleSurface, spacing: [f64; 3]) -> Result<Filled, FillError> {
-    fill_by_winding(surface, &WindingTree::new(surface), spacing)
+    let lattice = Lattice::around(surface.bounds(), spacing)?;
+    let tree = WindingTree::new(surface);
+    Ok(fill_open_nodes(surface, &tree, lattice))
 }
 
-/// [`fill_open`] with a tree of the surface.
-pub(super) fn fill_by_winding(
-    surface: &TriangleSurface,
-    tree: &WindingTree,
-    spacing: [f64; 3],
-) -> Result<Filled, FillError> {
-    let lattice = Lattice::around(surface.bounds(), spacing)?;
+/// [`fill_open`] with a tree of the surface and a lattice, which need not cover the surface.
+pub fn fill_open_nodes(surface: &TriangleSurface, tree: &WindingTree, lattice: Lattice) -> Filled {
     let enclosed = surface.signed_volume();
     let outward = if enclosed < 0.0 { -1.0 } else { 1.0 };
     let [nx, _, nz] = lattice.counts;
@@ -197,10 +194,10 @@ pub(super) fn fill_by_winding(
                 *inside = outward * tree.winding_number(node) > 0.5;
             }
         });
-    Ok(Filled {
+    Filled {
         lattice,
         inside,
         enclosed: enclosed.abs(),
         was_turned: enclosed < 0.0,
-    })
+    }
 }

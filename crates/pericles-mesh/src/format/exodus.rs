@@ -1,4 +1,4 @@
-//! Exodus II, as classic netCDF: blocks of elements, node sets, side sets and element sets.
+//! Exodus II, as netCDF: blocks of elements, node sets, side sets and element sets.
 //!
 //! Blocks without names are called `block_ID`, sets `nodelist_ID`, `sideset_ID` and `elemset_ID`. Spheres are points with the volume of the second attribute of their block
 //! (radius, volume), or of the nodal variable `Volume`.
@@ -42,8 +42,8 @@ struct Reading<'a> {
     is_plane: bool,
 }
 
-pub(super) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
-    let file = NetCdf::new(content)?;
+pub(super) fn parse(content: &[u8], memory: u64) -> Result<RawMesh, Fault> {
+    let file = NetCdf::new(content, memory)?;
     if file.dimension("num_processors").is_some_and(|n| n > 1) {
         return Err(Fault::of_file(
             "the file is one piece of several: join the pieces with epu first",
@@ -68,7 +68,7 @@ impl Reading<'_> {
         let mut axes = Vec::new();
         if let Some(all) = self.file.variable("coord") {
             let values = self.file.real(all, 0)?;
-            let nodes = usize::try_from(self.file.last_length(all)).unwrap_or(usize::MAX);
+            let nodes = usize::try_from(all.last_length()).unwrap_or(usize::MAX);
             axes.extend(values.chunks(nodes.max(1)).map(<[f64]>::to_vec));
         } else {
             for name in ["coordx", "coordy", "coordz"] {
@@ -144,7 +144,7 @@ impl Reading<'_> {
                 continue;
             };
             let begin = self.mesh.cells.len() as u32;
-            let each = usize::try_from(self.file.last_length(variable)).unwrap_or(usize::MAX);
+            let each = usize::try_from(variable.last_length()).unwrap_or(usize::MAX);
             let nodes = self.file.whole(variable, 0)?;
             let word = variable.attribute("elem_type").unwrap_or("without a type");
             let kind = kind_of(word, each);
@@ -205,7 +205,7 @@ impl Reading<'_> {
     /// Volumes of spheres: of the attribute named volume or the second one, or of the nodal variable Volume.
     fn point_volumes(&mut self, block: usize, cells: &[u32]) -> Result<(), Fault> {
         let attributes = self.file.variable(&format!("attrib{block}"));
-        let width = |v: &Variable| usize::try_from(self.file.last_length(v)).unwrap_or(1);
+        let width = |v: &Variable| usize::try_from(v.last_length()).unwrap_or(1);
         if let Some(variable) = attributes.filter(|variable| width(variable) >= 2) {
             let names = match self.file.variable(&format!("attrib_name{block}")) {
                 Some(names) => self.file.texts(names)?,

@@ -9,7 +9,7 @@
 //! | `.msh` | Gmsh 2.2 and 4.1 | text, binary; physical groups |
 //! | `.vtu`, `.vtp` | VTK XML | text, base64, appended, compressed with zlib |
 //! | `.inp` | Abaqus | text; parts, instances, sets, surfaces |
-//! | `.e`, `.exo`, `.ex2`, `.g`, `.gen` | Exodus II | netCDF classic (CDF-1, CDF-2, CDF-5) |
+//! | `.e`, `.exo`, `.ex2`, `.g`, `.gen` | Exodus II | classic netCDF (CDF-1, CDF-2, CDF-5); netCDF-4 (HDF5) with the feature `netcdf4` |
 //!
 //! A polygon of more than four corners is cut into the triangles of a fan from its first corner. Counts in a file are compared with what is left of it
 //! before anything is allocated.
@@ -86,8 +86,8 @@ impl Format {
         !matches!(self, Self::Obj | Self::Ply | Self::Stl | Self::Off)
     }
 
-    /// The mesh in the content of a file. `include` reads the files that an Abaqus file includes. Arrays of VTK files may be compressed and may take `memory`
-    /// bytes; those of other formats take little more than the content.
+    /// The mesh in the content of a file. `include` reads the files that an Abaqus file includes. Arrays of VTK and netCDF-4 files may be compressed and may take
+    /// `memory` bytes; those of other formats take little more than the content.
     ///
     /// # Errors
     /// Content that is not what the format says, with its place.
@@ -97,6 +97,11 @@ impl Format {
         memory: u64,
         include: &Include<'_>,
     ) -> Result<RawMesh, Fault> {
+        // Editors on Windows write a mark of the byte order before a text. The header of an STL file may be any bytes.
+        let content = match content.strip_prefix(b"\xef\xbb\xbf") {
+            Some(text) if self != Self::Stl => text,
+            _ => content,
+        };
         match self {
             Self::Obj => obj::parse(content),
             Self::Ply => ply::parse(content),
@@ -105,7 +110,7 @@ impl Format {
             Self::Gmsh => gmsh::parse(content),
             Self::Vtk => vtk::parse(content, memory),
             Self::Abaqus => abaqus::parse(content, include),
-            Self::Exodus => exodus::parse(content),
+            Self::Exodus => exodus::parse(content, memory),
         }
     }
 }

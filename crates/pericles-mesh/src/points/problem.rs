@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::cell::CellKind;
+use crate::digits::short;
 use crate::raw::InvalidMesh;
 
 /// An element's size and centroid, m.
@@ -18,26 +19,6 @@ impl fmt::Display for ElementSize {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.position.map(short);
         write!(f, "{} m at ({x}, {y}, {z})", short(self.size))
-    }
-}
-
-/// A number with four digits.
-fn short(x: f64) -> String {
-    if x == 0.0 || (0.99995e-3..1e4).contains(&x.abs()) {
-        let digits = 3 - x.abs().max(1e-3).log10().floor() as i32;
-        let text = format!("{x:.*}", digits.clamp(0, 6) as usize);
-        return match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        };
-    }
-    let text = format!("{x:.3e}");
-    match text.split_once('e') {
-        Some((digits, power)) => {
-            let digits = digits.trim_end_matches('0').trim_end_matches('.');
-            format!("{digits}e{power}")
-        }
-        None => text,
     }
 }
 
@@ -153,26 +134,4 @@ pub enum Problem {
         /// How many there are.
         count: usize,
     },
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn numbers_in_messages_have_four_digits() {
-        for (x, text) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (0.2, "0.2"),
-            (12.345678, "12.35"),
-            (-1234.56, "-1235"),
-            (9999.9, "10000"),
-            (1.5e-5, "1.5e-5"),
-            (1e30, "1e30"),
-            (0.012345678, "0.01235"),
-        ] {
-            assert_eq!(short(x), text);
-        }
-    }
 }

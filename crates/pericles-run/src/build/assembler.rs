@@ -30,16 +30,8 @@ impl<'a> Assembler<'a> {
     ) -> Result<&'s PointSet, BuildError> {
         let found = sets.iter().find(|(known, _)| known == name);
         found.map(|(_, points)| points).ok_or_else(|| {
-            let allowed = sets.iter().map(|(known, _)| known.clone()).collect();
-            at_path(
-                path,
-                Fault::UnknownWord {
-                    what: "set",
-                    value: name.into(),
-                    nearest: None,
-                    allowed,
-                },
-            )
+            let known = sets.iter().map(|(known, _)| known.as_str());
+            at_path(path, Fault::unknown_word("set", name, known))
         })
     }
 }

@@ -147,13 +147,8 @@ impl Assembler<'_> {
         };
         let near = mesh.and_then(|mesh| mesh.near_faces(cloud, faces, depth));
         near.ok_or_else(|| {
-            let known = mesh.iter().flat_map(|mesh| mesh.face_sets());
-            let fault = Fault::UnknownWord {
-                what: "face set",
-                value: faces.clone(),
-                nearest: None,
-                allowed: known.map(String::from).collect(),
-            };
+            let known: Vec<&str> = mesh.iter().flat_map(|mesh| mesh.face_sets()).collect();
+            let fault = Fault::unknown_word("face set", faces, known.into_iter());
             at_path(path.key("near_faces").key("faces"), fault)
         })
     }

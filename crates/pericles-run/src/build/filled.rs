@@ -1,86 +1,17 @@
 //! Lattices and random points in closed surfaces and outlines.
 
-use pericles::space::{Lattice as Nodes, ListedPoints, PointCloud, Region};
+use pericles::space::{GradedCloud, Lattice as Nodes, ListedPoints, PointCloud};
 use pericles_deck::{
     Boundary, BuildError, Caution, Fault, FilledCells, FilledShape, ModelWarning, Positions,
     Remark, Solid,
 };
-use pericles_mesh::fill::{
-    FillError, Filled, Lattice, Outline, PartialCells, TriangleSurface, WindingTree, fill,
-    fill_open, fill_open_partially, fill_partially,
-};
+use pericles_mesh::fill::{FillError, Filled, Lattice, Outline, PartialCells, TriangleSurface};
 
 use super::assembler::Assembler;
+use super::enclosure::{Enclosure, Holes};
 use super::random::Space;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
-
-/// What is filled, read and checked.
-enum Enclosure {
-    Surface(TriangleSurface),
-    Open(TriangleSurface),
-    Outline(Outline),
-}
-
-impl Enclosure {
-    fn bounds(&self) -> [[f64; 3]; 2] {
-        match self {
-            Self::Surface(surface) | Self::Open(surface) => surface.bounds(),
-            Self::Outline(outline) => outline.bounds(),
-        }
-    }
-
-    /// The volume inside, or area of an outline; none of an open surface.
-    fn enclosed(&self) -> Option<f64> {
-        match self {
-            Self::Surface(surface) => Some(surface.signed_volume().abs()),
-            Self::Open(_) => None,
-            Self::Outline(outline) => Some(outline.area()),
-        }
-    }
-
-    fn fill(&self, spacing: f64) -> Result<Filled, FillError> {
-        match self {
-            Self::Surface(surface) => fill(surface, [spacing; 3]),
-            Self::Open(surface) => fill_open(surface, [spacing; 3]),
-            Self::Outline(outline) => outline.fill([spacing; 2]),
-        }
-    }
-
-    fn fill_partially(&self, spacing: f64) -> Result<PartialCells, FillError> {
-        match self {
-            Self::Surface(surface) => fill_partially(surface, [spacing; 3]),
-            Self::Open(surface) => fill_open_partially(surface, [spacing; 3]),
-            Self::Outline(outline) => outline.fill_partially([spacing; 2]),
-        }
-    }
-
-    /// A test whether a place is inside.
-    fn inside(&self) -> Box<dyn Fn([f64; 3]) -> bool + Sync + '_> {
-        match self {
-            Self::Surface(surface) | Self::Open(surface) => {
-                let sign = surface.signed_volume().signum();
-                let tree = WindingTree::new(surface);
-                Box::new(move |x| sign * tree.winding_number(x) > 0.5)
-            }
-            Self::Outline(outline) => Box::new(|[x, y, _]| outline.contains([x, y])),
-        }
-    }
-}
-
-/// The holes of a body within its box.
-struct Holes<'a> {
-    regions: &'a [Region],
-    bounds: [[f64; 3]; 2],
-    tolerance: f64,
-}
-
-impl Holes<'_> {
-    fn contain(&self, place: [f64; 3]) -> bool {
-        let within = |hole: &Region| hole.contains(place, &self.bounds, self.tolerance);
-        self.regions.iter().any(within)
-    }
-}
 
 impl Assembler<'_> {
     /// The points in a closed surface or an outline.
@@ -90,7 +21,7 @@ impl Assembler<'_> {
         shape: &FilledShape,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
-    ) -> Result<PointCloud, BuildError> {
+    ) -> Result<GradedCloud, BuildError> {
         let enclosure = self.enclosure(shape, resources)?;
         let bounds = enclosure.bounds();
         let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
@@ -105,10 +36,34 @@ impl Assembler<'_> {
             bounds,
             tolerance: 1e-9 * spacing,
         };
+        if shape.finer.is_empty() {
+            let cloud = self.filled_cells(shape, &enclosure, &holes, warnings)?;
+            return Ok(GradedCloud::of_one_grid(cloud));
+        }
+        let enclosed = enclosed.unwrap_or(cells * spacing.powi(dimension as i32));
+        let filled = (&enclosure, &holes, enclosed);
+        let graded = self.graded_cells(solid, shape, filled, resources)?;
+        warnings.extend(judge(
+            shape,
+            (graded.volume, enclosure.enclosed()),
+            graded.was_turned,
+        ));
+        Ok(graded.cloud)
+    }
+
+    /// The points in cells of one size, or at random positions.
+    fn filled_cells(
+        &self,
+        shape: &FilledShape,
+        enclosure: &Enclosure,
+        holes: &Holes<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<PointCloud, BuildError> {
+        let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
         let refused = |error| self.no_fill(shape, error);
         if shape.cells == FilledCells::Partial {
             let cells = enclosure.fill_partially(spacing).map_err(refused)?;
-            return partial_points(&cells, &holes, shape.section)
+            return partial_points(&cells, holes, shape.section)
                 .cloud(dimension, shape.section)
                 .map_err(|error| at("body.spacing", error));
         }
@@ -117,7 +72,8 @@ impl Assembler<'_> {
             _ => Some(enclosure.fill(spacing).map_err(refused)?),
         };
         if let Some(filled) = &filled {
-            warnings.extend(judge(shape, filled, enclosed));
+            let volumes = (filled.volume(), enclosure.enclosed());
+            warnings.extend(judge(shape, volumes, filled.was_turned()));
         }
         let nodes: Vec<[usize; 3]> = filled.iter().flat_map(Filled::nodes).collect();
         let lattice = filled.as_ref().map(|filled| *filled.lattice());
@@ -135,7 +91,7 @@ impl Assembler<'_> {
         let within = enclosure.inside();
         let space = Space {
             dimension,
-            bounds,
+            bounds: holes.bounds,
             spacing,
             section: shape.section,
             inside: &|x| within(x) && !holes.contain(x),
@@ -192,7 +148,7 @@ impl Assembler<'_> {
     }
 
     /// The refusal of a boundary, at the key that gives it.
-    fn no_fill(&self, shape: &FilledShape, error: FillError) -> BuildError {
+    pub(super) fn no_fill(&self, shape: &FilledShape, error: FillError) -> BuildError {
         let key = match (&error, &shape.boundary) {
             (FillError::Spacing { .. } | FillError::TooMany { .. }, _) => "body.spacing",
             (FillError::Amplitude { .. }, _) => "body.jitter",
@@ -211,16 +167,19 @@ impl Assembler<'_> {
 }
 
 /// Warns of surfaces that were turned inside out, and of cells whose volume is off.
-fn judge(shape: &FilledShape, filled: &Filled, enclosed: Option<f64>) -> Vec<ModelWarning> {
+fn judge(
+    shape: &FilledShape,
+    (volume, enclosed): (f64, Option<f64>),
+    was_turned: bool,
+) -> Vec<ModelWarning> {
     /// Share of the volume.
     const OFF: f64 = 0.02;
     let mut warnings = Vec::new();
-    if filled.was_turned() {
+    if was_turned {
         let problem = "all triangles look inwards: the surface is used as if they looked outwards";
         let problem = problem.to_owned();
         warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
     }
-    let volume = filled.volume();
     if let Some(enclosed) = enclosed
         && (volume / enclosed - 1.0).abs() > OFF
     {

@@ -28,12 +28,12 @@ impl Assembler<'_> {
             blocks: (!file.blocks.is_empty()).then(|| file.blocks.clone()),
         };
         let points = mesh.points(&options).map_err(|problem| {
-            let key = match problem {
-                Problem::UnknownBlock { .. } => "body.blocks",
-                _ => "body.file",
-            };
+            if let Problem::UnknownBlock { name, known } = &problem {
+                let known = known.iter().map(String::as_str);
+                return at_path("body.blocks", Fault::unknown_word("block", name, known));
+            }
             let reason = format!("{}: {problem}", path.display());
-            at_path(key, Fault::BadMesh { reason })
+            at_path("body.file", Fault::BadMesh { reason })
         })?;
         if points.dimension != file.dimension {
             let (given, found) = (file.dimension, points.dimension);

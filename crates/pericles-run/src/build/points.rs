@@ -14,7 +14,7 @@ use pericles_deck::{
 use super::assembler::Assembler;
 use super::mesh_body::MeshBody;
 use super::random::{Space, nodes_of};
-use super::refusal::{at, at_path};
+use super::refusal::{at, at_path, refined_key};
 use super::resources::Resources;
 
 /// The points of a body, and the mesh whose elements they are, if there is one.
@@ -36,9 +36,7 @@ impl Assembler<'_> {
                 .listed_points(solid, file, resources, warnings)
                 .map(GradedCloud::of_one_grid),
             SolidShape::Lattice(lattice) => self.grid_points(solid, lattice, resources, warnings),
-            SolidShape::Filled(shape) => self
-                .filled_points(solid, shape, resources, warnings)
-                .map(GradedCloud::of_one_grid),
+            SolidShape::Filled(shape) => self.filled_points(solid, shape, resources, warnings),
             SolidShape::Mesh(file) => {
                 let made = self.mesh_points(solid, file, resources, warnings);
                 made.map(|(cloud, body)| {
@@ -215,11 +213,7 @@ impl Assembler<'_> {
             PericlesError::NotWholeCells { length, .. } => self.side(lattice, *length),
             PericlesError::TooManyPoints { .. } => "body.spacing".into(),
             PericlesError::Unresolved { .. } => self.corner(lattice).into(),
-            PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
-                KeyPath::from("body.refine").index(*part).into()
-            }
-            PericlesError::FinerParts { .. } => "body.refine".into(),
-            _ => "body".into(),
+            error => refined_key(error).unwrap_or("body".into()),
         };
         at_path(place, error.into())
     }

@@ -1,7 +1,7 @@
 //! Refusals of a model, at the keys that are to blame.
 
 use pericles::PericlesError;
-use pericles_deck::{BuildError, Fault, Keys, Remark};
+use pericles_deck::{BuildError, Fault, KeyPath, Keys, Remark};
 use pericles_waves::linear::NoConvolution;
 
 /// The keys of the horizon, of which a deck gives one.
@@ -15,6 +15,17 @@ pub(super) fn at_path(keys: impl Into<Keys>, fault: Fault) -> BuildError {
 /// What the library refuses, at a value.
 pub(super) fn at(keys: impl Into<Keys>, error: PericlesError) -> BuildError {
     at_path(keys, error.into())
+}
+
+/// The key of a part with smaller cells that the library refuses; none of other errors.
+pub(super) fn refined_key(error: &PericlesError) -> Option<Keys> {
+    match error {
+        PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
+            Some(KeyPath::from("body.refine").index(*part).into())
+        }
+        PericlesError::FinerParts { .. } => Some("body.refine".into()),
+        _ => None,
+    }
 }
 
 /// What the library refuses of a material.

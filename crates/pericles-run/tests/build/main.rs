@@ -20,6 +20,7 @@ mod model;
 mod plate;
 mod plausible;
 mod points;
+mod refined;
 mod schemes;
 mod sense;
 mod solutions;

@@ -91,7 +91,7 @@ fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
 }
 
 /// The surface of a cube of 8 mm, in mm, as triangles.
-fn cube() -> RawMesh {
+pub(super) fn cube() -> RawMesh {
     let mut mesh = RawMesh::default();
     for k in 0..8 {
         mesh.nodes
@@ -122,11 +122,11 @@ fn built_of(
     })
 }
 
-fn built(text: &str, mesh: &RawMesh) -> Built {
+pub(super) fn built(text: &str, mesh: &RawMesh) -> Built {
     built_of(text, |_| Ok(mesh.clone())).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn refused(text: &str, mesh: &RawMesh) -> String {
+pub(super) fn refused(text: &str, mesh: &RawMesh) -> String {
     match built_of(text, |_| Ok(mesh.clone())) {
         Ok(_) => panic!("this deck is wrong:\n{text}"),
         Err(error) => error.to_string(),
@@ -212,7 +212,7 @@ fn a_mesh_of_cubes_has_the_forces_of_the_grid() {
 }
 
 /// Compares the forces of two assemblies of equal points, under one displacement.
-fn compare_forces(ours: &Built, theirs: &Built) {
+pub(super) fn compare_forces(ours: &Built, theirs: &Built) {
     let n = theirs.cloud.len();
     assert_eq!(ours.cloud.len(), n);
     let forces = |body: &Built| {
@@ -284,6 +284,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &[
             "deck.toml:14:7",
             "unknown set `rigth`",
+            "did you mean `right`?",
             "\"right\"",
             "\"left half\"",
         ],
@@ -451,7 +452,7 @@ fn unusual_meshes_are_warned_about() {
     );
 }
 
-const SOLID: &str = r#"
+pub(super) const SOLID: &str = r#"
 [body]
 shape = "solid"
 file = "cube.stl"

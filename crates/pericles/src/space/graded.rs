@@ -59,6 +59,109 @@ impl GradedCloud {
     }
 }
 
+/// How some cells of a lattice are divided, whatever decides which cells belong to a body.
+#[derive(Debug, Clone, Copy)]
+pub struct Division<'a> {
+    /// Dimension of the body.
+    pub dimension: usize,
+    /// Size of the large cells.
+    pub spacing: f64,
+    /// Area of a bar, thickness of a body in two dimensions, 1 in three dimensions.
+    pub section: f64,
+    /// Parts with smaller cells, later ones before earlier ones.
+    pub finer: &'a [Finer],
+}
+
+/// A cell that may belong to a body: a large one, or a small one of a divided one.
+#[derive(Debug, Clone, Copy)]
+pub struct GradedCell {
+    /// The large cell, by its place in the order of the centres.
+    pub large: usize,
+    /// The finer part that the large cell belongs to, if it is divided.
+    pub part: Option<usize>,
+    /// The number of the small cell along each axis of the large one.
+    pub small: [u32; 3],
+    /// The centre.
+    pub centre: Point,
+}
+
+impl Division<'_> {
+    /// The part that a large cell belongs to, if it is divided. `is_in` says whether the centre lies in a region.
+    pub fn part(&self, is_in: impl Fn(&Region) -> bool) -> Option<usize> {
+        self.finer.iter().rposition(|finer| is_in(&finer.region))
+    }
+
+    /// Makes the cloud: large cells in the order of their centres, divided ones as their small cells, x running fastest. `is_in` says whether a place lies in
+    /// a region, `holds` whether a cell belongs to the body.
+    ///
+    /// # Errors
+    /// A part with a ratio below two or without cells; too many parts; a body without cells.
+    pub fn points(
+        &self,
+        centres: impl Iterator<Item = Point>,
+        is_in: impl Fn(&Region, Point) -> bool,
+        mut holds: impl FnMut(&GradedCell) -> bool,
+    ) -> Result<GradedCloud> {
+        self.check()?;
+        let (mut places, mut sizes): (Vec<Point>, Vec<f64>) = Default::default();
+        let mut grid_of_point = Vec::new();
+        for (large, centre) in centres.enumerate() {
+            let part = self.part(|region| is_in(region, centre));
+            let ratio = part.map_or(1, |part| self.finer[part].ratio);
+            let size = self.spacing / f64::from(ratio);
+            for_each_part(self.dimension, ratio, |small, offset| {
+                let cell = GradedCell {
+                    large,
+                    part,
+                    small,
+                    centre: std::array::from_fn(|c| centre[c] + offset[c] * size),
+                };
+                if holds(&cell) {
+                    places.push(cell.centre);
+                    sizes.push(size);
+                    grid_of_point.push(part.map_or(0, |part| part as u8 + 1));
+                }
+            });
+        }
+        for part in 0..self.finer.len() {
+            if !grid_of_point.contains(&(part as u8 + 1)) {
+                return Err(PericlesError::FinerEmpty { part });
+            }
+        }
+        let positions = (0..self.dimension)
+            .flat_map(|c| places.iter().map(move |place| place[c]))
+            .collect();
+        let volume = |size: &f64| self.section * size.powi(self.dimension as i32);
+        let volumes = sizes.iter().map(volume).collect();
+        let (dimension, section) = (self.dimension, self.section);
+        Ok(GradedCloud {
+            cloud: PointCloud::graded(dimension, positions, volumes, section, self.spacing)?,
+            ratios: std::iter::once(1)
+                .chain(self.finer.iter().map(|finer| finer.ratio))
+                .collect(),
+            grid_of_point,
+        })
+    }
+
+    fn check(&self) -> Result<()> {
+        if self.finer.len() > MOST_PARTS {
+            return Err(PericlesError::FinerParts {
+                parts: self.finer.len(),
+                most: MOST_PARTS,
+            });
+        }
+        for (part, finer) in self.finer.iter().enumerate() {
+            if finer.ratio < 2 {
+                return Err(PericlesError::FinerRatio {
+                    part,
+                    ratio: finer.ratio,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Grids are numbered by a byte.
 const MOST_PARTS: usize = 200;
 
@@ -116,7 +219,7 @@ impl GradedGrid {
                     let part = self.part(&cells, centre);
                     let ratio = part.map_or(1, |part| self.finer[part].ratio);
                     let size = self.grid.spacing / f64::from(ratio);
-                    for_each_part(self.grid.dimension(), ratio, |offset| {
+                    for_each_part(self.grid.dimension(), ratio, |_, offset| {
                         let place: Point = std::array::from_fn(|c| centre[c] + offset[c] * size);
                         if cells.is_in_outline(place) {
                             idle.retain(|&k| !cells.is_in(&self.grid.holes[k], place));
@@ -144,65 +247,25 @@ impl GradedGrid {
     /// Those of [`Grid::points`]; a part with a ratio below two or without cells; too many parts.
     pub fn points(&self) -> Result<GradedCloud> {
         let cells = self.grid.cells()?;
-        let dimension = self.grid.dimension();
-        if self.finer.len() > MOST_PARTS {
-            return Err(PericlesError::FinerParts {
-                parts: self.finer.len(),
-                most: MOST_PARTS,
-            });
-        }
-        for (part, finer) in self.finer.iter().enumerate() {
-            if finer.ratio < 2 {
-                return Err(PericlesError::FinerRatio {
-                    part,
-                    ratio: finer.ratio,
-                });
-            }
-        }
-        let (mut places, mut sizes): (Vec<Point>, Vec<f64>) = Default::default();
-        let mut grid_of_point = Vec::new();
+        let division = Division {
+            dimension: self.grid.dimension(),
+            spacing: self.grid.spacing,
+            section: self.grid.section,
+            finer: &self.finer,
+        };
         let count = cells.shape.map(|count| count as i32);
-        for z in 0..count[2] {
-            for y in 0..count[1] {
-                for x in 0..count[0] {
-                    let centre = cells.centre([x, y, z]);
-                    let part = self.part(&cells, centre);
-                    let ratio = part.map_or(1, |part| self.finer[part].ratio);
-                    let size = self.grid.spacing / f64::from(ratio);
-                    for_each_part(dimension, ratio, |offset| {
-                        let place: Point = std::array::from_fn(|c| centre[c] + offset[c] * size);
-                        if cells.holds(place) {
-                            places.push(place);
-                            sizes.push(size);
-                            grid_of_point.push(part.map_or(0, |part| part as u8 + 1));
-                        }
-                    });
-                }
-            }
-        }
-        for part in 0..self.finer.len() {
-            if !grid_of_point.contains(&(part as u8 + 1)) {
-                return Err(PericlesError::FinerEmpty { part });
-            }
-        }
-        let positions = (0..dimension)
-            .flat_map(|c| places.iter().map(move |place| place[c]))
-            .collect();
-        let section = self.grid.section;
-        let volume = |size: &f64| section * size.powi(dimension as i32);
-        let volumes = sizes.iter().map(volume).collect();
-        Ok(GradedCloud {
-            cloud: PointCloud::graded(dimension, positions, volumes, section, self.grid.spacing)?,
-            ratios: std::iter::once(1)
-                .chain(self.finer.iter().map(|finer| finer.ratio))
-                .collect(),
-            grid_of_point,
-        })
+        let rows = (0..count[2]).flat_map(|z| (0..count[1]).map(move |y| (y, z)));
+        let nodes = rows.flat_map(|(y, z)| (0..count[0]).map(move |x| [x, y, z]));
+        division.points(
+            nodes.map(|node| cells.centre(node)),
+            |region, place| cells.is_in(region, place),
+            |cell| cells.holds(cell.centre),
+        )
     }
 }
 
-/// Calls `visit` with the offset, in small cells, of each small cell's centre from that of the large one.
-fn for_each_part(dimension: usize, ratio: u32, mut visit: impl FnMut(Point)) {
+/// Calls `visit` with the numbers of each small cell and the offset, in small cells, of its centre from that of the large one.
+fn for_each_part(dimension: usize, ratio: u32, mut visit: impl FnMut([u32; 3], Point)) {
     let range = |c: usize| 0..if c < dimension { ratio } else { 1 };
     let middle = 0.5 * f64::from(ratio - 1);
     let offset = |c: usize, k: u32| {
@@ -215,7 +278,7 @@ fn for_each_part(dimension: usize, ratio: u32, mut visit: impl FnMut(Point)) {
     for z in range(2) {
         for y in range(1) {
             for x in range(0) {
-                visit([offset(0, x), offset(1, y), offset(2, z)]);
+                visit([x, y, z], [offset(0, x), offset(1, y), offset(2, z)]);
             }
         }
     }

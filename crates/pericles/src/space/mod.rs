@@ -20,7 +20,7 @@ mod sites;
 
 pub use cloud::{PointCloud, PointSet};
 pub use curve::hilbert_order;
-pub use graded::{Finer, GradedCloud, GradedGrid};
+pub use graded::{Division, Finer, GradedCell, GradedCloud, GradedGrid};
 pub use grid::{Grid, Shape};
 pub use lattice::Lattice;
 pub use listed::ListedPoints;

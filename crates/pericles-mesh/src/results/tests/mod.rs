@@ -107,7 +107,7 @@ fn exodus_files_are_read_back_as_written() {
         let left = points.set("left end").unwrap();
         assert_eq!((left.kind, &left.points[..]), (SetKind::Nodes, &[0, 3][..]));
         // The records.
-        let file = NetCdf::new(&content).unwrap();
+        let file = NetCdf::new(&content, 0).unwrap();
         assert_eq!(file.records(), 3);
         let real = |name: &str, k: u64| file.real(file.variable(name).unwrap(), k).unwrap();
         let names = file.texts(file.variable("name_nod_var").unwrap()).unwrap();
@@ -167,7 +167,7 @@ fn a_killed_run_leaves_a_whole_exodus_file_and_resumes_byte_for_byte() {
             bytes.extend_from_slice(
                 &states[killed_in + 1][lengths[killed_in]..lengths[killed_in] + part],
             );
-            let file = NetCdf::new(&bytes).unwrap();
+            let file = NetCdf::new(&bytes, 0).unwrap();
             assert_eq!(file.records(), killed_in as u64);
             if part % 37 != 1 {
                 continue;
@@ -219,7 +219,7 @@ fn names_in_exodus_files_are_short_and_differ() {
     let path = place.path().join("names.exo");
     drop(ExodusWriter::create(&path, &layout).unwrap());
     let content = std::fs::read(&path).unwrap();
-    let file = NetCdf::new(&content).unwrap();
+    let file = NetCdf::new(&content, 0).unwrap();
     let names = file.texts(file.variable("name_nod_var").unwrap()).unwrap();
     let mut unique = names.clone();
     unique.sort_unstable();
