@@ -32,6 +32,7 @@ Examples:
   pericles run deck.toml --sweep body.spacing=1e-3,2e-3     one run per value, and a table of them
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
+  pericles modes plate.toml --count 12                natural frequencies and mode shapes
   pericles geodesics 'icosphere(4)' --horizon 0.5     how far distances along edges are off
   pericles mesh bracket.msh --unit mm                 what a mesh contains: sets, volume, cell size
   pericles bench block-46 --threads 1                 how fast the operators are here
@@ -108,6 +109,16 @@ Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the f
   wavevectors.csv   frequencies at the wave vectors of --wavevector
   spectrum_*, peaks what --measure found")]
     Dispersion(DispersionArgs),
+    /// Compute the lowest natural frequencies and mode shapes of a deck's body
+    #[command(after_help = "\
+The modes are those of the undeformed body with its supports, or with --prestress of the body under its static loads.
+Results go to ./<deck's name>-modes, then -2, -3 …, or to --out. In the folder:
+  modes.csv         frequency and residual of each mode
+  modes.pvd         mode shapes for ParaView: the time is the number of the mode
+  modes/            the files of modes.pvd, and a picture of each mode
+  pericles modes plate.toml --count 20
+  pericles modes bar.toml --json - --quiet")]
+    Modes(ModesArgs),
     /// Compare ways to find distances along a surface
     #[command(after_help = "\
 A surface is a file (.obj, .ply, .stl, .off, .msh, .vtu, .vtp) or a shape:
@@ -246,6 +257,38 @@ pub(crate) struct DispersionArgs {
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) execution: Execution,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModesArgs {
+    /// The deck, a TOML file
+    pub(crate) deck: PathBuf,
+    /// Number of modes, rigid-body motions not included
+    #[arg(long = "count", value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) modes: u32,
+    /// Largest residual |K x - w^2 M x| over w^2 |M x|; the relative error of a frequency is of the order of its square
+    #[arg(long, value_name = "RATIO", default_value_t = 1e-6, value_parser = tolerance)]
+    pub(crate) tolerance: f64,
+    /// Run the deck first, which must be static, and compute the modes about its last state
+    #[arg(long)]
+    pub(crate) prestress: bool,
+    /// Also write an animation of one period of each mode
+    #[arg(long)]
+    pub(crate) animation: bool,
+    /// Write the results as JSON to a file; `-` is the standard output, which then holds nothing else
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    /// Folder for the results; must not exist
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    #[command(flatten)]
+    pub(crate) caching: Caching,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) execution: Execution,
 }
