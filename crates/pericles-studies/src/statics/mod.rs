@@ -11,6 +11,7 @@ pub(super) const TOPIC: Topic = Topic {
     studies: &[data!("statics/solver"), data!("statics/notched-plate")],
     measures: &[
         ("products", solver::products),
+        ("newton", solver::newton),
         ("times", solver::times),
         ("path", notched::path),
     ],

@@ -8,9 +8,9 @@ use pericles::time::{Relaxation, RelaxationOptions, State};
 use pericles::{Interrupt, Simulation, System};
 use pericles_run::RunError;
 use pericles_statics::krylov::{Goal, KrylovWork, LinearProblem, conjugate_gradients};
-use pericles_statics::{Equilibrium, StaticOptions, Target};
+use pericles_statics::{Effort as Took, Equilibrium, StaticOptions, Target};
 
-use super::bodies::body;
+use super::bodies::{body, stretched};
 use crate::common::finish;
 use crate::data::{Case, Found};
 
@@ -31,28 +31,55 @@ fn effort(case: &Case<'_>) -> Result<Rc<Effort>, RunError> {
     let key = format!("{name} {cells} {nu} {cracked}");
     case.once(key, || {
         let system = body(case)?;
-        let (free, load) = conditions(&system);
         let began = Instant::now();
-        let options = StaticOptions {
-            tolerance: TOLERANCE,
-            ..StaticOptions::default()
-        };
-        let mut u = vec![0.0; load.len()];
-        let supports = u.clone();
-        let target = Target {
-            t: 0.0,
-            load: &load,
-            supports: &supports,
-            largest: 0.0,
-        };
-        let mut solver = Equilibrium::new(options, &system, free);
-        let found = solver.find(&system, &target, &mut u, Interrupt::never())?;
+        let (found, _) = state_of(&system)?;
         Ok(Effort {
             products: found.products as f64,
             seconds: began.elapsed().as_secs_f64(),
             points: system.points() as f64,
         })
     })
+}
+
+/// The static state from rest: what it took, and its displacement.
+fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
+    let (free, load) = conditions(system);
+    let options = StaticOptions {
+        tolerance: TOLERANCE,
+        ..StaticOptions::default()
+    };
+    let mut u = vec![0.0; load.len()];
+    let mut supports = u.clone();
+    system.place_on(0.0, &On::All, &mut supports);
+    let target = Target {
+        t: 0.0,
+        load: &load,
+        supports: &supports,
+        largest: 0.0,
+    };
+    let mut solver = Equilibrium::new(options, system, free);
+    let took = solver.find(system, &target, &mut u, Interrupt::never())?;
+    Ok((took, u))
+}
+
+/// Products, steps of Newton's method, reaction of a grip and energy of the plate that is stretched by 5 %.
+pub(super) fn newton(case: &Case<'_>) -> Result<Found, RunError> {
+    let system = stretched(case.count("cells")?)?;
+    let (took, u) = state_of(&system)?;
+    let (n, volumes) = (system.points(), system.cloud().volumes());
+    let mut force = vec![0.0; u.len()];
+    system.operator().add_force(0.0, &u, On::All, &mut force);
+    let grip = system.motions()[1].points.iter();
+    let reaction: f64 = grip
+        .map(|&i| -volumes[i as usize] * force[n + i as usize])
+        .sum();
+    Ok([
+        ("products", took.products as f64),
+        ("steps", took.newton as f64),
+        ("reaction", reaction),
+        ("energy", system.operator().energy(0.0, &u)),
+    ]
+    .into())
 }
 
 /// 1 on free entries and 0 on held ones, and the loads (N/m³).
