@@ -19,6 +19,8 @@ pub enum BreakingRule {
     Event {
         /// Time (s) at which supports have the displacements that are scaled.
         reference: f64,
+        /// Bonds within this part of the largest stretch break together; 0: the most stretched bond alone.
+        ties: f64,
     },
 }
 
@@ -29,6 +31,14 @@ impl Default for BreakingRule {
 }
 
 impl BreakingRule {
+    /// From event to event; bonds within 0.1 % of the largest stretch break together, so that symmetric bodies break symmetrically.
+    pub fn events(reference: f64) -> Self {
+        Self::Event {
+            reference,
+            ties: 1e-3,
+        }
+    }
+
     /// Breaks bonds at displacement `u`. Returns the energy that the body lost at `u` and that was not booked as dissipated, J; none if no bond broke. `work` is for forces.
     ///
     /// The worst bonds are those that exceed their critical stretch in displacements scaled down by a common factor. They dissipate their energy there, as they would have if loads had grown in steps too
@@ -44,10 +54,8 @@ impl BreakingRule {
                 Scaled::By(down) => beyond = at(system, t, (&down, u), work),
             },
             Self::All => end_step(system, t, u, work),
-            Self::Event { .. } => {
-                /// Bonds within this part of the largest stretch break together, so that symmetric bodies break symmetrically.
-                const TIES: f64 = 1e-3;
-                let up: Vec<f64> = u.iter().map(|u| (1.0 + TIES) * u).collect();
+            Self::Event { ties, .. } => {
+                let up: Vec<f64> = u.iter().map(|u| (1.0 + ties) * u).collect();
                 beyond = at(system, t, (&up, u), work);
             }
         }

@@ -73,7 +73,7 @@ impl StaticScheme {
         }
         require(NAME, Self::REQUIREMENTS, system)?;
         let supported = match options.breaking {
-            BreakingRule::Event { reference } => {
+            BreakingRule::Event { reference, .. } => {
                 events::check(system, reference)?;
                 reference
             }
@@ -309,7 +309,7 @@ impl Integrator for StaticScheme {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         self.effort = Effort::default();
-        if let BreakingRule::Event { reference } = self.options.breaking {
+        if let BreakingRule::Event { reference, .. } = self.options.breaking {
             self.step_to_event(system, state, (t_next, reference), interrupt)?;
             self.close_step(state, t_next);
             return Ok(());

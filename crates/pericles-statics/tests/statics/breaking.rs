@@ -72,7 +72,10 @@ fn worst_first_breaks_fewer_bonds_than_all_at_once_and_accounts_for_their_energy
     assert!(0 < worst && worst < all);
 }
 
-const EVENTS: BreakingRule = BreakingRule::Event { reference: 1.0 };
+const EVENTS: BreakingRule = BreakingRule::Event {
+    reference: 1.0,
+    ties: 1e-3,
+};
 
 /// Displacement of a grip and the force on it.
 fn curve_point(run: &Simulation) -> [f64; 2] {

@@ -83,3 +83,26 @@ fn a_plate_between_grips_takes_at_most_thirty_products() {
         assert!(effort(&gripped_plate(cells)).products <= 30);
     }
 }
+
+/// Prints the products of large bodies.
+#[test]
+#[ignore = "takes minutes"]
+fn products_of_large_bodies() {
+    let crack = || Crack::Segment {
+        from: [-0.5, 0.2],
+        to: [0.0, 0.2],
+    };
+    for cells in [120, 240] {
+        for nu in [0.25, 1.0 / 3.0, 0.4, 0.45, 0.49] {
+            let [whole, cracked] = [vec![], vec![crack()]]
+                .map(|cracks| effort(&pulled_plate(cells, nu, cracks)).products);
+            println!("plate {cells}, {nu}: {whole}, cracked {cracked}");
+        }
+    }
+    for n in [16, 20] {
+        for nu in [0.25, 0.4, 0.45, 0.49] {
+            let products = effort(&sheared_bar(n, nu, vec![])).products;
+            println!("bar {n}, {nu}: {products}");
+        }
+    }
+}

@@ -3,15 +3,16 @@
 use std::sync::Arc;
 
 use pericles::boundary::{PrescribedMotion, TimeFunction};
-use pericles::family::{Crack, VolumeCorrection};
-use pericles::kernel::{Influence, InfluenceFunction};
+use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::kernel::InfluenceFunction;
 use pericles::material::{
-    BondMaterial, ElasticModulus, Fracture, FractureCalibration, PairLaw, StressState,
+    BondFailure, FractureCalibration, GivenConstants, LinearSolid, StateInfluence, Strains,
+    StressState, StretchDefinition,
 };
-use pericles::prelude::Body;
+use pericles::operator::{BondForm, LinearSolidBody};
 use pericles::space::{Grid, Shape};
 use pericles::time::State;
-use pericles::{Control, Outcome, Simulation, System};
+use pericles::{Control, Outcome, PointScalar, Simulation, System};
 use pericles_run::RunError;
 use pericles_statics::{BreakingRule, StaticOptions, StaticScheme};
 
@@ -42,10 +43,15 @@ struct Event {
 
 /// Peak force, the displacement at which it is reached, broken bonds, products and, from event to event, the energy of the crack over G₀. The argument `rule` says how bonds break.
 pub(super) fn path(case: &Case<'_>) -> Result<Found, RunError> {
+    let single = BreakingRule::Event {
+        reference: 1.0,
+        ties: 0.0,
+    };
     let rules = [
         ("all", BreakingRule::All),
         ("worst first", BreakingRule::default()),
-        ("event to event", BreakingRule::Event { reference: 1.0 }),
+        ("event to event", single),
+        ("event to event, ties together", BreakingRule::events(1.0)),
     ];
     let breaking = case.one_of("rule", &rules)?;
     let by_events = matches!(breaking, BreakingRule::Event { .. });
@@ -97,7 +103,7 @@ pub(super) fn path(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(found.curve("path", &column(0), &column(1)))
 }
 
-/// A plate 1 × 1 in plane strain with a notch of 0.3 from its left edge, whose ends are pulled apart by grips of three rows.
+/// A bond-based plate (state-based, ν = 1/4) 1 × 1 in plane strain with a notch of 0.3 from its left edge, whose ends are pulled apart by grips of three rows.
 fn plate(cells: usize) -> Result<System, RunError> {
     let grid = Grid {
         shape: Shape::Box {
@@ -110,35 +116,47 @@ fn plate(cells: usize) -> Result<System, RunError> {
     };
     let cloud = Arc::new(grid.points()?);
     let dx = cloud.spacing();
-    let mut material = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0 * dx * (1.0 + 1e-6));
-    material.law = PairLaw::Linear;
-    material.influence = Influence {
-        function: InfluenceFunction::Conical,
-        ..Influence::default()
-    };
-    material.volume_correction = VolumeCorrection::Linear;
-    material.fracture = Fracture::Energy {
-        energy: FRACTURE_ENERGY,
-        calibration: FractureCalibration::Continuum,
-    };
     let rows = |count: f64, side: f64| points(&cloud, |x| side * x[1] > 0.5 - count * dx);
-    let mut body = Body::new(cloud.clone(), material)
-        .stress_state(StressState::PlaneStrain)
-        .crack(Crack::Segment {
-            from: [-0.5, 0.0],
-            to: [-0.2, 0.0],
-        });
+    let solid = LinearSolid {
+        density: 1.0,
+        elastic: GivenConstants {
+            young: Some(1.0),
+            poisson_ratio: Some(0.25),
+            ..GivenConstants::default()
+        },
+        horizon: 3.0 * dx * (1.0 + 1e-6),
+        influence: StateInfluence::Function(InfluenceFunction::Conical),
+        volume_correction: VolumeCorrection::Linear,
+        failure: BondFailure::Stretch {
+            fracture_energy: FRACTURE_ENERGY,
+            definition: StretchDefinition::Closing,
+            calibration: FractureCalibration::Continuum,
+        },
+    };
+    let constants = solid.constants(&cloud, StressState::PlaneStrain)?;
+    let notch = Crack::Segment {
+        from: [-0.5, 0.0],
+        to: [-0.2, 0.0],
+    };
+    let no_fail = [rows(6.0, 1.0), rows(6.0, -1.0)].concat();
+    let body = LinearSolidBody {
+        strains: Strains::Small,
+        cracks: &[(notch, EndRule::Closed)],
+        no_fail: &no_fail,
+        ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::Linear)
+    };
+    let force = body.operator(BondForm::Fastest)?.operator;
+    let mut system = System::new(cloud.clone(), force, PointScalar::Uniform(1.0))?;
     for side in [1.0, -1.0] {
         let ramp = TimeFunction::Ramp {
             start: 0.0,
             duration: 1.0,
         };
         let opening = [Some(0.0), Some(side * OPENING), None];
-        body = body.no_fail(rows(6.0, side));
         let grip = PrescribedMotion::displacement(rows(3.0, side), opening, ramp);
-        body = body.motion(grip);
+        system.add_motion(grip)?;
     }
-    Ok(body.build()?)
+    Ok(system)
 }
 
 fn event(run: &Simulation) -> Event {
@@ -164,7 +182,8 @@ fn tip(system: &System) -> f64 {
     let mut cut = vec![true; (1.0 / dx).round() as usize];
     if let Some(breaking) = system.operator().capabilities().breaking {
         breaking.for_each_intact(&mut |i, j| {
-            if column(i) == column(j) && beside(i, 1.0) && beside(j, -1.0) {
+            let across = beside(i, 1.0) && beside(j, -1.0) || beside(i, -1.0) && beside(j, 1.0);
+            if across && column(i) == column(j) {
                 cut[column(i)] = false;
             }
         });
