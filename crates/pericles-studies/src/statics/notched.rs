@@ -51,7 +51,10 @@ pub(super) fn path(case: &Case<'_>) -> Result<Found, RunError> {
         ("all", BreakingRule::All),
         ("worst first", BreakingRule::default()),
         ("event to event", single),
-        ("event to event, ties together", BreakingRule::events(1.0)),
+        (
+            "event to event, equal bonds together",
+            BreakingRule::events(1.0),
+        ),
     ];
     let breaking = case.one_of("rule", &rules)?;
     let by_events = matches!(breaking, BreakingRule::Event { .. });
@@ -141,7 +144,7 @@ fn plate(cells: usize) -> Result<System, RunError> {
     let no_fail = [rows(6.0, 1.0), rows(6.0, -1.0)].concat();
     let body = LinearSolidBody {
         strains: Strains::Small,
-        cracks: &[(notch, EndRule::Closed)],
+        cracks: &[(notch, EndRule::Open)],
         no_fail: &no_fail,
         ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::Linear)
     };
