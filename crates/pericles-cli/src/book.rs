@@ -162,6 +162,7 @@ fn command_lines_of_the_pages_are_read() {
                 let (deck, overrides) = match cli.command {
                     Command::Run(run) => (run.deck, run.overrides),
                     Command::Check(check) => (check.deck, check.overrides),
+                    Command::Modes(modes) => (modes.deck, modes.overrides),
                     Command::Dispersion(dispersion) => (dispersion.deck, dispersion.overrides),
                     _ => continue,
                 };

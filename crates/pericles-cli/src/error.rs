@@ -80,6 +80,13 @@ pub(crate) enum CliError {
     )]
     #[diagnostic(help("leave --measure out, or use a stable kernel"))]
     UnstableSpectrum,
+    /// A prestress that is not static.
+    #[error("--prestress needs a static run; the scheme of the deck is \"{scheme}\"")]
+    #[diagnostic(help("use time.scheme = \"static\", or leave --prestress out"))]
+    NotStatic {
+        /// The scheme of the deck.
+        scheme: &'static str,
+    },
     /// A vector with more components than the body has dimensions.
     #[error("{option} has {given} components; the body has {dimension} dimension(s)")]
     #[diagnostic(help("give one component for each dimension of the body"))]
@@ -120,6 +127,7 @@ impl CliError {
             Self::Run(OfRun(error)) => exit_of(error),
             Self::NoDeck { .. }
             | Self::UnstableSpectrum
+            | Self::NotStatic { .. }
             | Self::Surface { .. }
             | Self::Mesh { .. }
             | Self::NoFields { .. } => Exit::Input,

@@ -1,7 +1,7 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
 //! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] and [`converge`] on one deck at several values, `info`, `plot`,
-//! `diff` and `report` ([`page`]) on results, `reproduce` on the studies inside the program, `geodesics` on surfaces, `mesh` on files of meshes, `export` on results, `bench` on fixed bodies. Each command
+//! `diff` and `report` ([`page`]) on results, `reproduce` on the studies inside the program, `modes` on decks, `geodesics` on surfaces, `mesh` on files of meshes, `export` on results, `bench` on fixed bodies. Each command
 //! is one module; it reads arguments, calls a library and prints. What they share are the console, what is shown of a run ([`screen`]), the signals,
 //! and errors, which end in one message and one exit status ([`exit`]).
 
@@ -27,6 +27,7 @@ mod given;
 mod info;
 mod manual;
 mod mesh;
+mod modes;
 mod new;
 mod page;
 mod plot;
@@ -85,6 +86,7 @@ fn main() -> ExitCode {
         Command::Dispersion(args) => dispersion::dispersion(&args),
         Command::Geodesics(args) => geodesics::geodesics(&args),
         Command::Mesh(args) => mesh::mesh(&args),
+        Command::Modes(args) => modes::modes(&args),
         Command::Export(args) => export::export(&args),
         Command::Converge(args) => converge::converge(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),

@@ -89,14 +89,15 @@ fn energies(audit: &Audit) -> Result<(), IoError> {
         quantity(audit.dissipated_energy, "J"),
         quantity(audit.external_work, "J"),
     ))?;
-    // Static states have none.
-    let momentum = if audit.momentum_error.is_nan() {
-        String::new()
-    } else {
-        format!(", momentum by {:.1e} kg m/s", audit.momentum_error)
+    let forces = match &audit.static_balance {
+        Some(balance) => format!(
+            ", residual {:.1e}, resultant force {:.1e} and moment {:.1e} of loads and reactions",
+            balance.residual, balance.force_relative, balance.moment_relative
+        ),
+        None => format!(", momentum by {:.1e} kg m/s", audit.momentum_error),
     };
     console::print(format_args!(
-        "audit: energy off by {} ({}){momentum}; {} bonds broken, largest damage {:.2}",
+        "audit: energy off by {} ({}){forces}; {} bonds broken, largest damage {:.2}",
         quantity(audit.balance, "J"),
         percent(audit.energy_drift),
         count(audit.broken_bonds),

@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::relaxation;
 use crate::set::SetNames;
-use crate::statics::{self, Statics};
+use crate::statics::{self, RigidModes, Statics};
 use crate::vocabulary::FINE_REGIONS;
 
 /// Schemes of time integration.
@@ -82,6 +82,11 @@ impl Scheme {
     /// Whether its states are static: true time plays no part.
     pub fn is_static(&self) -> bool {
         matches!(self, Self::Relaxation(_) | Self::Static(_))
+    }
+
+    /// Whether it takes out rigid-body motions that no support prevents.
+    pub fn removes_rigid_modes(&self) -> bool {
+        matches!(self, Self::Static(options) if options.rigid_modes == RigidModes::Fix)
     }
 }
 

@@ -33,6 +33,8 @@ pub enum StaticBreaking {
     WorstFirst,
     /// All at once.
     All,
+    /// One after the other, at the load at which each reaches its limit.
+    Event,
 }
 
 /// What is done with rigid-body motions that no support prevents.
@@ -86,6 +88,7 @@ pub(crate) fn read(table: &Table<'_>) -> Option<Statics> {
         &[
             ("worst-first", StaticBreaking::WorstFirst),
             ("all", StaticBreaking::All),
+            ("event", StaticBreaking::Event),
         ],
     );
     Some(Statics {

@@ -143,7 +143,7 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"static\"\ntolerance = 2", (36, 13), "2", &["residual over loads"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nnewton_steps = 4000", (36, 16), "4000", &["from 1 to 1000"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nrigid_modes = \"keep\"", (36, 15), "\"keep\"", &["rigid", "refuse", "fix"]),
-    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"event\"", (36, 12), "\"event\"", &["rule for breaking", "worst-first", "all"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"first\"", (36, 12), "\"first\"", &["rule for breaking", "worst-first", "all", "event"]),
     wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["no place", "scheme = \"static\""]),
     wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
     wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a share of the body's mass"]),

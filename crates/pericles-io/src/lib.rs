@@ -75,6 +75,7 @@ pub use mesh::{
     parse_mesh, parse_surface, read_fields, read_mesh, read_surface,
 };
 pub use npz::NpzWriter;
+pub use numbering::in_user_order;
 pub use outline::{parse_outline, read_outline};
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,

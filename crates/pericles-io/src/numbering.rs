@@ -40,6 +40,11 @@ impl Numbering {
     }
 }
 
+/// A component-major array on the points of a cloud in the user's order of points.
+pub fn in_user_order<'a>(cloud: &PointCloud, array: &'a [f64]) -> Cow<'a, [f64]> {
+    Numbering::of(cloud).apply(array)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

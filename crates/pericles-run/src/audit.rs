@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::facts::Facts;
 use crate::mirror::{MirrorError, Symmetries};
 use crate::refinement::RefinementAudit;
+use crate::static_balance::StaticBalance;
 
 /// What the audit compares the end with: the state before the first step of the whole run.
 pub struct Start {
@@ -50,10 +51,10 @@ pub struct Audit {
     pub balance_over_dissipated: f64,
     /// The largest size of the balance among the rows of history.csv.
     pub largest_balance: f64,
-    /// Momentum, kg m/s.
-    pub momentum: [f64; 3],
-    /// Impulse of loads and supports since the start, N s.
-    pub impulse: [f64; 3],
+    /// Momentum, kg m/s; none of static states.
+    pub momentum: Option<[f64; 3]>,
+    /// Impulse of loads and supports since the start, N s; none of static states.
+    pub impulse: Option<[f64; 3]>,
     /// |momentum − momentum at the start − impulse|; NaN (null) for static states, which have no momentum.
     pub momentum_error: f64,
     /// The same over √(2 · kinetic energy · mass).
@@ -76,6 +77,9 @@ pub struct Audit {
     /// How far the displacements are from their mirror images, where a run begins as its own.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mirror_errors: Vec<MirrorError>,
+    /// Residual, and the balance of loads and reactions, of static states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub static_balance: Option<StaticBalance>,
     /// None for schemes with one time step.
     pub refinement: Option<RefinementAudit>,
     /// Warnings about the results.
@@ -99,7 +103,8 @@ impl Audit {
         let balance = energies.balance();
         let momentum = system.momentum(&state.v);
         let impulse = system.ledger().impulse;
-        let error = if simulation.integrator().is_static() {
+        let moves = !simulation.integrator().is_static();
+        let error = if !moves {
             f64::NAN
         } else {
             (0..3)
@@ -129,8 +134,8 @@ impl Audit {
                 .unwrap_or_default()
                 .iter()
                 .fold(balance.abs(), |most: f64, b| most.max(b.abs())),
-            momentum,
-            impulse,
+            momentum: moves.then_some(momentum),
+            impulse: moves.then_some(impulse),
             momentum_error: error,
             momentum_error_relative: error / (2.0 * energies.kinetic * mass).sqrt(),
             broken_bonds: system.operator().broken_bonds(),
@@ -141,6 +146,7 @@ impl Audit {
             evaluated_points: system.evaluated_points(),
             force_rounding: system.operator().rounding(&simulation.state().u),
             mirror_errors: start.symmetries.errors(simulation),
+            static_balance: StaticBalance::of(simulation),
             refinement: simulation
                 .integrator()
                 .refinement()

@@ -8,6 +8,7 @@
 //!   a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It writes what the model asks for, checkpoints, and [`Report`] as `run.json`.
 //! * [`Results`] – the results of a run, read back from its folder.
 //! * [`sweep`] – one deck at several values of its keys; [`convergence`] – how a number of such runs converges.
+//! * [`Vibration`] – the natural modes of a body, as table, fields and pictures.
 //! * [`refinement`] – whether two time steps pay; [`dispersion`] – what a lattice does to waves, as files.
 //!
 //! Nothing here prints, reads the command line or watches signals.
@@ -63,8 +64,10 @@ mod report;
 mod results;
 mod run;
 mod source;
+mod static_balance;
 pub mod sweep;
 pub mod units;
+mod vibration;
 mod watch;
 
 pub use assembled::{Assembled, Caching, Means, readers};
@@ -89,3 +92,5 @@ pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};
 pub use source::{ModelData, Source, SourceRecord};
+pub use static_balance::StaticBalance;
+pub use vibration::Vibration;

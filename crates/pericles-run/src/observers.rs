@@ -8,8 +8,9 @@ use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
 use pericles_deck::{ALL, FieldBlocks, FieldFormat, Model, Picture, Precision, Scheme};
 use pericles_io::observers::{
-    Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, FragmentCourse, History,
-    InnerColumns, PictureOf, Pictures, Probes, Reactions, ResultFile, ResultFormat, SurfaceCourse,
+    Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, ForceDisplacement,
+    FragmentCourse, History, InnerColumns, PictureOf, Pictures, Probes, Reactions, ResultFile,
+    ResultFormat, SurfaceCourse,
 };
 use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
@@ -33,6 +34,14 @@ pub fn simulation(
     let can_break = assembly.system.operator().can_break();
     let reactions = (!assembly.system.motions().is_empty())
         .then(|| Reactions::new(folder.file("reactions.csv"), assembly.system.motions()));
+    let curve = (model.time.scheme.is_static() && reactions.is_some()).then(|| {
+        ForceDisplacement::new(
+            folder.file("force_displacement.csv"),
+            folder.file("force_displacement.png"),
+            model.title.clone().unwrap_or_default(),
+            assembly.system.motions(),
+        )
+    });
     let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
     let exact = assembly.exact.take();
     let surface = assembly.surface.clone();
@@ -68,6 +77,10 @@ pub fn simulation(
     if let Some(reactions) = reactions {
         names.push("reactions.csv".into());
         simulation.observe(output.history, Box::new(reactions));
+    }
+    if let Some(curve) = curve {
+        names.extend(["force_displacement.csv", "force_displacement.png"].map(String::from));
+        simulation.observe(Schedule::Every(1), Box::new(curve));
     }
     if !probes.is_empty() {
         names.push("probes.csv".into());

@@ -3,6 +3,8 @@
 use pericles::operator::On;
 use pericles::{StepEnd, System};
 
+use crate::stretch::{endangered, largest_ratio};
+
 /// Which over-stretched bonds break at a static state, before the next one is sought at the same loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BreakingRule {
@@ -13,6 +15,13 @@ pub enum BreakingRule {
     },
     /// All of them: fewer static states, more broken bonds.
     All,
+    /// None is ever over-stretched: each load step scales the displacements of the supports by the factor at which the next bond reaches its critical stretch. The factor falls where the body snaps back.
+    Event {
+        /// Time (s) at which supports have the displacements that are scaled.
+        reference: f64,
+        /// Bonds within this part of the largest stretch break together; 0: the most stretched bond alone.
+        ties: f64,
+    },
 }
 
 impl Default for BreakingRule {
@@ -22,6 +31,14 @@ impl Default for BreakingRule {
 }
 
 impl BreakingRule {
+    /// From event to event; bonds within 0.1 % of the largest stretch break together, so that symmetric bodies break symmetrically.
+    pub fn events(reference: f64) -> Self {
+        Self::Event {
+            reference,
+            ties: 1e-3,
+        }
+    }
+
     /// Breaks bonds at displacement `u`. Returns the energy that the body lost at `u` and that was not booked as dissipated, J; none if no bond broke. `work` is for forces.
     ///
     /// The worst bonds are those that exceed their critical stretch in displacements scaled down by a common factor. They dissipate their energy there, as they would have if loads had grown in steps too
@@ -37,18 +54,25 @@ impl BreakingRule {
             Self::WorstFirst { fraction } => match scaled(system, u, fraction) {
                 Scaled::Nothing => return None,
                 Scaled::All => end_step(system, t, u, work),
-                Scaled::By(down) => {
-                    let energy = system.operator().energy(t, u);
-                    let booked = system.operator().dissipated();
-                    end_step(system, t, &down, work);
-                    let lost = energy - system.operator().energy(t, u);
-                    beyond = lost - (system.operator().dissipated() - booked);
-                }
+                Scaled::By(down) => beyond = at(system, t, (&down, u), work),
             },
             Self::All => end_step(system, t, u, work),
+            Self::Event { ties, .. } => {
+                let up: Vec<f64> = u.iter().map(|u| (1.0 + ties) * u).collect();
+                beyond = at(system, t, (&up, u), work);
+            }
         }
         (system.operator().broken_bonds() > broken).then_some(beyond)
     }
+}
+
+/// Breaks the bonds that are over-stretched in `scaled` displacements, which dissipate their energy there; what the body loses at `u` beyond that, J.
+fn at(system: &mut System, t: f64, (scaled, u): (&[f64], &[f64]), work: &mut [f64]) -> f64 {
+    let energy = system.operator().energy(t, u);
+    let booked = system.operator().dissipated();
+    end_step(system, t, scaled, work);
+    let lost = energy - system.operator().energy(t, u);
+    lost - (system.operator().dissipated() - booked)
 }
 
 fn end_step(system: &mut System, t: f64, u: &[f64], work: &mut [f64]) {
@@ -66,38 +90,20 @@ enum Scaled {
 }
 
 fn scaled(system: &System, u: &[f64], fraction: f64) -> Scaled {
-    let marks = |u: &[f64], part: f64| {
-        let mut marks = vec![false; system.points()];
-        if let Some(breaking) = system.operator().capabilities().breaking {
-            breaking.mark_endangered(u, part, &mut marks);
-        }
-        marks
-    };
-    let any = |part: f64| marks(u, part).contains(&true);
-    if !any(1.0) {
+    if !endangered(system, u, 1.0).contains(&true) {
         return Scaled::Nothing;
-    }
-    /// Stretches beyond this multiple of the critical one are not told apart.
-    const LARGEST: f64 = 1e6;
-    let (mut low, mut high): (f64, f64) = (1.0, 2.0);
-    while any(high) {
-        (low, high) = (high, 2.0 * high);
-        if high > LARGEST {
-            return Scaled::All;
-        }
     }
     /// Relative accuracy of the largest stretch, well below what a fraction leaves out.
     const ACCURACY: f64 = 1e-5;
-    while high - low > ACCURACY * low {
-        let middle = 0.5 * (low + high);
-        *(if any(middle) { &mut low } else { &mut high }) = middle;
-    }
-    let part = fraction * low;
+    let part = match largest_ratio(system, u, ACCURACY) {
+        Some(largest) => fraction * largest,
+        None => return Scaled::All,
+    };
     if part <= 1.0 {
         return Scaled::All;
     }
     let down: Vec<f64> = u.iter().map(|u| u / part).collect();
-    if marks(u, part) == marks(&down, 1.0) {
+    if endangered(system, u, part) == endangered(system, &down, 1.0) {
         Scaled::By(down)
     } else {
         Scaled::All

@@ -332,7 +332,7 @@ fn residual_into(system: &System, target: &Target<'_>, u: &[f64], out: &mut [f64
     out.copy_from_slice(target.load);
     system.operator().add_force(target.t, u, On::All, out);
     let (n, volumes) = (system.points(), system.cloud().volumes());
-    pericles::parallel::for_each_chunk(out, &|first, chunk| {
+    crate::chunks::for_each_chunk(out, &|first, chunk| {
         for (k, out) in chunk.iter_mut().enumerate() {
             *out *= volumes[(first + k) % n];
         }

@@ -30,6 +30,18 @@ pub enum StaticsError {
         /// Resultant along rigid-body motions over the norm of the loads.
         part: f64,
     },
+    /// A system whose natural modes cannot be found.
+    #[error("the natural modes of this body cannot be found: {reason}")]
+    NoModes {
+        /// Why, and what can be done.
+        reason: &'static str,
+    },
+    /// A run that cannot be followed from event to event.
+    #[error("breaking = \"event\" cannot be used: {reason}; use \"worst-first\" otherwise")]
+    NoEvents {
+        /// Why.
+        reason: &'static str,
+    },
     /// The modes do not converge.
     #[error("the natural modes do not reach a residual of {} within {iterations} iterations; allow more of them, or ask for fewer modes", significant(*.tolerance, 3))]
     ModesNotFound {

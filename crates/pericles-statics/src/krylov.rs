@@ -3,6 +3,7 @@
 use pericles::domain::Domain;
 use pericles::{Interrupt, Result};
 
+use crate::chunks::for_each_chunk;
 use crate::sparse::add_multiple;
 
 /// A linear problem A d = r on the free entries of vectors that also have held entries.
@@ -144,7 +145,7 @@ pub fn conjugate_gradients(
 
 /// y = x + factor y
 fn add_to_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
-    pericles::parallel::for_each_chunk(y, &|first, chunk| {
+    for_each_chunk(y, &|first, chunk| {
         let length = chunk.len();
         for (y, x) in chunk.iter_mut().zip(&x[first..first + length]) {
             *y = x + factor * *y;

@@ -12,10 +12,13 @@
 //!
 //! The crate uses only what the engine, [`pericles`], exports.
 
+mod block;
 mod breaking;
+mod chunks;
 mod eigen;
 mod equilibrium;
 mod error;
+mod events;
 pub mod krylov;
 mod modes;
 pub mod multigrid;
@@ -24,6 +27,7 @@ mod path;
 pub mod rigid;
 mod scheme;
 pub mod sparse;
+mod stretch;
 pub mod surrogate;
 mod tangent;
 mod unknowns;

@@ -1,7 +1,8 @@
 //! Natural frequencies and mode shapes.
 
-use pericles::{Interrupt, Result, System};
+use pericles::{Interrupt, Need, Requirement, Result, System};
 
+use crate::block::{combination, symmetric_products};
 use crate::eigen::symmetric_eigen;
 use crate::error::StaticsError;
 use crate::multigrid::Multigrid;
@@ -71,19 +72,35 @@ pub struct NaturalModes {
 const EQUAL: f64 = 1e-6;
 
 impl NaturalModes {
+    /// What they need of a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: "absorbing boundaries and damping layers have no undamped modes; leave the boundary out",
+        },
+    ];
+
     /// The lowest modes about displacement `u` at time t, with the entries held that supports hold then.
     ///
     /// K x = ω² M x with the tangent stiffness K and the masses M is solved by the locally optimal block preconditioned conjugate gradient method (Knyazev, SIAM J. Sci. Comput. 23, 517, 2001) with the
     /// multigrid preconditioner of static states. Rigid-body motions that no support prevents are taken out beforehand; points without bonds are left out.
     ///
     /// # Errors
-    /// [`StaticsError::ModesNotFound`] after too many iterations; [`PericlesError::Interrupted`](pericles::PericlesError::Interrupted).
+    /// [`StaticsError::NoModes`] for a system that does not meet the [requirements](Self::REQUIREMENTS); [`StaticsError::ModesNotFound`] after too many iterations;
+    /// [`PericlesError::Interrupted`](pericles::PericlesError::Interrupted).
     pub fn find(
         options: ModeOptions,
         system: &System,
         (t, u): (f64, &[f64]),
         interrupt: Interrupt<'_>,
     ) -> Result<Self> {
+        let unmet = Self::REQUIREMENTS
+            .iter()
+            .find(|one| !one.need.is_met_by(system));
+        if let Some(Requirement { reason, .. }) = unmet {
+            return Err(StaticsError::NoModes { reason }.into());
+        }
         let mut problem = Problem::new(system, t, u);
         let free = problem.unknowns.len() - problem.rigid.len().min(problem.unknowns.len());
         /// Vectors that are iterated beside those wanted, so that the last of these converge as fast as the others.
@@ -141,6 +158,7 @@ struct Problem<'a> {
     t: f64,
     u: &'a [f64],
     masses: Vec<f64>,
+    ones: Vec<f64>,
     unknowns: Unknowns,
     free: Vec<f64>,
     multigrid: Multigrid,
@@ -168,6 +186,7 @@ impl<'a> Problem<'a> {
             t,
             u,
             masses: system.masses(),
+            ones: vec![1.0; free.len()],
             reduced: [reduced(), reduced()],
             unknowns,
             free,
@@ -313,28 +332,14 @@ impl Block {
     /// Takes the `size` lowest Ritz pairs of a space as iterates; their parts outside of its first `old` vectors are the directions.
     fn rayleigh_ritz(&mut self, problem: &Problem<'_>, space: Vectors, old: usize, size: usize) {
         let n = space.x.len();
-        let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
-        for i in 0..n {
-            let weighted = problem.weighted(&space.x[i]);
-            for j in 0..=i {
-                let m = problem.dot(&weighted, &space.x[j]);
-                let k = problem.dot(&space.product[i], &space.x[j]);
-                for place in [i * n + j, j * n + i] {
-                    mass[place] = m;
-                    stiffness[place] = k;
-                }
-            }
-        }
+        let mass = symmetric_products(&space.x, &space.x, &problem.masses);
+        let stiffness = symmetric_products(&space.product, &space.x, &problem.ones);
         let coefficients = lowest(n, &mass, &stiffness, size);
         self.values = coefficients.iter().map(|(value, _)| *value).collect();
+        let entries = problem.free.len();
         let combined = |vectors: &[Vec<f64>], from: usize| -> Vec<Vec<f64>> {
-            let of_one = |(_, c): &(f64, Vec<f64>)| {
-                let mut sum = vec![0.0; problem.free.len()];
-                for k in from..n {
-                    add_multiple(&mut sum, c[k], &vectors[k]);
-                }
-                sum
-            };
+            let of_one =
+                |(_, c): &(f64, Vec<f64>)| combination(&vectors[from..], &c[from..], entries);
             coefficients.iter().map(of_one).collect()
         };
         self.modes = Vectors {

@@ -7,7 +7,10 @@ use pericles::{
     Interrupt, Need, Path, PericlesError, Requirement, Result, StepEnd, System, require,
 };
 
+use crate::breaking::BreakingRule;
 use crate::equilibrium::{Effort, Equilibrium};
+use crate::error::StaticsError;
+use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
 
@@ -19,6 +22,8 @@ use crate::path::{Follower, LoadStep};
 /// does not converge is cut.
 ///
 /// Bonds that are over-stretched in a static state break, by default those with the largest stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is found again at the same loads, until none does.
+///
+/// With [`BreakingRule::Event`] each step goes to the state at which the next bond breaks, at whatever load that is.
 ///
 /// The energy balance: within a load step, loads and supports change linearly. For linear forces their work is that of the mean forces, exactly; for others it is integrated by Simpson's rule over static states in
 /// between, so that the balance closes to a small multiple of the tolerance. The run starts from the unloaded body. What the body gives up after bonds broke is reported as the
@@ -35,6 +40,8 @@ pub struct StaticScheme {
     largest: f64,
     /// Energy given up after bonds broke, J.
     released: f64,
+    /// The factor of the supports' displacements at the last event.
+    factor: f64,
     inner: InnerIterations,
     /// What the last step took.
     effort: Effort,
@@ -65,7 +72,14 @@ impl StaticScheme {
             });
         }
         require(NAME, Self::REQUIREMENTS, system)?;
-        let equilibrium = Equilibrium::new(options, system, free_at(system, 0.0));
+        let supported = match options.breaking {
+            BreakingRule::Event { reference, .. } => {
+                events::check(system, reference)?;
+                reference
+            }
+            _ => 0.0,
+        };
+        let equilibrium = Equilibrium::new(options, system, free_at(system, supported));
         equilibrium.check_support(system)?;
         Ok(Self {
             options,
@@ -74,6 +88,7 @@ impl StaticScheme {
             equilibrium,
             largest: 0.0,
             released: 0.0,
+            factor: 0.0,
             inner: InnerIterations::default(),
             effort: Effort::default(),
         })
@@ -154,6 +169,77 @@ impl StaticScheme {
                 elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
         }
     }
+
+    /// Moves `state` to the next event: the displacements of the supports are scaled so that the most stretched bond just reaches its critical stretch; then it breaks. Between events the body
+    /// is linear, so that one solution at the reference displacements gives all states on the way.
+    fn step_to_event(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        (t, reference): (f64, f64),
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        self.prepare(system, reference)?;
+        let first = state.step == 0;
+        let mut supports = vec![0.0; self.entries];
+        system.place_on(reference, &On::All, &mut supports);
+        let free = self.equilibrium.free();
+        let guess = |k: usize| match self.factor {
+            _ if free[k] == 0.0 => supports[k],
+            0.0 => 0.0,
+            factor => state.u[k] / factor,
+        };
+        let mut response: Vec<f64> = (0..self.entries).map(guess).collect();
+        /// Of the largest reactions: a residual below this part is accurate enough for a body that is almost severed.
+        const SEVERED: f64 = 1e-3;
+        let none = vec![0.0; self.entries];
+        let step = LoadStep {
+            t: reference,
+            loads: [&none; 2],
+            supports: [&supports; 2],
+            largest: SEVERED * self.largest,
+        };
+        self.follow(system, step, (&mut response, false), interrupt)?;
+        let ratio = events::next(system, &response, self.factor);
+        let factor = ratio.unwrap_or(self.factor);
+        let scaled = |by: f64| -> Vec<f64> { response.iter().map(|u| by * u).collect() };
+        let settled = scaled(self.factor);
+        if !first {
+            let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
+            system.book_equilibrium(&chord(t, 0.0, &settled, &state.u, false), &mut state.a);
+            self.released +=
+                elastic - system.operator().energy(t, &settled) + system.ledger().work - work;
+        }
+        state.u = scaled(factor);
+        let end = chord(t, t - state.t, &state.u, &settled, first);
+        system.book_equilibrium(&end, &mut state.a);
+        self.factor = factor;
+        if ratio.is_some() {
+            let broken = self
+                .options
+                .breaking
+                .apply(system, t, &state.u, &mut state.a);
+            self.released += broken.ok_or(StaticsError::NoEvents {
+                reason: "bonds do not break at a critical stretch",
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Notes the effort of a step and moves on to its end.
+    fn close_step(&mut self, state: &mut State, t_next: f64) {
+        let InnerIterations { most, total, .. } = self.inner;
+        self.inner = InnerIterations {
+            last: self.effort.products,
+            change: self.effort.residual,
+            most: most.max(self.effort.products),
+            total: total.saturating_add(self.effort.products),
+        };
+        state.v.fill(0.0);
+        state.a.fill(0.0);
+        state.t = t_next;
+        state.step += 1;
+    }
 }
 
 fn chord<'a>(t: f64, dt: f64, u: &'a [f64], before: &'a [f64], first: bool) -> StepEnd<'a> {
@@ -223,6 +309,11 @@ impl Integrator for StaticScheme {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         self.effort = Effort::default();
+        if let BreakingRule::Event { reference, .. } = self.options.breaking {
+            self.step_to_event(system, state, (t_next, reference), interrupt)?;
+            self.close_step(state, t_next);
+            return Ok(());
+        }
         self.prepare(system, t_next)?;
         let first = state.step == 0;
         let before = state.u.clone();
@@ -262,24 +353,14 @@ impl Integrator for StaticScheme {
         if system.operator().changes_at_step_ends() {
             self.settle(system, state, (t_next, &loads[1]), interrupt)?;
         }
-        let InnerIterations { most, total, .. } = self.inner;
-        self.inner = InnerIterations {
-            last: self.effort.products,
-            change: self.effort.residual,
-            most: most.max(self.effort.products),
-            total: total.saturating_add(self.effort.products),
-        };
-        state.v.fill(0.0);
-        state.a.fill(0.0);
-        state.t = t_next;
-        state.step += 1;
+        self.close_step(state, t_next);
         Ok(())
     }
 }
 
 pericles::saved! {
     impl Saved for StaticScheme {
-        released, largest: array("static/account"),
+        released, largest, factor: array("static/account"),
         inner: part,
         options, entries: fixed,
         equilibrium, effort: scratch,

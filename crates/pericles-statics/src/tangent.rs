@@ -1,8 +1,8 @@
 //! The tangent stiffness of a body as a linear problem.
 
 use pericles::System;
-use pericles::parallel::for_each_chunk;
 
+use crate::chunks::for_each_chunk;
 use crate::krylov::LinearProblem;
 use crate::multigrid::Multigrid;
 use crate::unknowns::Unknowns;

@@ -28,6 +28,7 @@ mod nonlocal_wave;
 mod numerics;
 mod row;
 mod state_based;
+mod statics;
 mod study;
 mod table;
 
@@ -42,7 +43,7 @@ pub use table::table;
 
 use study::Topic;
 
-const TOPICS: [&Topic; 8] = [
+const TOPICS: [&Topic; 9] = [
     &absorbing_boundaries::TOPIC,
     &dispersion::TOPIC,
     &fracture::TOPIC,
@@ -51,6 +52,7 @@ const TOPICS: [&Topic; 8] = [
     &nonlocal_wave::TOPIC,
     &numerics::TOPIC,
     &state_based::TOPIC,
+    &statics::TOPIC,
 ];
 
 static STUDIES: LazyLock<Vec<Study>> =

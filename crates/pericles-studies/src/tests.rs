@@ -72,6 +72,11 @@ fn state_based() {
 }
 
 #[test]
+fn statics() {
+    hold_all_of(&statics::TOPIC);
+}
+
+#[test]
 fn studies_are_found_by_name_only() {
     for study in studies() {
         assert_eq!(find(study.id).ok().map(|s| s.id), Some(study.id));

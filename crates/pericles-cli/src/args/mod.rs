@@ -1,6 +1,7 @@
 //! The command line.
 
 mod geometry;
+mod modes;
 mod shared;
 mod values;
 
@@ -15,6 +16,7 @@ use crate::exit::Exit;
 use crate::frames::Frames;
 
 pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs};
+pub(crate) use modes::ModesArgs;
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
 pub(crate) use values::{Direction, Format, Length, Pair, Range};
 
@@ -32,6 +34,7 @@ Examples:
   pericles run deck.toml --sweep body.spacing=1e-3,2e-3     one run per value, and a table of them
   pericles resume branching                           goes on after Ctrl-C, to the same bytes
   pericles dispersion deck.toml --measure             what the grid does to waves
+  pericles modes plate.toml --count 12                natural frequencies and mode shapes
   pericles geodesics 'icosphere(4)' --horizon 0.5     how far distances along edges are off
   pericles mesh bracket.msh --unit mm                 what a mesh contains: sets, volume, cell size
   pericles bench block-46 --threads 1                 how fast the operators are here
@@ -108,6 +111,16 @@ Results go to ./<deck's name>-dispersion, then -2, -3 …, or to --out. In the f
   wavevectors.csv   frequencies at the wave vectors of --wavevector
   spectrum_*, peaks what --measure found")]
     Dispersion(DispersionArgs),
+    /// Compute the lowest natural frequencies and mode shapes of a deck's body
+    #[command(after_help = "\
+The modes are those of the undeformed body with its supports, or with --prestress of the body under its static loads.
+Results go to ./<deck's name>-modes, then -2, -3 …, or to --out. In the folder:
+  modes.csv         frequency and residual of each mode
+  modes.pvd         mode shapes for ParaView: the time is the number of the mode
+  modes/            the files of modes.pvd, and a picture of each mode
+  pericles modes plate.toml --count 20
+  pericles modes bar.toml --json - --quiet")]
+    Modes(ModesArgs),
     /// Compare ways to find distances along a surface
     #[command(after_help = "\
 A surface is a file (.obj, .ply, .stl, .off, .msh, .vtu, .vtp) or a shape:

@@ -6,6 +6,7 @@
 //! | [`ResultFile`] | `fields.exo`, `fields.vtkhdf` | the same in one file |
 //! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; where there are such, the distance from a known solution, a bound of the energy, inner iterations |
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
+//! | [`ForceDisplacement`] | `force_displacement.csv`, `force_displacement.png` | displacements and forces of supports at static states |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
 //! | [`FragmentCourse`] | `fragments.csv` | pieces that bonds hold together |
 //! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
@@ -54,6 +55,7 @@ mod background;
 mod columns;
 mod cracks;
 mod fields;
+mod force_displacement;
 mod fragments;
 mod history;
 mod pictures;
@@ -66,6 +68,7 @@ mod table;
 pub use columns::{EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
 pub use fields::{FieldSeries, MeshCells};
+pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
 pub use history::History;
 pub use pictures::{DrawnState, PictureOf, Pictures};

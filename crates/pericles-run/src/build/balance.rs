@@ -138,9 +138,10 @@ impl Assembler<'_> {
             let caution = part.caution(cloud.len(), cloud);
             warnings.push(Remark::new("time.scheme", caution));
         }
+        let taken_out = self.model.time.scheme.removes_rigid_modes();
         let loose = parts
             .iter()
-            .filter(|part| !part.is_held && !part.is_unbalanced);
+            .filter(|part| !part.is_held && !part.is_unbalanced && !taken_out);
         let loose: Vec<&Part> = loose.collect();
         if let Some(first) = loose.first() {
             let caution = Caution::NoSupport {

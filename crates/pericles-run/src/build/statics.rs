@@ -19,6 +19,7 @@ impl Assembler<'_> {
             breaking: match options.breaking {
                 StaticBreaking::WorstFirst => BreakingRule::default(),
                 StaticBreaking::All => BreakingRule::All,
+                StaticBreaking::Event => BreakingRule::events(self.model.time.end),
             },
             fix_rigid_modes: options.rigid_modes == RigidModes::Fix,
             ..StaticOptions::default()

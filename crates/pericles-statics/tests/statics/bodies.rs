@@ -131,3 +131,24 @@ pub fn sheared_bar(n: usize, poisson_ratio: f64, cracks: Vec<Crack>) -> System {
     system.add_load(load).unwrap();
     system
 }
+
+/// A linear bond-based plate 1 × 1 in plane strain without a hole, whose first three rows are fixed while the last three are moved.
+pub fn gripped_plate(cells: usize) -> System {
+    let dx = 1.0 / cells as f64;
+    let cloud = Arc::new(Grid::plate([1.0, 1.0], dx, 1.0).points().unwrap());
+    let mut material = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0 * dx);
+    material.law = PairLaw::Linear;
+    let bottom = points(&cloud, |x| x[1] < 3.0 * dx);
+    let top = points(&cloud, |x| x[1] > 1.0 - 3.0 * dx);
+    let moved = [Some(0.0), Some(0.01), None];
+    Body::new(cloud, material)
+        .stress_state(StressState::PlaneStrain)
+        .motion(PrescribedMotion::fixed(bottom, 2))
+        .motion(PrescribedMotion::displacement(
+            top,
+            moved,
+            TimeFunction::Constant,
+        ))
+        .build()
+        .unwrap()
+}

@@ -6,7 +6,7 @@ use pericles::boundary::{MotionKind, PrescribedMotion};
 use pericles::material::{Strains, StressState};
 use pericles::prelude::*;
 use pericles::round_trip;
-use pericles_statics::{BreakingRule, StaticOptions, StaticScheme, StaticsError};
+use pericles_statics::{StaticOptions, StaticScheme, StaticsError};
 
 use crate::bodies::{Solid, plate_with_hole, points, pulled_plate};
 
@@ -226,65 +226,4 @@ fn the_energy_of_a_bar_that_is_torn_apart_is_accounted_for() {
     assert!(run.system().operator().broken_bonds() > 0);
     let part = energies.balance() / energies.work;
     assert!(part.abs() < 1e-5, "{part}");
-}
-
-/// A linear plate between grips with an edge notch, opened in two load steps.
-fn notched_plate(breaking: BreakingRule) -> Simulation {
-    let cells = 16;
-    let dx = 1.0 / f64::from(cells);
-    let plate = Arc::new(Grid::plate([1.0, 1.0], dx, 1.0).points().unwrap());
-    let mut material =
-        BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0 * dx).with_fracture_energy(1e-4);
-    material.law = PairLaw::Linear;
-    let grip = |upper: bool| {
-        points(&plate, |x| {
-            if upper {
-                x[1] > 1.0 - 3.0 * dx
-            } else {
-                x[1] < 3.0 * dx
-            }
-        })
-    };
-    let ramp = || TimeFunction::Ramp {
-        start: 0.0,
-        duration: 1.0,
-    };
-    let open = |set: PointSet, u: f64| {
-        PrescribedMotion::displacement(set, [Some(0.0), Some(u), None], ramp())
-    };
-    let (top, bottom) = (grip(true), grip(false));
-    let system = Body::new(plate.clone(), material)
-        .stress_state(StressState::PlaneStress)
-        .crack(Crack::Segment {
-            from: [0.0, 0.5],
-            to: [0.3, 0.5],
-        })
-        .no_fail(top.clone())
-        .no_fail(bottom.clone())
-        .motion(open(top, 0.012))
-        .motion(open(bottom, -0.012))
-        .build()
-        .unwrap();
-    let options = StaticOptions {
-        breaking,
-        ..StaticOptions::default()
-    };
-    let scheme = StaticScheme::new(options, &system).unwrap();
-    let state = State::of(&system);
-    Simulation::new(system, Box::new(scheme), state, 0.5, 2).unwrap()
-}
-
-#[test]
-fn worst_first_breaks_fewer_bonds_than_all_at_once_and_accounts_for_their_energy() {
-    let broken = |rule| {
-        let mut run = notched_plate(rule);
-        run.run_to_end().unwrap();
-        let energies = run.snapshot().energies();
-        let part = energies.balance() / energies.work;
-        assert!(part.abs() < 1e-5, "{rule:?}: {part}");
-        run.system().operator().broken_bonds()
-    };
-    let (worst, all) = (broken(BreakingRule::default()), broken(BreakingRule::All));
-    println!("{worst} {all}");
-    assert!(0 < worst && worst < all);
 }

@@ -3,8 +3,13 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use pericles::PointScalar;
 use pericles::material::{Strains, StressState};
 use pericles::prelude::*;
+use pericles_manifold::force::SurfaceBody;
+use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
+use pericles_manifold::surface::{AreaRule, Surface};
+use pericles_manifold::{PowerMaterial, SurfaceBond};
 use pericles_statics::{ModeOptions, NaturalModes, symmetric_eigen};
 
 use crate::bodies::Solid;
@@ -94,36 +99,115 @@ fn every_frequency_of_a_periodic_bar_is_double() {
 fn a_free_plate_has_the_frequencies_of_the_dense_matrix() {
     let cloud = Arc::new(Grid::plate([1.0, 1.0], 1.0 / 7.0, 1.0).points().unwrap());
     let solid = Solid {
-        cloud: cloud.clone(),
+        cloud,
         poisson_ratio: 0.3,
         state: StressState::PlaneStress,
         strains: Strains::Small,
         cracks: vec![],
     };
-    let system = solid.system();
-    let entries = 2 * cloud.len();
-    let (u, mut direction, mut column) =
-        (vec![0.0; entries], vec![0.0; entries], vec![0.0; entries]);
+    check_against_dense(&solid.system(), 3, 8);
+}
+
+/// A free body's frequencies against those of its dense stiffness matrix; volumes and density are equal.
+fn check_against_dense(system: &System, rigid: usize, count: usize) {
+    let n = system.dimension() * system.points();
+    let scale = 1.0 / system.density().at(0);
+    let (u, mut direction, mut column) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let mut dense = Vec::new();
-    for k in 0..entries {
+    for k in 0..n {
         direction.fill(0.0);
         direction[k] = 1.0;
         system
             .operator()
             .tangent_into(0.0, &u, &direction, &mut column);
-        dense.extend(column.iter().map(|f| -f));
+        dense.extend(column.iter().map(|f| -f * scale));
     }
-    // Equal volumes and a density of 1: the matrix is symmetric but for rounding.
-    let symmetric = (0..entries * entries)
-        .map(|e| 0.5 * (dense[e] + dense[(e % entries) * entries + e / entries]));
-    let (values, _) = symmetric_eigen(entries, symmetric.collect());
-    let found = modes(&system, 8);
-    assert_eq!(found.rigid_modes, 3);
+    let symmetric = (0..n * n).map(|e| 0.5 * (dense[e] + dense[(e % n) * n + e / n]));
+    let (values, _) = symmetric_eigen(n, symmetric.collect());
+    let found = modes(system, count);
+    assert_eq!(found.rigid_modes, rigid);
     for (k, mode) in found.modes.iter().enumerate() {
-        let exact = values[3 + k].sqrt() / TAU;
+        let exact = values[rigid + k].sqrt() / TAU;
+        let error = (mode.frequency_hz / exact - 1.0).abs();
         assert!(
-            (mode.frequency_hz / exact - 1.0).abs() < 1e-10,
-            "{k}: {mode:?} {exact}"
+            error < 1e-10,
+            "{k}: {mode:?} {exact}",
+            mode = mode.frequency_hz
+        );
+    }
+}
+
+#[test]
+fn a_free_bar_of_three_neighbours_has_the_frequencies_of_the_dense_matrix() {
+    check_against_dense(&bar(60, 3.0, false), 1, 6);
+}
+
+#[test]
+fn a_free_cube_has_the_frequencies_of_the_dense_matrix() {
+    let cloud = Arc::new(Grid::block([1.0; 3], 0.25).points().unwrap());
+    let solid = Solid {
+        cloud,
+        poisson_ratio: 0.25,
+        state: StressState::Spatial,
+        strains: Strains::Small,
+        cracks: vec![],
+    };
+    check_against_dense(&solid.system(), 6, 6);
+}
+
+#[test]
+fn the_modes_of_a_sphere_are_the_spherical_harmonics_of_each_component() {
+    // With p = 2 every component of the displacement vibrates by itself: spherical harmonics of degree l are (2 l + 1)-fold, three times.
+    let surface = Surface::icosphere(2, 1.0).unwrap();
+    let areas = surface.vertex_areas(AreaRule::Barycentric);
+    let cloud = Arc::new(surface.points(areas).unwrap());
+    let pairs = geodesic_pairs(&surface, 0.8, GeodesicMethod::Exact).unwrap();
+    let material = PowerMaterial {
+        density: 1.0,
+        kappa: 1.0,
+        alpha: 0.25,
+        p: 2.0,
+        horizon: 0.8,
+        bond: SurfaceBond::Displacement,
+        self_cell: false,
+        critical_stretch: f64::INFINITY,
+    };
+    let body = SurfaceBody {
+        surface: &surface,
+        cloud: &cloud,
+        pairs: &pairs,
+        material: &material,
+        stiffness: &[],
+        no_fail: &[],
+    };
+    let force = body.operator().unwrap();
+    let system = System::new(cloud.clone(), force, PointScalar::Uniform(1.0)).unwrap();
+    let found = modes(&system, 24);
+    // Rotations change displacements, which these bonds resist.
+    assert_eq!(found.rigid_modes, 3);
+    let groups = found.groups();
+    let multiplicities: Vec<usize> = groups.iter().map(|group| group.multiplicity).collect();
+    assert_eq!(multiplicities, [9, 15]);
+    // The dense eigenvalues of one component, symmetric in the square roots of the areas.
+    let (n, areas) = (cloud.len(), cloud.volumes());
+    let (mut direction, mut column) = (vec![0.0; 3 * n], vec![0.0; 3 * n]);
+    let mut dense = vec![0.0; n * n];
+    let linear = system.operator().as_linear().unwrap();
+    for j in 0..n {
+        direction[j] = 1.0;
+        linear.apply_into(&direction, &mut column);
+        direction[j] = 0.0;
+        for i in 0..n {
+            dense[i * n + j] = -column[i] * (areas[i] / areas[j]).sqrt();
+        }
+    }
+    let symmetric = (0..n * n).map(|e| 0.5 * (dense[e] + dense[(e % n) * n + e / n]));
+    let (values, _) = symmetric_eigen(n, symmetric.collect());
+    for (group, place) in groups.iter().zip([1, 4]) {
+        let exact = values[place].sqrt() / TAU;
+        assert!(
+            (group.frequency_hz / exact - 1.0).abs() < 1e-10,
+            "{group:?} {exact}"
         );
     }
 }

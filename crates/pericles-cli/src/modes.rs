@@ -1,0 +1,122 @@
+//! `modes`: the lowest natural frequencies and mode shapes of a body.
+
+use std::path::Path;
+
+use pericles_io::IoError;
+use pericles_run::units::{count, quantity, significant};
+use pericles_run::{Assembled, Means, Source, Vibration};
+use pericles_statics::{ModeGroup, ModeOptions};
+use serde::Serialize;
+
+use crate::args::ModesArgs;
+use crate::console;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::folder::output_folder;
+use crate::given;
+
+/// The results as JSON.
+#[derive(Serialize)]
+struct Results<'a> {
+    title: Option<&'a str>,
+    points: usize,
+    prestressed: bool,
+    /// Rigid-body motions that no support prevents.
+    rigid_modes: usize,
+    /// Modes of equal frequency together, by ascending frequency.
+    modes: Vec<Group>,
+    iterations: u32,
+    /// Products with the stiffness matrix.
+    products: u64,
+}
+
+/// Modes of equal frequency.
+#[derive(Serialize)]
+struct Group {
+    frequency_hz: f64,
+    multiplicity: usize,
+    residual: f64,
+}
+
+impl From<ModeGroup> for Group {
+    fn from(group: ModeGroup) -> Self {
+        Self {
+            frequency_hz: group.frequency_hz,
+            multiplicity: group.multiplicity,
+            residual: group.residual,
+        }
+    }
+}
+
+/// Finds the modes of a deck's body, prints them and writes their shapes.
+///
+/// # Errors
+/// A deck that is refused, a prestress that is not static, modes that do not converge, output that cannot be written.
+pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, CliError> {
+    args.execution.threads.start()?;
+    let deck = given::deck(&args.deck, &args.overrides.set)?;
+    let source = Source::of_deck(deck, args.deck.display().to_string());
+    let model = source.model();
+    let means = Means {
+        caching: args.caching.wanted(),
+        memory: args.memory.bytes(),
+    };
+    let assembled = Assembled::of(&source, &means, &mut |_| {})?;
+    let integrator = &assembled.assembly.integrator;
+    if args.prestress && !integrator.is_static() {
+        return Err(CliError::NotStatic {
+            scheme: integrator.name(),
+        });
+    }
+    let options = ModeOptions {
+        count: args.modes as usize,
+        tolerance: args.tolerance,
+        ..ModeOptions::default()
+    };
+    let found = Vibration::of(assembled.assembly, options, args.prestress)?;
+    let folder = output_folder(args.out.as_deref(), None, &args.deck, "-modes")?;
+    found.write(
+        &folder,
+        model.title.as_deref().unwrap_or_default(),
+        args.animation,
+    )?;
+    let results = Results {
+        title: model.title.as_deref(),
+        points: found.points(),
+        prestressed: args.prestress,
+        rigid_modes: found.modes.rigid_modes,
+        modes: found.modes.groups().into_iter().map(Group::from).collect(),
+        iterations: found.modes.iterations,
+        products: found.modes.products,
+    };
+    if let Some(path) = &args.json {
+        console::write_json(path, &results)?;
+    }
+    if args.json.as_deref() != Some(Path::new("-")) && !args.execution.quiet {
+        print(&results, folder.path())?;
+    }
+    Ok(Exit::Done)
+}
+
+fn print(results: &Results<'_>, folder: &Path) -> Result<(), IoError> {
+    console::print(format_args!(
+        "{} points, {} rigid-body modes; {} iterations with {} products",
+        count(results.points as u64),
+        results.rigid_modes,
+        results.iterations,
+        count(results.products)
+    ))?;
+    console::print(format_args!("{:>14}  multiplicity  residual", "frequency"))?;
+    for group in &results.modes {
+        console::print(format_args!(
+            "{:>14}  {:>12}  {}",
+            quantity(group.frequency_hz, "Hz"),
+            group.multiplicity,
+            significant(group.residual, 2)
+        ))?;
+    }
+    console::print(format_args!(
+        "Results in {}: modes.csv, modes.pvd (ParaView), pictures in modes/.",
+        folder.display()
+    ))
+}

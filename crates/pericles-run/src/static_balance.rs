@@ -1,0 +1,100 @@
+//! How well the forces on a body at rest are in balance.
+
+use pericles::Simulation;
+use pericles::observe::{Field, Snapshot};
+use serde::Serialize;
+
+/// The balance of forces at the last static state.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StaticBalance {
+    /// Norm of the residual forces over that of loads or reactions, as the tolerance of the scheme measures it.
+    pub residual: f64,
+    /// Resultant of loads and reactions, N: zero at equilibrium.
+    pub force: [f64; 3],
+    /// Its size over the sum of the sizes of all loads and reactions.
+    pub force_relative: f64,
+    /// Moment of loads and reactions about the middle of the body, N m: zero at equilibrium.
+    pub moment: [f64; 3],
+    /// Its size over the sum of the sizes of the moments of all loads and reactions.
+    pub moment_relative: f64,
+}
+
+impl StaticBalance {
+    /// Of the last state of a simulation; none unless its scheme is static.
+    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
+        let integrator = simulation.integrator();
+        let inner = integrator.inner_iterations()?;
+        if !integrator.is_static() {
+            return None;
+        }
+        let snapshot = simulation.snapshot();
+        let arms = arms(&snapshot);
+        let forces = forces(&snapshot);
+        let domain = simulation.system().domain();
+        let n = arms.len();
+        let total = |of: &(dyn Fn(usize) -> f64 + Sync)| domain.sum(n, of);
+        let moments: Vec<[f64; 3]> = arms.iter().zip(&forces).map(|(x, f)| cross(x, f)).collect();
+        let force = std::array::from_fn(|c| total(&|i| forces[i][c]));
+        let moment = std::array::from_fn(|c| total(&|i| moments[i][c]));
+        let relative = |resultant: &[f64; 3], sum: f64| match sum {
+            0.0 => 0.0,
+            sum => size(resultant) / sum,
+        };
+        Some(Self {
+            residual: inner.change,
+            force_relative: relative(&force, total(&|i| size(&forces[i]))),
+            moment_relative: relative(&moment, total(&|i| size(&moments[i]))),
+            force,
+            moment,
+        })
+    }
+}
+
+/// Positions of the points about their middle, m: displaced ones unless forces are linear in the displacements, for linear forces act at reference positions.
+fn arms(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
+    let system = snapshot.system();
+    let (n, cloud, u) = (system.points(), system.cloud(), &snapshot.state().u);
+    let linear = system.operator().as_linear().is_some();
+    let place = |i: usize| -> [f64; 3] {
+        let mut place = cloud.point(i);
+        if !linear {
+            (0..system.dimension()).for_each(|c| place[c] += u[c * n + i]);
+        }
+        place
+    };
+    let mean = |c: usize| system.domain().sum(n, |i| place(i)[c]) / n as f64;
+    let middle: [f64; 3] = std::array::from_fn(mean);
+    (0..n)
+        .map(|i| std::array::from_fn(|c| place(i)[c] - middle[c]))
+        .collect()
+}
+
+/// Loads and reactions on each point, N.
+fn forces(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
+    let system = snapshot.system();
+    let (n, volumes) = (system.points(), system.cloud().volumes());
+    let (loads, reactions) = (
+        snapshot.field(Field::ExternalForce),
+        snapshot.field(Field::Reaction),
+    );
+    let of_point = |i: usize| {
+        let mut force = [0.0; 3];
+        for (c, force) in force.iter_mut().enumerate().take(system.dimension()) {
+            *force = volumes[i] * (loads[c * n + i] + reactions[c * n + i]);
+        }
+        force
+    };
+    (0..n).map(of_point).collect()
+}
+
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn size(vector: &[f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

@@ -1,0 +1,150 @@
+//! Which bonds break at static states, and at which load.
+
+use std::sync::Arc;
+
+use pericles::material::StressState;
+use pericles::prelude::*;
+use pericles::round_trip;
+use pericles_statics::{BreakingRule, StaticOptions, StaticScheme};
+
+use crate::bodies::points;
+
+/// Displacement of a grip at t = 1.
+const OPENING: f64 = 0.012;
+
+/// A linear plate between grips with an edge notch, which they open by `opening` at t = 1.
+fn plate(opening: f64, law: PairLaw) -> System {
+    let cells = 16;
+    let dx = 1.0 / f64::from(cells);
+    let plate = Arc::new(Grid::plate([1.0, 1.0], dx, 1.0).points().unwrap());
+    let mut material =
+        BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0 * dx).with_fracture_energy(1e-4);
+    material.law = law;
+    let top = points(&plate, |x| x[1] > 1.0 - 3.0 * dx);
+    let bottom = points(&plate, |x| x[1] < 3.0 * dx);
+    let open = |set: PointSet, u: f64| {
+        let ramp = TimeFunction::Ramp {
+            start: 0.0,
+            duration: 1.0,
+        };
+        PrescribedMotion::displacement(set, [Some(0.0), Some(u), None], ramp)
+    };
+    Body::new(plate.clone(), material)
+        .stress_state(StressState::PlaneStress)
+        .crack(Crack::Segment {
+            from: [0.0, 0.5],
+            to: [0.3, 0.5],
+        })
+        .no_fail(top.clone())
+        .no_fail(bottom.clone())
+        .motion(open(top, opening))
+        .motion(open(bottom, -opening))
+        .build()
+        .unwrap()
+}
+
+fn run_of(system: System, breaking: BreakingRule, steps: u64) -> Simulation {
+    let options = StaticOptions {
+        breaking,
+        ..StaticOptions::default()
+    };
+    let scheme = StaticScheme::new(options, &system).unwrap();
+    let state = State::of(&system);
+    Simulation::new(system, Box::new(scheme), state, 1.0 / steps as f64, steps).unwrap()
+}
+
+fn notched_plate(breaking: BreakingRule) -> Simulation {
+    run_of(plate(OPENING, PairLaw::Linear), breaking, 2)
+}
+
+#[test]
+fn worst_first_breaks_fewer_bonds_than_all_at_once_and_accounts_for_their_energy() {
+    let broken = |rule| {
+        let mut run = notched_plate(rule);
+        run.run_to_end().unwrap();
+        let energies = run.snapshot().energies();
+        let part = energies.balance() / energies.work;
+        assert!(part.abs() < 1e-5, "{rule:?}: {part}");
+        run.system().operator().broken_bonds()
+    };
+    let (worst, all) = (broken(BreakingRule::default()), broken(BreakingRule::All));
+    println!("{worst} {all}");
+    assert!(0 < worst && worst < all);
+}
+
+const EVENTS: BreakingRule = BreakingRule::Event {
+    reference: 1.0,
+    ties: 1e-3,
+};
+
+/// Displacement of a grip and the force on it.
+fn curve_point(run: &Simulation) -> [f64; 2] {
+    let system = run.system();
+    let (grip, n) = (&system.motions()[0], system.points());
+    let displacement = run.state().u[n + grip.points[0] as usize];
+    [displacement, grip.reaction(system.cloud())[1]]
+}
+
+#[test]
+fn from_event_to_event_stiffness_falls_the_body_snaps_back_and_energy_is_accounted_for() {
+    let mut run = run_of(plate(OPENING, PairLaw::Linear), EVENTS, 60);
+    let (mut curve, mut broken) = (Vec::new(), vec![0]);
+    let mut worst: f64 = 0.0;
+    run.run(|now| {
+        curve.push(curve_point(now));
+        broken.push(now.system().operator().broken_bonds());
+        let energies = now.snapshot().energies();
+        worst = worst.max(energies.balance().abs() / energies.work);
+        Control::Continue
+    })
+    .unwrap();
+    assert!(worst < 1e-6, "{worst}");
+    assert!(
+        broken.windows(2).all(|pair| pair[1] > pair[0]),
+        "{broken:?}"
+    );
+    let stiffness: Vec<f64> = curve.iter().map(|[u, force]| force / u).collect();
+    let rounding = 1e-5 * stiffness[0];
+    assert!(stiffness.windows(2).all(|k| k[1] < k[0] + rounding));
+    assert!(curve.windows(2).any(|pair| pair[1][0] < pair[0][0]));
+}
+
+#[test]
+fn the_first_event_is_where_the_first_bond_breaks_under_a_growing_load() {
+    let mut events = run_of(plate(OPENING, PairLaw::Linear), EVENTS, 1);
+    events.run_to_end().unwrap();
+    let [first, _] = curve_point(&events);
+    let broken = |opening: f64| {
+        let mut run = run_of(plate(opening, PairLaw::Linear), BreakingRule::default(), 1);
+        run.run_to_end().unwrap();
+        run.system().operator().broken_bonds()
+    };
+    assert_eq!(broken(0.9999 * first), 0);
+    assert!(broken(1.0001 * first) > 0);
+}
+
+#[test]
+fn events_go_on_bit_for_bit_after_a_resume() {
+    let run = || run_of(plate(OPENING, PairLaw::Linear), EVENTS, 4);
+    round_trip::check_resume(run, [1, 2]).unwrap();
+}
+
+#[test]
+fn bodies_that_cannot_be_followed_from_event_to_event_are_refused() {
+    let refused = |system: &System| {
+        let options = StaticOptions {
+            breaking: EVENTS,
+            ..StaticOptions::default()
+        };
+        StaticScheme::new(options, system).unwrap_err().to_string()
+    };
+    let stretched = refused(&plate(OPENING, PairLaw::BondStretch));
+    assert!(stretched.contains("not linear"), "{stretched}");
+    let still = refused(&plate(0.0, PairLaw::Linear));
+    assert!(still.contains("no displacement is prescribed"), "{still}");
+    let mut loaded = plate(OPENING, PairLaw::Linear);
+    let load = Load::new(vec![100], [1.0, 0.0, 0.0], TimeFunction::Constant);
+    loaded.add_load(load).unwrap();
+    let loaded = refused(&loaded);
+    assert!(loaded.contains("loads are not scaled"), "{loaded}");
+}
