@@ -16,6 +16,7 @@ use crate::material::{Material, NamedMaterial};
 use crate::output::{Checkpoint, Output};
 use crate::set::NamedSet;
 use crate::surface::SurfaceBody;
+use crate::thermal::Thermal;
 use crate::time::Time;
 
 /// What is simulated and what is written, as plain data in SI units: what a [`Deck`](crate::Deck) says, without its text.
@@ -117,6 +118,9 @@ pub struct Model {
     /// `[exact]`
     #[serde(default)]
     pub exact: Option<Exact>,
+    /// `[thermal]`
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal: Option<Thermal>,
     /// `[time]`
     pub time: Time,
     /// `[output]`
@@ -230,6 +234,7 @@ impl Model {
             boundaries: Vec::new(),
             probes: Vec::new(),
             exact: None,
+            thermal: None,
             time,
             output: Output::default(),
             checkpoint: Checkpoint::default(),

@@ -17,6 +17,8 @@ pub(crate) enum Quantity {
     EnergyDensity,
     Velocity,
     ForceDensity,
+    Temperature,
+    Expansion,
 }
 
 impl Quantity {
@@ -32,6 +34,8 @@ impl Quantity {
             Self::SurfaceEnergy => Dimension::new(1, 0, -2),
             Self::Velocity => Dimension::new(0, 1, -1),
             Self::ForceDensity => Dimension::new(1, -2, -2),
+            Self::Temperature => Dimension::kelvin(1),
+            Self::Expansion => Dimension::kelvin(-1),
         }
     }
 
@@ -50,6 +54,8 @@ impl Quantity {
             Self::EnergyDensity => "an energy per volume",
             Self::Velocity => "a velocity",
             Self::ForceDensity => "a force per volume",
+            Self::Temperature => "a temperature",
+            Self::Expansion => "a coefficient of thermal expansion",
         }
     }
 
@@ -79,6 +85,8 @@ impl Quantity {
             Self::EnergyDensity => "5 J/m3",
             Self::Velocity => "20 m/s",
             Self::ForceDensity => "48 GN/m3",
+            Self::Temperature => "293.15 K",
+            Self::Expansion => "12e-6 1/K",
         }
     }
 
@@ -96,6 +104,8 @@ impl Quantity {
             Self::EnergyDensity => "J/m3",
             Self::Velocity => "m/s",
             Self::ForceDensity => "N/m3",
+            Self::Temperature => "K",
+            Self::Expansion => "1/K",
         }
     }
 
@@ -152,6 +162,8 @@ mod tests {
             EnergyDensity,
             Velocity,
             ForceDensity,
+            Temperature,
+            Expansion,
         ] {
             let unit = quantity.unit();
             for text in [quantity.example().to_owned(), format!("1 {unit}")] {

@@ -77,7 +77,10 @@ impl Assembler<'_> {
             damage: material.damage.unwrap_or_default(),
         };
         // Forms that transform are refused above.
-        let form = material.form.of_bonds().unwrap_or_default();
+        let form = self
+            .heated_form(material.form)?
+            .of_bonds()
+            .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
         let cracks = self.tracked_cracks(self.cracks, &bonds.cuts, cloud, warnings);
         let mut all = all.into_iter().map(MaterialConstants::Correspondence);

@@ -83,7 +83,10 @@ impl Assembler<'_> {
             damage: material.damage.unwrap_or_default(),
         };
         // Forms that transform are refused above.
-        let form = material.form.of_bonds().unwrap_or_default();
+        let form = self
+            .heated_form(material.form)?
+            .of_bonds()
+            .unwrap_or_default();
         let bonds = match laws.iter().all(Inelasticity::is_elastic) {
             true => body.operator(form),
             false => {

@@ -213,7 +213,10 @@ impl System {
 
     /// The same at the end of a step with velocity `v`: decides breaking, books the work and impulse of the step, and lets boundaries with a memory go on.
     pub fn end_step(&mut self, step: &StepEnd<'_>, v: &[f64], out: &mut [f64]) {
+        // With the bonds that act within the step, before it is decided which of them break at its end.
+        let heating = self.operator().heating(step);
         self.end_step_on(step, &On::All, out);
+        self.ledger.book(heating, [0.0; 3]);
         self.book_step(step, out);
         self.accept_boundaries(step);
         self.finish(step.t, step.u, v, &On::All, out);
@@ -367,14 +370,23 @@ impl System {
         for motion in &self.motions {
             motion.add_acceleration(step.t, n, work);
         }
+        self.book_heating(step);
         self.book_step(step, work);
     }
 
-    /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet. `work` is for accelerations.
+    /// Books the work of changing temperatures within a step that does not end by [`System::end_step`].
+    pub(crate) fn book_heating(&mut self, step: &StepEnd<'_>) {
+        let work = self.operator().heating(step);
+        self.ledger.book(work, [0.0; 3]);
+    }
+
+    /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet and that is not heated yet. `work` is for accelerations.
     pub fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
         self.zero(&On::All, work);
         self.count(&On::All);
-        self.operator().add_force(t, u, On::All, work);
+        let is_heated = self.operator().capabilities().thermal.is_some();
+        let unheated = if is_heated { f64::NEG_INFINITY } else { t };
+        self.operator().add_force(unheated, u, On::All, work);
         self.divide_by_density(&On::All, work);
         let n = self.points();
         let density = |i: usize| self.density.at(i);

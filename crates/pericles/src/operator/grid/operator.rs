@@ -177,6 +177,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
             single_precision: !in_doubles,
             dilatation: None,
             plastic: None,
+            thermal: None,
         }
     }
 

@@ -4,6 +4,7 @@ mod arrays;
 mod breaking;
 mod damage;
 mod force;
+mod heat;
 mod kernels;
 mod operator;
 pub(super) mod other_ends;

@@ -17,6 +17,7 @@ mod bonds;
 mod breaking;
 mod force;
 mod grid;
+mod heat;
 mod inelastic;
 mod kernels;
 mod kinematics;
