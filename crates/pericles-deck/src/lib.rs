@@ -145,7 +145,7 @@ pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
 pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
-pub use material::{Material, MaterialModel, NamedMaterial};
+pub use material::{Material, MaterialModel, NamedMaterial, Scatter, ScatteredStrength};
 pub use model::{Body, Model, Solid};
 pub use output::{
     Checkpoint, CrackOutput, FieldBlocks, FieldFormat, FragmentOutput, Output, Picture, Precision,

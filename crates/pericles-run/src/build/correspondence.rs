@@ -66,6 +66,13 @@ impl Assembler<'_> {
                 Some(classes)
             }
         };
+        let classes = match self.strengths(solid, cloud)? {
+            None => classes,
+            Some(factors) => {
+                let classes = classes.unwrap_or_else(|| CorrespondenceClasses::uniform(&all[0]));
+                Some(classes.with_strengths(factors))
+            }
+        };
         let no_fail = self.union_of(sets, &material.no_fail)?;
         let body = CorrespondenceBody {
             cloud,

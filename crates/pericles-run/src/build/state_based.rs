@@ -65,6 +65,13 @@ impl Assembler<'_> {
                 Some(classes)
             }
         };
+        let classes = match self.strengths(solid, cloud)? {
+            None => classes,
+            Some(factors) => {
+                let classes = classes.unwrap_or_else(|| SolidClasses::uniform(&constants));
+                Some(classes.with_strengths(factors))
+            }
+        };
         let no_fail = self.union_of(sets, &material.no_fail)?;
         let surfaces = self.cracks;
         let body = LinearSolidBody {

@@ -24,6 +24,7 @@ mod schemes;
 mod sense;
 mod solutions;
 mod state_based;
+mod thermal;
 mod tuned;
 mod wrong;
 

@@ -112,9 +112,11 @@ pub fn operator(cloud: &Arc<PointCloud>, model: &Model, limit: f64) -> Box<dyn F
             body.operator(BondForm::List).unwrap().operator
         }
         Model::Solid(strains, inelastic) => {
-            let mut constants = solid(0.35, 2.5, InfluenceFunction::Conical)
-                .constants(cloud, state)
-                .unwrap();
+            let function = match inelastic {
+                Inelasticity::Plastic(_) => InfluenceFunction::Constant,
+                _ => InfluenceFunction::Conical,
+            };
+            let mut constants = solid(0.35, 2.5, function).constants(cloud, state).unwrap();
             constants.limits = BondLimits {
                 stretch: limit,
                 ..BondLimits::NONE

@@ -88,7 +88,9 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
                 let stretch = stretches.as_ref().map(|stretches| stretches[i]);
-                let sums = [at.values.owned[i], squares[i], self.history.sums(i)[0]];
+                let law = &self.laws.of_material[solid.classes.of_point(solid.bonds.site(i))];
+                let inelastic = self.history.inelastic_sum(law, i);
+                let sums = [at.values.owned[i], squares[i], inelastic];
                 *energy += solid.energy_at(i, stretch, sums);
             }
         });
