@@ -10,6 +10,7 @@ use crate::boundary;
 use crate::caution::Caution;
 use crate::conditions::{self, Prescribe};
 use crate::crack;
+use crate::damping;
 use crate::document::{self, Node};
 use crate::error::DeckError;
 use crate::exact;
@@ -198,6 +199,7 @@ fn model(root: Table<'_>) -> Option<Model> {
     let exact = root.maybe("exact", |item| {
         exact::read(item.table()?, frame.dimension, gaussian)
     });
+    let damping = root.maybe("damping", |item| damping::read(item.table()?));
     let time = root
         .required("time")
         .and_then(|item| time::read(item.table()?, &names));
@@ -231,6 +233,7 @@ fn model(root: Table<'_>) -> Option<Model> {
         probes: probes?,
         exact: exact?,
         thermal: thermal?,
+        damping: damping?,
         time: time?,
         output: output?,
         checkpoint: checkpoint?,

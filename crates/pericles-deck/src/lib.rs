@@ -84,6 +84,7 @@ mod constants;
 mod correspondence;
 mod course;
 mod crack;
+mod damping;
 mod deck;
 mod document;
 mod error;
@@ -137,6 +138,7 @@ pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace,
 pub use correspondence::Correspondence;
 pub use course::{Course, TimeHistory};
 pub use crack::{CrackSurface, PreCrack};
+pub use damping::Damping;
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};

@@ -10,6 +10,7 @@ use crate::body::{SolidShape, SurfaceShape};
 use crate::boundary::BoundaryCondition;
 use crate::conditions::{Initial, Load, Prescribe, Probe};
 use crate::crack::PreCrack;
+use crate::damping::Damping;
 use crate::exact::Exact;
 use crate::interface::MaterialInterface;
 use crate::material::{Material, NamedMaterial};
@@ -121,6 +122,9 @@ pub struct Model {
     /// `[thermal]`
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
+    /// `[damping]`
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<Damping>,
     /// `[time]`
     pub time: Time,
     /// `[output]`
@@ -235,6 +239,7 @@ impl Model {
             probes: Vec::new(),
             exact: None,
             thermal: None,
+            damping: None,
             time,
             output: Output::default(),
             checkpoint: Checkpoint::default(),

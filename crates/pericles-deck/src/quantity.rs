@@ -19,6 +19,7 @@ pub(crate) enum Quantity {
     ForceDensity,
     Temperature,
     Expansion,
+    Rate,
 }
 
 impl Quantity {
@@ -34,6 +35,7 @@ impl Quantity {
             Self::SurfaceEnergy => Dimension::new(1, 0, -2),
             Self::Velocity => Dimension::new(0, 1, -1),
             Self::ForceDensity => Dimension::new(1, -2, -2),
+            Self::Rate => Dimension::new(0, 0, -1),
             Self::Temperature => Dimension::kelvin(1),
             Self::Expansion => Dimension::kelvin(-1),
         }
@@ -54,6 +56,7 @@ impl Quantity {
             Self::EnergyDensity => "an energy per volume",
             Self::Velocity => "a velocity",
             Self::ForceDensity => "a force per volume",
+            Self::Rate => "a rate",
             Self::Temperature => "a temperature",
             Self::Expansion => "a coefficient of thermal expansion",
         }
@@ -85,6 +88,7 @@ impl Quantity {
             Self::EnergyDensity => "5 J/m3",
             Self::Velocity => "20 m/s",
             Self::ForceDensity => "48 GN/m3",
+            Self::Rate => "100 1/s",
             Self::Temperature => "293.15 K",
             Self::Expansion => "12e-6 1/K",
         }
@@ -104,6 +108,7 @@ impl Quantity {
             Self::EnergyDensity => "J/m3",
             Self::Velocity => "m/s",
             Self::ForceDensity => "N/m3",
+            Self::Rate => "1/s",
             Self::Temperature => "K",
             Self::Expansion => "1/K",
         }
@@ -164,6 +169,7 @@ mod tests {
             ForceDensity,
             Temperature,
             Expansion,
+            Rate,
         ] {
             let unit = quantity.unit();
             for text in [quantity.example().to_owned(), format!("1 {unit}")] {

@@ -60,6 +60,18 @@ impl Check {
         );
     }
 
+    pub(super) fn damping(&mut self, model: &Model) {
+        let Some(damping) = model.damping else {
+            return;
+        };
+        let key = KeyPath::from("damping");
+        let allowed = "allowed: a finite number that is not negative";
+        for (name, value) in [("mass", damping.mass), ("stiffness", damping.stiffness)] {
+            let right = value >= 0.0 && value.is_finite();
+            self.within(right, key.key(name), value, allowed);
+        }
+    }
+
     pub(super) fn boundaries(&mut self, boundaries: &[BoundaryCondition]) {
         for (k, boundary) in boundaries.iter().enumerate() {
             let key = KeyPath::from("boundary").index(k);

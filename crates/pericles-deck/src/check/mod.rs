@@ -31,6 +31,7 @@ impl Model {
         }
         check.conditions(self);
         check.thermal(self);
+        check.damping(self);
         check.boundaries(&self.boundaries);
         if let Some(exact) = &self.exact {
             check.exact(exact);

@@ -367,6 +367,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = 300, reference = 293, material = [{ name = 'default', expansion = 2e-5 }] }"]),
     specimen(BAR, &["material.scatter={ distribution = 'weibull', of = 'fracture_energy', shape = 5, seed = 2 }"]),
     specimen(BAR, &["material.scatter={ shape = 5 }"]),
+    specimen(BAR, &["damping={ mass = 1, stiffness = 1e-3 }"]),
+    specimen(BAR, &["damping={ stiffness = 1e-3 }"]),
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = { expression = '300 + t' }, reference = 293 }"]),
     specimen(BAR, &["time={ scheme = 'relaxation' }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 'adaptive', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),

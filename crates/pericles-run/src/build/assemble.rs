@@ -94,6 +94,7 @@ pub fn assemble(
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
+    assembler.add_rayleigh_damping(&mut system, &*integrator)?;
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
     assembler.refuse_lost_values(&system, &steps)?;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::accounts::Ledger;
 use crate::archive::Counter;
-use crate::boundary::{Boundary, Load, PrescribedMotion, Stage};
+use crate::boundary::{Boundary, Exchange, Load, PrescribedMotion, Stage, Stiffness};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Force, Forces, On};
@@ -298,17 +298,43 @@ impl System {
             v,
             on: on.clone(),
         };
-        for boundary in &mut self.boundaries {
-            boundary.after_stage(&stage, out);
-        }
+        self.with_boundaries(t, |boundary, stiffness| {
+            boundary.after_stage_with(&stage, stiffness, out);
+        });
     }
 
     /// Lets boundaries take an accepted state, and books what they did.
     fn accept_boundaries(&mut self, step: &StepEnd<'_>) {
-        for boundary in &mut self.boundaries {
-            let exchange = boundary.accept(step);
-            self.ledger.book(exchange.work, exchange.impulse);
+        let mut exchanges: Vec<Exchange> = Vec::new();
+        self.with_boundaries(step.t, |boundary, stiffness| {
+            exchanges.push(boundary.accept_with(step, stiffness));
+        });
+        for exchange in exchanges {
+            self.book_exchange(exchange);
         }
+    }
+
+    /// Calls `act` for every boundary, with what it may ask of the forces at time t.
+    fn with_boundaries(&mut self, t: f64, mut act: impl FnMut(&mut dyn Boundary, Stiffness<'_>)) {
+        if self.boundaries.is_empty() {
+            return;
+        }
+        let mut boundaries = std::mem::take(&mut self.boundaries);
+        let product = |u: &[f64], direction: &[f64], out: &mut [f64]| {
+            self.operator().tangent_into(t, u, direction, out);
+            self.divide_by_density(&On::All, out);
+            for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
+            self.hold_at(t, out);
+        };
+        let hold = |vector: &mut [f64]| self.hold_at(t, vector);
+        let stiffness = Stiffness {
+            product: &product,
+            hold: &hold,
+        };
+        for boundary in &mut boundaries {
+            act(&mut **boundary, stiffness);
+        }
+        self.boundaries = boundaries;
     }
 
     /// Notes the reactions of the initial state.
