@@ -14,6 +14,7 @@ mod control;
 mod error;
 mod force;
 mod heat;
+mod heated;
 mod law;
 mod material;
 mod passes;

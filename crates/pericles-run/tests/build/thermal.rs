@@ -7,12 +7,12 @@ use super::{build, parse, refusal};
 
 /// A plate in plane strain that may expand; MODEL is replaced.
 const PLATE: &str = r#"
-body = { shape = "plate", size = [12, 6], spacing = 1, plane = "strain" }
+body = { shape = "plate", size = [8, 4], spacing = 1, plane = "strain" }
 material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MODEL }
 sets = { left = { where = "x < 1" }, low = { where = "y < 1" } }
 prescribe = [{ set = "left", displacement = [0, "free"] }, { set = "low", displacement = ["free", 0] }]
 thermal = { expansion = 1e-5, temperature = 303, reference = 293 }
-time = { scheme = "relaxation", tolerance = 1e-10, load_steps = 1 }
+time = { scheme = "relaxation", tolerance = 1e-7, load_steps = 1 }
 output = { fields = { names = ["Temperature"] } }
 "#;
 
@@ -38,7 +38,7 @@ fn plates_in_plane_strain_expand_freely_within_the_plane() {
                 let error = (run.state().u[c * n + i] - expected).abs();
                 // Finite strains differ by the order of the strain.
                 assert!(
-                    error < 1e-3 * stretch * 12.0,
+                    error < 1e-3 * stretch * 8.0,
                     "{model}, {place:?}: {error:e}"
                 );
             }

@@ -3,12 +3,9 @@
 use std::sync::Arc;
 
 use pericles::space::Sites;
-use pericles::{Expandable, Result, ThermalExpansion};
-
-use super::force::CorrespondenceForce;
 
 /// Thermal stretches τ of own points and ghosts at a time; none of a body that is not heated.
-pub(super) struct Heat(Option<Arc<Vec<f64>>>);
+pub(super) struct Heat(pub Option<Arc<Vec<f64>>>);
 
 impl Heat {
     /// 1 + τ of a point.
@@ -33,24 +30,5 @@ impl Heat {
         let stretch = 0.5 * (here + there);
         let pulled = std::array::from_fn(|c| eta[c] - stretch * xi[c]);
         (xi.map(|x| (1.0 + stretch) * x), pulled)
-    }
-}
-
-impl<const D: usize> CorrespondenceForce<D> {
-    pub(super) fn heat_at(&self, t: f64) -> Heat {
-        let expansion = self.expansion.as_ref();
-        Heat(expansion.map(|expansion| expansion.stretches(t)))
-    }
-
-    /// At the time that forces were computed for last.
-    pub(super) fn latest_heat(&self) -> Heat {
-        Heat(self.expansion.as_ref().map(ThermalExpansion::latest))
-    }
-}
-
-impl<const D: usize> Expandable for CorrespondenceForce<D> {
-    fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
-        self.expansion = Some(expansion);
-        Ok(())
     }
 }

@@ -5,6 +5,7 @@ mod breaking;
 mod damage;
 mod force;
 mod heat;
+mod heated;
 mod kernels;
 mod operator;
 pub(super) mod other_ends;

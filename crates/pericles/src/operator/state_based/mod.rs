@@ -18,6 +18,7 @@ mod breaking;
 mod force;
 mod grid;
 mod heat;
+mod heated;
 mod inelastic;
 mod kernels;
 mod kinematics;
