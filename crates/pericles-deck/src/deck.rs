@@ -10,6 +10,7 @@ use crate::boundary;
 use crate::caution::Caution;
 use crate::conditions::{self, Prescribe};
 use crate::crack;
+use crate::damping;
 use crate::document::{self, Node};
 use crate::error::DeckError;
 use crate::exact;
@@ -29,6 +30,7 @@ use crate::set::{self, SetNames};
 use crate::source::Sources;
 use crate::subject::Subject;
 use crate::surface::{self, SurfaceBody};
+use crate::thermal::{self, Thermal};
 use crate::time;
 
 /// A deck: the model it describes, and where in the text each value stands.
@@ -161,11 +163,12 @@ fn model(root: Table<'_>) -> Option<Model> {
     let body = body::read(root.required("body").and_then(|item| item.table()));
     let frame = body.frame;
     let (sets, names) = set::read(root.table_or_empty("sets"), frame);
-    let (made, gaussian, several) = match &body.surface {
+    let (made, gaussian, several, thermal) = match &body.surface {
         Some(read) => {
             let surface = surface_of(&root, read, frame, &names);
             let several = surface_assignments(&root, &names);
-            (surface.map(Body::Surface), Some(None), several)
+            root.forbid("thermal", "surfaces do not expand with temperature");
+            (surface.map(Body::Surface), Some(None), several, Some(None))
         }
         None => {
             root.forbid(
@@ -175,9 +178,10 @@ fn model(root: Table<'_>) -> Option<Model> {
             let materials = material::read(&root, &body, &names);
             let gaussian = materials.own.as_ref().map(exact::gaussian_length);
             let several = several_of(&root, &materials, &body, &names);
+            let thermal = thermal_of(&root, &materials, &body);
             root.place_as("material", materials.place);
             let solid = solid_of(&body, materials.own);
-            (solid.map(Body::Solid), gaussian, several)
+            (solid.map(Body::Solid), gaussian, several, thermal)
         }
     };
     let cracks = each(&root, "crack", |table| crack::read(table, frame));
@@ -195,6 +199,7 @@ fn model(root: Table<'_>) -> Option<Model> {
     let exact = root.maybe("exact", |item| {
         exact::read(item.table()?, frame.dimension, gaussian)
     });
+    let damping = root.maybe("damping", |item| damping::read(item.table()?));
     let time = root
         .required("time")
         .and_then(|item| time::read(item.table()?, &names));
@@ -227,6 +232,8 @@ fn model(root: Table<'_>) -> Option<Model> {
         boundaries: boundaries?,
         probes: probes?,
         exact: exact?,
+        thermal: thermal?,
+        damping: damping?,
         time: time?,
         output: output?,
         checkpoint: checkpoint?,
@@ -286,6 +293,13 @@ fn several_of(
         _ => interface::read(root.tables("interface"), names, own, body),
     };
     Some((materials.others.clone()?, assignments?, interfaces?))
+}
+
+/// Thermal expansion, if the deck has it.
+fn thermal_of(root: &Table<'_>, materials: &Materials, body: &BodyRead) -> Option<Option<Thermal>> {
+    root.maybe("thermal", |item| {
+        thermal::read(item.table()?, body.frame.dimension, &materials.names)
+    })
 }
 
 /// The assignments of a surface.

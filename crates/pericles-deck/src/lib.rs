@@ -84,6 +84,7 @@ mod constants;
 mod correspondence;
 mod course;
 mod crack;
+mod damping;
 mod deck;
 mod document;
 mod error;
@@ -118,6 +119,7 @@ mod statics;
 mod stop;
 mod subject;
 mod surface;
+mod thermal;
 mod time;
 mod units;
 mod vocabulary;
@@ -136,6 +138,7 @@ pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace,
 pub use correspondence::Correspondence;
 pub use course::{Course, TimeHistory};
 pub use crack::{CrackSurface, PreCrack};
+pub use damping::Damping;
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
@@ -144,7 +147,7 @@ pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
 pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
-pub use material::{Material, MaterialModel, NamedMaterial};
+pub use material::{Material, MaterialModel, NamedMaterial, Scatter, ScatteredStrength};
 pub use model::{Body, Model, Solid};
 pub use output::{
     Checkpoint, CrackOutput, FieldBlocks, FieldFormat, FragmentOutput, Output, Picture, Precision,
@@ -160,4 +163,5 @@ pub use statics::{RigidModes, StaticBreaking, Statics};
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
 pub use surface::SurfaceBody;
+pub use thermal::{MaterialExpansion, Thermal};
 pub use time::{Time, TimeStep};

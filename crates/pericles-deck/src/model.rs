@@ -10,12 +10,14 @@ use crate::body::{SolidShape, SurfaceShape};
 use crate::boundary::BoundaryCondition;
 use crate::conditions::{Initial, Load, Prescribe, Probe};
 use crate::crack::PreCrack;
+use crate::damping::Damping;
 use crate::exact::Exact;
 use crate::interface::MaterialInterface;
 use crate::material::{Material, NamedMaterial};
 use crate::output::{Checkpoint, Output};
 use crate::set::NamedSet;
 use crate::surface::SurfaceBody;
+use crate::thermal::Thermal;
 use crate::time::Time;
 
 /// What is simulated and what is written, as plain data in SI units: what a [`Deck`](crate::Deck) says, without its text.
@@ -117,6 +119,12 @@ pub struct Model {
     /// `[exact]`
     #[serde(default)]
     pub exact: Option<Exact>,
+    /// `[thermal]`
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thermal: Option<Thermal>,
+    /// `[damping]`
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<Damping>,
     /// `[time]`
     pub time: Time,
     /// `[output]`
@@ -230,6 +238,8 @@ impl Model {
             boundaries: Vec::new(),
             probes: Vec::new(),
             exact: None,
+            thermal: None,
+            damping: None,
             time,
             output: Output::default(),
             checkpoint: Checkpoint::default(),

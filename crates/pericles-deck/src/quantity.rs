@@ -17,6 +17,9 @@ pub(crate) enum Quantity {
     EnergyDensity,
     Velocity,
     ForceDensity,
+    Temperature,
+    Expansion,
+    Rate,
 }
 
 impl Quantity {
@@ -32,6 +35,9 @@ impl Quantity {
             Self::SurfaceEnergy => Dimension::new(1, 0, -2),
             Self::Velocity => Dimension::new(0, 1, -1),
             Self::ForceDensity => Dimension::new(1, -2, -2),
+            Self::Rate => Dimension::new(0, 0, -1),
+            Self::Temperature => Dimension::kelvin(1),
+            Self::Expansion => Dimension::kelvin(-1),
         }
     }
 
@@ -50,6 +56,9 @@ impl Quantity {
             Self::EnergyDensity => "an energy per volume",
             Self::Velocity => "a velocity",
             Self::ForceDensity => "a force per volume",
+            Self::Rate => "a rate",
+            Self::Temperature => "a temperature",
+            Self::Expansion => "a coefficient of thermal expansion",
         }
     }
 
@@ -79,6 +88,9 @@ impl Quantity {
             Self::EnergyDensity => "5 J/m3",
             Self::Velocity => "20 m/s",
             Self::ForceDensity => "48 GN/m3",
+            Self::Rate => "100 1/s",
+            Self::Temperature => "293.15 K",
+            Self::Expansion => "12e-6 1/K",
         }
     }
 
@@ -96,6 +108,9 @@ impl Quantity {
             Self::EnergyDensity => "J/m3",
             Self::Velocity => "m/s",
             Self::ForceDensity => "N/m3",
+            Self::Rate => "1/s",
+            Self::Temperature => "K",
+            Self::Expansion => "1/K",
         }
     }
 
@@ -152,6 +167,9 @@ mod tests {
             EnergyDensity,
             Velocity,
             ForceDensity,
+            Temperature,
+            Expansion,
+            Rate,
         ] {
             let unit = quantity.unit();
             for text in [quantity.example().to_owned(), format!("1 {unit}")] {

@@ -4,25 +4,37 @@
 //! prefixed symbols with integer powers: `kg/m3`, `kg·m^-3`, `N/m²`, `1/s`. Powers of ten are added to the number's own exponent before it is
 //! rounded to binary, so that `"0.25 mm"` is exactly the number `0.25e-3`.
 
-/// Powers of kilogram, metre and second.
+/// Powers of kilogram, metre, second and kelvin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Dimension {
     pub(crate) kg: i32,
     pub(crate) m: i32,
     pub(crate) s: i32,
+    pub(crate) k: i32,
 }
 
 impl Dimension {
     pub(crate) const NONE: Self = Self::new(0, 0, 0);
 
     pub(crate) const fn new(kg: i32, m: i32, s: i32) -> Self {
-        Self { kg, m, s }
+        Self { kg, m, s, k: 0 }
+    }
+
+    /// A power of the kelvin.
+    pub(crate) const fn kelvin(k: i32) -> Self {
+        Self {
+            kg: 0,
+            m: 0,
+            s: 0,
+            k,
+        }
     }
 
     fn add(&mut self, other: Self, power: i32) {
         self.kg += other.kg * power;
         self.m += other.m * power;
         self.s += other.s * power;
+        self.k += other.k * power;
     }
 }
 
@@ -80,7 +92,7 @@ const fn plain(symbol: &'static str, exponent: i32, factor: f64, s: i32) -> Unit
     }
 }
 
-const UNITS: [Unit; 12] = [
+const UNITS: [Unit; 13] = [
     unit("m", 0, 0, 1, 0),
     unit("g", -3, 1, 0, 0),
     unit("s", 0, 0, 0, 1),
@@ -90,6 +102,13 @@ const UNITS: [Unit; 12] = [
     unit("J", 0, 1, 2, -2),
     unit("W", 0, 1, 2, -3),
     unit("Hz", 0, 0, 0, -1),
+    Unit {
+        symbol: "K",
+        exponent: 0,
+        factor: 1.0,
+        dimension: Dimension::kelvin(1),
+        prefixed: true,
+    },
     plain("min", 0, 60.0, 1),
     plain("h", 0, 3600.0, 1),
     plain("%", -2, 1.0, 0),

@@ -335,18 +335,19 @@ impl Integrator for StaticScheme {
             t: t_next,
             loads: [&loads[0], &loads[1]],
             supports: [&before, &supports],
-            largest: self.largest,
+            largest: self.largest.max(system.thermal_force(t_next, &before)),
         };
         let work = self.follow(system, step, (&mut state.u, !displaced), interrupt)?;
         let booked = system.ledger().work;
         let end = chord(t_next, t_next - state.t, &state.u, &before, first);
+        let heating = system.operator().heating(&end);
         system.book_equilibrium(&end, &mut state.a);
         let of_means = system.ledger().work - booked;
         if displaced {
             self.released += elastic - system.operator().energy(t_next, &state.u) + of_means;
         } else {
             system.book_exchange(Exchange {
-                work: work - of_means,
+                work: work + heating - of_means,
                 impulse: [0.0; 3],
             });
         }

@@ -41,7 +41,7 @@ const TENSORS: Limit = Limit::new(
 );
 
 /// Limits of all transforms.
-const OF_TRANSFORMS: [Limit; 14] = [
+const OF_TRANSFORMS: [Limit; 15] = [
     Limit::STATE_BASED,
     Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
@@ -56,6 +56,7 @@ const OF_TRANSFORMS: [Limit; 14] = [
     uniform(Feature::Breaking),
     Limit::BOND_ENERGY,
     TENSORS,
+    Limit::THERMAL_EXPANSION,
 ];
 
 const FULL_BOX: &str =

@@ -70,6 +70,7 @@
 //! | describe a material | [`material`]: [`BondMaterial`](material::BondMaterial); [`kernel`]: influence functions |
 //! | cut pre-cracks | [`family::Crack`], [`Body::crack`] |
 //! | load and hold a body | [`boundary`]: [`Load`](boundary::Load), [`PrescribedMotion`](boundary::PrescribedMotion), [`DampingLayer`](boundary::DampingLayer) |
+//! | heat a body | [`ThermalExpansion`], [`Temperature`] |
 //! | build the equation of motion | [`Body`], or by hand [`operator::BondBody`] and [`System::new`] |
 //! | choose a scheme | [`time`]: explicit, implicit, static, adaptive, multirate |
 //! | find the stable step | [`time::highest_frequency`]; [`Simulation::builder`] does it by itself |
@@ -165,6 +166,7 @@ mod step_kind;
 mod stop;
 pub mod sum;
 mod system;
+mod thermal;
 pub mod time;
 pub mod units;
 
@@ -183,3 +185,4 @@ pub use step_end::{BreakingBond, Path, StepEnd};
 pub use step_kind::{StepKind, schemes_of};
 pub use stop::{Found, StopCondition, StopReason, StopWhen};
 pub use system::System;
+pub use thermal::{Expandable, Temperature, ThermalExpansion};

@@ -89,6 +89,18 @@ impl<'a> StepEnd<'a> {
         }
     }
 
+    /// The displacement at the start of the step, m; none where the path is not known.
+    pub fn displacement_before(&self) -> Option<Vec<f64>> {
+        match self.path {
+            Path::MeanVelocity(mean) => {
+                let entries = self.u.iter().zip(mean);
+                Some(entries.map(|(u, v)| u - self.dt * v).collect())
+            }
+            Path::Cubic { u, .. } | Path::Chord { u, .. } => Some(u.to_vec()),
+            Path::SubStep => None,
+        }
+    }
+
     /// The mean velocity of an entry over the step, m/s; zero where the path is not known.
     pub fn mean_velocity(&self, entry: usize) -> f64 {
         match self.path {

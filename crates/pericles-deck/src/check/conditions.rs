@@ -6,6 +6,7 @@ use crate::conditions::LoadAmplitude;
 use crate::exact::{Exact, KnownSolution, Pulse};
 use crate::key_path::KeyPath;
 use crate::model::Model;
+use crate::thermal::LARGEST;
 
 impl Check {
     pub(super) fn conditions(&mut self, model: &Model) {
@@ -32,6 +33,42 @@ impl Check {
             let [from, until] = load.window();
             let allowed = "allowed: a time later than `from`";
             self.within(from < until, key.key("until"), until, allowed);
+        }
+    }
+
+    pub(super) fn thermal(&mut self, model: &Model) {
+        const ALLOWED: &str = "allowed: a number from -0.01 to 0.01 in 1/K";
+        let Some(thermal) = &model.thermal else {
+            return;
+        };
+        let key = KeyPath::from("thermal");
+        let own = thermal.materials.iter().enumerate().map(|(k, material)| {
+            let key = key.key("material").index(k).key("expansion");
+            (key, material.expansion)
+        });
+        let all = std::iter::once((key.key("expansion"), thermal.expansion));
+        for (key, value) in all.chain(own) {
+            self.within(value.abs() <= LARGEST, key, value, ALLOWED);
+        }
+        let reference = thermal.reference;
+        let allowed = "allowed: a finite temperature in K";
+        self.within(
+            reference.is_finite(),
+            key.key("reference"),
+            reference,
+            allowed,
+        );
+    }
+
+    pub(super) fn damping(&mut self, model: &Model) {
+        let Some(damping) = model.damping else {
+            return;
+        };
+        let key = KeyPath::from("damping");
+        let allowed = "allowed: a finite number that is not negative";
+        for (name, value) in [("mass", damping.mass), ("stiffness", damping.stiffness)] {
+            let right = value >= 0.0 && value.is_finite();
+            self.within(right, key.key(name), value, allowed);
         }
     }
 

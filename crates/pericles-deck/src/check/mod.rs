@@ -30,6 +30,8 @@ impl Model {
             }
         }
         check.conditions(self);
+        check.thermal(self);
+        check.damping(self);
         check.boundaries(&self.boundaries);
         if let Some(exact) = &self.exact {
             check.exact(exact);

@@ -5,6 +5,7 @@ use pericles::material::{BondMaterial, CubicLaw, PairLaw, Treatment};
 use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
+use super::scatter::scatter;
 use super::types::{Material, MaterialModel};
 use crate::body::BodyRead;
 use crate::constants::{
@@ -51,6 +52,7 @@ pub(super) fn read(
     let fracture = fracture(&table);
     let fracture_calibration = fracture_calibration(&table, body, shared);
     let no_fail = no_fail(&table, sets);
+    let scatter = scatter(&table);
     let damage = damage(&table);
     let form = form(&table);
     let rules = ConstantRules {
@@ -76,6 +78,7 @@ pub(super) fn read(
         }),
         tuned,
         no_fail: no_fail?,
+        scatter: scatter?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,

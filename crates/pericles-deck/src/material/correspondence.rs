@@ -6,6 +6,7 @@ use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
+use super::scatter::scatter;
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
@@ -45,6 +46,7 @@ pub(super) fn read(
     let law = law(&table, table.has("yield_stress"));
     let stabilisation = table.worded("stabilisation", "stabilisation");
     let no_fail = no_fail(&table, sets);
+    let scatter = scatter(&table);
     let damage = damage(&table);
     let form = form(&table);
     table.finish();
@@ -59,6 +61,7 @@ pub(super) fn read(
     Some(Material {
         name: name?,
         no_fail: no_fail?,
+        scatter: scatter?,
         surface_correction: SurfaceCorrection::None,
         damage: damage?,
         form: form?,

@@ -7,6 +7,7 @@ use super::inelastic;
 use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
+use super::scatter::scatter;
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
@@ -52,6 +53,7 @@ pub(super) fn read(
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let inelastic = inelastic::read(&table, body.state);
     let no_fail = no_fail(&table, sets);
+    let scatter = scatter(&table);
     let damage = damage(&table);
     let form = form(&table);
     table.finish();
@@ -66,6 +68,7 @@ pub(super) fn read(
     Some(Material {
         name: name?,
         no_fail: no_fail?,
+        scatter: scatter?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,

@@ -5,10 +5,12 @@ mod correspondence;
 mod inelastic;
 mod keys;
 mod linear_solid;
+mod scatter;
 mod several;
 mod shared;
 mod types;
 
+pub use scatter::{Scatter, ScatteredStrength};
 pub use types::{Material, MaterialModel, NamedMaterial};
 
 pub(crate) use keys::forbid_former_tables;

@@ -47,6 +47,7 @@ pub(super) fn difference_of_tables(a: &Material, b: &Material) -> Option<&'stati
             "surface_correction",
         ),
         (a.no_fail != b.no_fail, "no_fail"),
+        (a.scatter != b.scatter, "scatter"),
         (a.damage != b.damage, "damage"),
         (a.form != b.form, "bonds"),
     ];

@@ -7,6 +7,7 @@ use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
 use serde::{Deserialize, Serialize};
 
+use super::scatter::Scatter;
 use crate::correspondence::Correspondence;
 use crate::state_based::StateBased;
 
@@ -31,6 +32,9 @@ pub struct Material {
     /// What is done about the bonds that points near surfaces lack.
     #[serde(default, with = "crate::form")]
     pub surface_correction: SurfaceCorrection,
+    /// How the strength of points scatters, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scatter: Option<Scatter>,
     /// How damage is measured, if it is given.
     #[serde(default, with = "crate::form")]
     pub damage: Option<DamageMeasure>,
@@ -81,6 +85,7 @@ impl From<MaterialModel> for Material {
             tuned: None,
             no_fail: Vec::new(),
             surface_correction: SurfaceCorrection::default(),
+            scatter: None,
             damage: None,
             form: ForceForm::default(),
         }

@@ -426,6 +426,7 @@ fn quantity(field: Field) -> Quantity {
         | Field::YieldFlag => Quantity::Number,
         Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
         Field::Volume => Quantity::Number,
+        Field::Temperature => Quantity::Temperature,
     }
 }
 

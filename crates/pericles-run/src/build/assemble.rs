@@ -43,13 +43,7 @@ pub fn assemble(
         sets,
         ..
     } = &discretisation;
-    let BodyParts {
-        constants,
-        others,
-        bonds,
-        cracks: tracked,
-        density,
-    } = match (&model.body, surface) {
+    let mut parts = match (&model.body, surface) {
         (Body::Surface(body), Some(surface)) => {
             assembler.surface_parts(body, surface, &discretisation, resources, &mut warnings)?
         }
@@ -59,6 +53,14 @@ pub fn assemble(
         }
         (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
     };
+    assembler.heat(&mut parts, &discretisation)?;
+    let BodyParts {
+        constants,
+        others,
+        bonds,
+        cracks: tracked,
+        density,
+    } = parts;
     assembler.refuse_fields(&bonds)?;
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
         .map_err(|error| at("material.density", error))?;
@@ -92,6 +94,7 @@ pub fn assemble(
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
+    assembler.add_rayleigh_damping(&mut system, &*integrator)?;
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
     assembler.refuse_lost_values(&system, &steps)?;

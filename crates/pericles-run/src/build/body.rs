@@ -139,7 +139,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Refuses the dilatation and the plastic strain of a body that has none.
+    /// Refuses the dilatation, the plastic strain and the temperature of a body that has none.
     pub(super) fn refuse_fields(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
         let capabilities = bonds.operator.capabilities();
         let refuse = |is_meant, fields, reason| {
@@ -161,6 +161,13 @@ impl Assembler<'_> {
                 |field| matches!(field, Field::PlasticStrain | Field::YieldFlag),
                 "the fields Plastic_Strain and Yield_Flag are",
                 "only materials with a `yield_stress` have a plastic strain",
+            );
+        }
+        if capabilities.thermal.is_none() && wants(Field::Temperature) {
+            return refuse(
+                |field| field == Field::Temperature,
+                "the field Temperature is",
+                "only bodies with thermal expansion have a temperature; give [thermal]",
             );
         }
         Ok(())
@@ -202,7 +209,7 @@ impl Assembler<'_> {
     ) -> Result<ForceForm, BuildError> {
         let scheme = &self.model.time.scheme;
         let needs_bonds = self.model.output.wants_tensors() || has_need(scheme, Need::FiniteReach);
-        match solid.material.form {
+        match self.heated_form(solid.material.form)? {
             ForceForm::Fastest if needs_bonds && !is_graded => Ok(composite.fastest_form().into()),
             ForceForm::FloatGrid if has_need(scheme, Need::DoublePrecision) => {
                 Err(at_material(PericlesError::FormNotUsable {

@@ -66,6 +66,13 @@ impl Assembler<'_> {
                 Some(classes)
             }
         };
+        let classes = match self.strengths(solid, cloud)? {
+            None => classes,
+            Some(factors) => {
+                let classes = classes.unwrap_or_else(|| CorrespondenceClasses::uniform(&all[0]));
+                Some(classes.with_strengths(factors))
+            }
+        };
         let no_fail = self.union_of(sets, &material.no_fail)?;
         let body = CorrespondenceBody {
             cloud,
@@ -77,7 +84,10 @@ impl Assembler<'_> {
             damage: material.damage.unwrap_or_default(),
         };
         // Forms that transform are refused above.
-        let form = material.form.of_bonds().unwrap_or_default();
+        let form = self
+            .heated_form(material.form)?
+            .of_bonds()
+            .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
         let cracks = self.tracked_cracks(self.cracks, &bonds.cuts, cloud, warnings);
         let mut all = all.into_iter().map(MaterialConstants::Correspondence);

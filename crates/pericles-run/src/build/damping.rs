@@ -1,7 +1,10 @@
 //! Damping layers of a model, and the steps that are stable with them.
 
-use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile};
+use pericles::boundary::{
+    DampedSteps, DampingLayer, DampingProfile, RayleighDamping, RayleighRates,
+};
 use pericles::space::{Face, PointCloud};
+use pericles::time::Integrator;
 use pericles::{PericlesError, StepKind, System};
 use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
 
@@ -51,6 +54,42 @@ impl Assembler<'_> {
         };
         let boundaries = self.model.boundaries.iter().enumerate();
         Ok(boundaries.filter_map(layer).collect())
+    }
+
+    /// The factors of damping in proportion to mass and stiffness; zero if there is none.
+    pub(super) fn rayleigh_rates(&self) -> RayleighRates {
+        let damping = self.model.damping;
+        damping.map_or_else(RayleighRates::default, |damping| RayleighRates {
+            mass: damping.mass,
+            stiffness: damping.stiffness,
+        })
+    }
+
+    /// Adds damping in proportion to mass and stiffness.
+    pub(super) fn add_rayleigh_damping(
+        &self,
+        system: &mut System,
+        integrator: &dyn Integrator,
+    ) -> Result<(), BuildError> {
+        let rates = self.rayleigh_rates();
+        if rates == RayleighRates::default() {
+            return Ok(());
+        }
+        let (kind, needed) = (integrator.step_kind(), rates.step_kinds());
+        if integrator.is_static() || !needed.contains(&kind) {
+            let error = PericlesError::BoundaryScheme {
+                what: "this damping of motion",
+                scheme: integrator.name(),
+                kind,
+                needed,
+            };
+            return Err(at_path("damping", error.into()));
+        }
+        let dimension = system.dimension();
+        let damping = RayleighDamping::new(rates, kind, system.masses(), dimension);
+        let damping = damping.map_err(|error| at_path("damping", error.into()))?;
+        system.add_boundary(Box::new(damping));
+        Ok(())
     }
 
     /// Adds the damping layers.

@@ -1,14 +1,14 @@
 //! Bonds of a body with cells of several sizes or materials of different horizons.
 
-use pericles::material::{BondMaterial, StressState};
+use pericles::material::{BondMaterial, PairClasses, StressState};
 use pericles::operator::{CompositeBody, Feature, GradedBody, Materials};
-use pericles_deck::BuildError;
+use pericles_deck::{BuildError, Fault};
 use pericles_waves::{AssembledForce, ForceForm};
 
 use super::assembler::Assembler;
 use super::discretisation::Grids;
 use super::materials::Between;
-use super::refusal::{at, at_material};
+use super::refusal::{at, at_material, at_path};
 
 impl Assembler<'_> {
     pub(super) fn graded_bonds(
@@ -23,6 +23,16 @@ impl Assembler<'_> {
             .with(Feature::SeveralHorizons, have_several_horizons(materials));
         form.check(features).map_err(at_material)?;
         GradedBody::check(features).map_err(|error| at("material.surface_correction", error))?;
+        if composite.classes.is_some_and(PairClasses::scatters) {
+            let (value, allowed) = (
+                "a distribution of strength".into(),
+                "bonds between cells of several sizes or materials of different horizons have critical stretches by their kinds alone; leave it out".into(),
+            );
+            return Err(at_path(
+                "material.scatter",
+                Fault::OutOfRange { value, allowed },
+            ));
+        }
         // Transforms have been refused.
         let form = form.of_bonds().unwrap_or_default();
         let body = &composite.body;

@@ -69,6 +69,9 @@ impl<'m> Assembler<'m> {
         let (of_point, density) =
             self.points_of_materials(&solid.material, (cloud, sets), warnings)?;
         let mut interfaces = Vec::new();
+        let strengths = self.strengths(solid, cloud)?;
+        // One material, whose strength scatters, is one class.
+        let of_point = of_point.or_else(|| Some(vec![0; strengths.as_ref()?.len()]));
         let classes = match of_point {
             None => None,
             Some(of_point) => {
@@ -87,6 +90,11 @@ impl<'m> Assembler<'m> {
                     }
                     interfaces.push(between);
                 }
+                if let Some(strengths) = strengths {
+                    classes = classes
+                        .with_strengths(strengths)
+                        .map_err(|error| at("material.scatter", error))?;
+                }
                 Some(classes)
             }
         };
@@ -98,6 +106,18 @@ impl<'m> Assembler<'m> {
             density,
             others: all,
         })
+    }
+
+    /// Factors of the critical stretch of all points, if strengths scatter.
+    pub(super) fn strengths(
+        &self,
+        solid: &Solid,
+        cloud: &PointCloud,
+    ) -> Result<Option<Vec<f64>>, BuildError> {
+        let scatter = solid.material.scatter;
+        let factors = scatter.map(|scatter| scatter.strength().factors(cloud));
+        let factors = factors.transpose();
+        factors.map_err(|error| at("material.scatter", error))
     }
 
     /// The interfaces between bond-based materials: for every pair the table that names it, and for what that leaves out the table for all pairs.

@@ -41,6 +41,7 @@ mod statics;
 mod step;
 mod stop;
 mod surface;
+mod thermal;
 
 pub use assemble::{assemble, build};
 pub use assembly::Assembly;

@@ -65,6 +65,13 @@ impl Assembler<'_> {
                 Some(classes)
             }
         };
+        let classes = match self.strengths(solid, cloud)? {
+            None => classes,
+            Some(factors) => {
+                let classes = classes.unwrap_or_else(|| SolidClasses::uniform(&constants));
+                Some(classes.with_strengths(factors))
+            }
+        };
         let no_fail = self.union_of(sets, &material.no_fail)?;
         let surfaces = self.cracks;
         let body = LinearSolidBody {
@@ -83,7 +90,10 @@ impl Assembler<'_> {
             damage: material.damage.unwrap_or_default(),
         };
         // Forms that transform are refused above.
-        let form = material.form.of_bonds().unwrap_or_default();
+        let form = self
+            .heated_form(material.form)?
+            .of_bonds()
+            .unwrap_or_default();
         let bonds = match laws.iter().all(Inelasticity::is_elastic) {
             true => body.operator(form),
             false => {

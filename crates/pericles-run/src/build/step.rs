@@ -63,7 +63,9 @@ impl Assembler<'_> {
                         reason: "it has no stable step of its own; give dt",
                     })
                     .map_err(refuse)?;
-                let stable = safety * damped_step(frequency.stable_step(limit, 1.0), damped);
+                let undamped = frequency.stable_step(limit, 1.0);
+                let damped = damped + self.rayleigh_rates().at(limit / undamped);
+                let stable = safety * damped_step(undamped, damped);
                 let count = self.count(end, stable)?;
                 Ok(Steps {
                     dt: end / count as f64,
@@ -80,6 +82,7 @@ impl Assembler<'_> {
                     // What is refused is what the deck says.
                     let judged = if dt <= stable { dt } else { given };
                     self.judge(judged, limit, frequency, integrator.name(), warnings)?;
+                    let damped = damped + self.rayleigh_rates().at(limit / stable);
                     self.check_damped(dt, stable, damped)?;
                 }
                 if let (Scheme::Trigonometric(options), Ok(frequency)) =

@@ -25,6 +25,7 @@ mod schemes;
 mod sense;
 mod solutions;
 mod state_based;
+mod thermal;
 mod tuned;
 mod wrong;
 

@@ -15,8 +15,8 @@ use pericles::parallel::{BLOCK, for_each_chunk};
 use pericles::sum::BinnedSum;
 use rayon::prelude::*;
 
-use super::bonds::Bond;
 use super::force::{CorrespondenceForce, PointShape};
+use super::heat::Heat;
 use super::plasticity::History;
 use super::tensor::{combination, unit};
 
@@ -33,7 +33,8 @@ impl<const D: usize> CorrespondenceForce<D> {
     /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch, and all bonds of points whose other bonds do not span the space; books the energy.
     pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &On<'_>) {
         let domain = self.cloud.domain().clone();
-        let mut found = self.over_stretched(&self.packed(u), on);
+        let heat = self.heat_at(step.t);
+        let mut found = self.over_stretched(&self.packed(u), on, &heat);
         if domain.all(found.is_empty()) {
             return;
         }
@@ -62,13 +63,14 @@ impl<const D: usize> CorrespondenceForce<D> {
                 self.shapes[i] = self.shape_of(i);
             }
         }
-        self.book(step, &rows, before);
+        self.book(step, &rows, before, &heat);
     }
 
     /// Entries of the points named by `on` whose bond is stretched beyond its critical stretch.
-    fn over_stretched(&self, rows: &[Row], on: &On<'_>) -> Entries {
+    fn over_stretched(&self, rows: &[Row], on: &On<'_>, heat: &Heat) -> Entries {
         let n = self.cloud.len();
         let threshold = BondStretch::threshold(self.weakest);
+        let sites = self.bonds.list.sites();
         let of_block = |block: usize| {
             let first = block * BLOCK;
             let mut found = Entries::new();
@@ -79,8 +81,13 @@ impl<const D: usize> CorrespondenceForce<D> {
                 let here = self.bonds.list.site(i);
                 self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                     let eta = Self::eta(rows, here, &bond);
-                    let (measure, square) = BondStretch::stretch_measure(bond.xi, eta);
-                    if measure > threshold * square && self.breaks(here, &bond, eta) {
+                    let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
+                    let (measure, square) = BondStretch::stretch_measure(xi, eta);
+                    let limit = self.limits.stretch(here, bond.site);
+                    if measure > threshold * square
+                        && self.may_break(bond.entry)
+                        && measure > BondStretch::threshold(limit) * square
+                    {
                         found.push((i, bond.entry));
                     }
                 });
@@ -92,13 +99,6 @@ impl<const D: usize> CorrespondenceForce<D> {
             .map(of_block)
             .collect();
         blocks.concat()
-    }
-
-    /// Whether a bond may break and is stretched beyond the critical stretch of its pair of materials.
-    fn breaks(&self, here: usize, bond: &Bond<D>, eta: [f64; D]) -> bool {
-        let (measure, square) = BondStretch::stretch_measure(bond.xi, eta);
-        let limit = self.limits.stretch(here, bond.site);
-        self.may_break(bond.entry) && measure > BondStretch::threshold(limit) * square
     }
 
     fn may_break(&self, entry: usize) -> bool {
@@ -147,7 +147,13 @@ impl<const D: usize> CorrespondenceForce<D> {
     }
 
     /// Books what points dissipate that lost bonds.
-    fn book(&mut self, step: &StepEnd<'_>, rows: &[Row], before: BTreeMap<usize, Before<D>>) {
+    fn book(
+        &mut self,
+        step: &StepEnd<'_>,
+        rows: &[Row],
+        before: BTreeMap<usize, Before<D>>,
+        heat: &Heat,
+    ) {
         let ghosts = step.ghost_velocities(self.cloud.domain());
         let velocity = step.velocities(&ghosts);
         let volumes = self.cloud.clone();
@@ -161,9 +167,11 @@ impl<const D: usize> CorrespondenceForce<D> {
         for (i, before) in before {
             let (groups, shape) = (self.bonds.list.groups(i), self.shapes[i]);
             let after = self.intact[groups.clone()].to_vec();
-            let [energy, power] = self.energy_and_power(i, &shape, rows, &velocities);
+            let velocities = &velocities[..];
+            let [energy, power] = self.energy_and_power(i, &shape, [rows, velocities], heat);
             self.intact[groups.clone()].copy_from_slice(&before.intact);
-            let [more, stronger] = self.energy_and_power(i, &before.shape, rows, &velocities);
+            let [more, stronger] =
+                self.energy_and_power(i, &before.shape, [rows, velocities], heat);
             self.intact[groups].copy_from_slice(&after);
             let volume = volumes.volumes()[i];
             let lost =
@@ -183,14 +191,14 @@ impl<const D: usize> CorrespondenceForce<D> {
         &self,
         i: usize,
         shape: &PointShape<D>,
-        rows: &[Row],
-        velocities: &[Row],
+        [rows, velocities]: [&[Row]; 2],
+        heat: &Heat,
     ) -> [f64; 2] {
-        let energy = self.energy_of(i, shape, rows);
+        let energy = self.energy_of(i, shape, rows, heat);
         if velocities.is_empty() {
             return [energy, 0.0];
         }
-        let (state, _) = self.state_of(i, shape, &self.etas(i, rows));
+        let (state, _) = self.state_of(i, shape, &self.etas(i, rows), heat);
         let (here, nothing) = (self.bonds.list.site(i), Default::default());
         let mut power = 0.0;
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
@@ -206,8 +214,8 @@ impl<const D: usize> CorrespondenceForce<D> {
     }
 
     /// Plastic flow of the points named by `on` in the step that ends at `u`, and its work.
-    pub(super) fn advance_history(&mut self, u: Field<'_>, on: &On<'_>) {
-        let n = self.cloud.len();
+    pub(super) fn advance_history(&mut self, t: f64, u: Field<'_>, on: &On<'_>) {
+        let (n, heat) = (self.cloud.len(), self.heat_at(t));
         let mut history = std::mem::take(&mut self.history);
         let rows = self.packed(u);
         let sums: Vec<BinnedSum> = history
@@ -222,7 +230,7 @@ impl<const D: usize> CorrespondenceForce<D> {
                     let kept = &mut kept[(i - first) * History::KEPT..][..History::KEPT];
                     let gradient = self.gradient(i, &self.shapes[i].inverse, &self.etas(i, &rows));
                     let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-                    let solid = self.classes.solid(i);
+                    let solid = self.classes.solid(i).expanded(heat.factor(i));
                     let (next, work) = solid.advanced(&f, &History::of(kept));
                     next.keep(kept);
                     if work != 0.0 {
@@ -305,12 +313,14 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         let ghosts = self.cloud.domain().ghosts(u);
         let rows = self.packed(Field::new(u, &ghosts));
+        let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
         for_each_chunk(marks, &|first, marks| {
             for (i, mark) in (first..).zip(marks) {
                 let here = self.bonds.list.site(i);
                 self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                     let eta = Self::eta(&rows, here, &bond);
-                    let (measure, square) = BondStretch::stretch_measure(bond.xi, eta);
+                    let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
+                    let (measure, square) = BondStretch::stretch_measure(xi, eta);
                     let limit = fraction * self.limits.stretch(here, bond.site);
                     *mark |= self.may_break(bond.entry)
                         && measure > BondStretch::threshold(limit) * square;

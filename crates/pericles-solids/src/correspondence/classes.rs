@@ -18,6 +18,8 @@ pub struct CorrespondenceClasses {
     materials: Vec<CorrespondenceConstants>,
     /// Critical stretches by pairs of materials.
     stretch: Vec<f64>,
+    /// Factors of the critical stretch by points; empty if they are as given.
+    strengths: Vec<f64>,
 }
 
 impl CorrespondenceClasses {
@@ -27,6 +29,7 @@ impl CorrespondenceClasses {
             of_point: Vec::new(),
             materials: vec![constants.clone()],
             stretch: vec![constants.solid.limits.stretch],
+            strengths: Vec::new(),
         }
     }
 
@@ -62,7 +65,16 @@ impl CorrespondenceClasses {
             of_point,
             stretch: pairs.collect(),
             materials: materials.to_vec(),
+            strengths: Vec::new(),
         })
+    }
+
+    /// The same with a factor of the critical stretch for every point, such as [`StrengthScatter::factors`](pericles::material::StrengthScatter::factors): a bond has the mean of its ends.
+    pub fn with_strengths(self, factors: Vec<f64>) -> Self {
+        Self {
+            strengths: factors,
+            ..self
+        }
     }
 
     /// Gives bonds between two materials a critical stretch of their own.
@@ -78,7 +90,8 @@ impl CorrespondenceClasses {
 
     /// Whether there is a material for each of so many points.
     pub fn covers(&self, points: usize) -> bool {
-        self.of_point.is_empty() || self.of_point.len() == points
+        let has = |count: usize| count == 0 || count == points;
+        has(self.of_point.len()) && has(self.strengths.len())
     }
 
     /// The constants of a point's material.
@@ -98,7 +111,9 @@ impl CorrespondenceClasses {
 
     /// The lowest critical stretch.
     pub(super) fn weakest(&self) -> f64 {
-        self.stretch.iter().copied().fold(f64::INFINITY, f64::min)
+        let weakest = self.strengths.iter().copied().reduce(f64::min);
+        let stretch = self.stretch.iter().copied().fold(f64::INFINITY, f64::min);
+        weakest.unwrap_or(1.0) * stretch
     }
 
     /// Whether any material yields.
@@ -113,6 +128,7 @@ impl CorrespondenceClasses {
             of_site: sites.spread_numbers(&self.of_point),
             count: self.materials.len(),
             stretch: self.stretch.clone(),
+            strengths: sites.spread(&self.strengths).into_owned(),
         }
     }
 }
@@ -127,10 +143,16 @@ pub(super) struct SiteLimits {
     of_site: Vec<u8>,
     count: usize,
     stretch: Vec<f64>,
+    strengths: Vec<f64>,
 }
 
 impl SiteLimits {
     pub fn stretch(&self, a: usize, b: usize) -> f64 {
-        self.stretch[number(&self.of_site, a) * self.count + number(&self.of_site, b)]
+        let pair = number(&self.of_site, a) * self.count + number(&self.of_site, b);
+        let strength = match &self.strengths[..] {
+            [] => 1.0,
+            strengths => 0.5 * (strengths[a] + strengths[b]),
+        };
+        strength * self.stretch[pair]
     }
 }

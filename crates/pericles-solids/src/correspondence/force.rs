@@ -11,13 +11,14 @@ use pericles::operator::{DamageMeasure, On};
 use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk};
 use pericles::space::PointCloud;
 use pericles::sum::BinnedSum;
-use pericles::{Result, saved};
+use pericles::{Result, ThermalExpansion, saved};
 use rayon::prelude::*;
 
 use super::bonds::{Bond, Bonds, SiteState, Values, read_sites};
 use super::classes::{CorrespondenceClasses, SiteLimits};
 use super::control::Control;
 use super::error::SingularShape;
+use super::heat::Heat;
 use super::plasticity::History;
 use super::shape::Shape;
 use super::tensor::{Matrix, combination, product, unit};
@@ -57,6 +58,8 @@ pub struct CorrespondenceForce<const D: usize> {
     pub(super) dropped: u64,
     /// The first point whose volume was not positive at the end of the last step, and its dilatation.
     pub(super) inverted: Option<(usize, f64)>,
+    /// Thermal expansion, if the body is heated.
+    pub(super) expansion: Option<ThermalExpansion>,
     displaced: Pool<Vec<Row>>,
     sites: Pool<Vec<SiteState<D>>>,
     points: Pool<Vec<PointValues<D>>>,
@@ -69,7 +72,7 @@ saved! {
         broken, dropped: array("operator/broken"),
         dissipated: under("operator/dissipated"),
         plastic_work: under("operator/plastic-work"),
-        cloud, bonds, classes, limits, weakest, breakable, damage, spring: fixed,
+        cloud, bonds, classes, limits, weakest, breakable, damage, spring, expansion: fixed,
         shapes: rebuilt,
         inverted: set(None),
         displaced, sites, points: scratch,
@@ -140,6 +143,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             broken: 0,
             dropped: 0,
             inverted: None,
+            expansion: None,
             displaced: Pool::new(1, move || vec![Row::default(); sites]),
             sites: Pool::new(1, move || vec![SiteState::default(); sites]),
             points: Pool::new(1, move || vec![PointValues::default(); n]),
@@ -288,8 +292,9 @@ impl<const D: usize> CorrespondenceForce<D> {
     }
 
     /// The values of a point.
-    fn values_of(&self, i: usize, rows: &[Row]) -> PointValues<D> {
-        let (state, gradient) = self.state_of(i, &self.shapes[i], &self.etas(i, rows));
+    fn values_of(&self, i: usize, rows: &[Row], heat: &Heat) -> PointValues<D> {
+        let etas = self.etas(i, rows);
+        let (state, gradient) = self.state_of(i, &self.shapes[i], &etas, heat);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         PointValues {
             state,
@@ -303,10 +308,11 @@ impl<const D: usize> CorrespondenceForce<D> {
         i: usize,
         shape: &PointShape<D>,
         eta: &impl Fn(&Bond<D>) -> [f64; D],
+        heat: &Heat,
     ) -> (SiteState<D>, Matrix<D>) {
         let gradient = self.gradient(i, &shape.inverse, eta);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.classes.solid(i);
+        let solid = self.classes.solid(i).expanded(heat.factor(i));
         let stress = solid.stress(&f, &self.history_of(i)).stress;
         let push = product(&stress, &shape.inverse);
         let state = SiteState {
@@ -317,7 +323,13 @@ impl<const D: usize> CorrespondenceForce<D> {
     }
 
     /// W of a point with a shape, J/m³.
-    pub(super) fn energy_of(&self, i: usize, shape: &PointShape<D>, rows: &[Row]) -> f64 {
+    pub(super) fn energy_of(
+        &self,
+        i: usize,
+        shape: &PointShape<D>,
+        rows: &[Row],
+        heat: &Heat,
+    ) -> f64 {
         let etas = self.etas(i, rows);
         let gradient = self.gradient(i, &shape.inverse, &etas);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
@@ -329,8 +341,8 @@ impl<const D: usize> CorrespondenceForce<D> {
             let pull = shape.control.apply(&z);
             penalty += bond.weight * (0..D).map(|c| z[c] * pull[c]).sum::<f64>();
         });
-        let stored = self.classes.solid(i).stress(&f, &self.history_of(i)).energy;
-        stored + 0.5 * penalty
+        let solid = self.classes.solid(i).expanded(heat.factor(i));
+        solid.stress(&f, &self.history_of(i)).energy + 0.5 * penalty
     }
 
     /// Sets the values of the points named by `on` to those that `of` computes.
@@ -364,10 +376,10 @@ impl<const D: usize> CorrespondenceForce<D> {
     }
 
     /// Sets the values of the points named by `on`.
-    pub(super) fn all_values(&self, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
-        let rows = self.packed(u);
+    pub(super) fn all_values(&self, t: f64, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
+        let (rows, heat) = (self.packed(u), self.heat_at(t));
         self.set_values(on, out, &|i| {
-            let values = self.values_of(i, &rows);
+            let values = self.values_of(i, &rows, &heat);
             (values.state, values.dilatation)
         });
     }

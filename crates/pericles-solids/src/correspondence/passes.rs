@@ -1,10 +1,10 @@
 //! The two passes of correspondence materials.
 
-use pericles::StepEnd;
 use pericles::domain::Field;
 use pericles::lanes::Row;
-use pericles::operator::{AtPoints, BondView, Breakable, Inversion, On, TwoPass};
+use pericles::operator::{AtPoints, BondView, Breakable, Inversion, On, PlasticView, TwoPass};
 use pericles::parallel::for_each_chunk;
+use pericles::{Expandable, StepEnd, ThermalExpansion};
 
 use super::bonds::{SiteState, Values};
 use super::control::Control;
@@ -16,12 +16,13 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         self.value_count()
     }
 
-    fn values_into(&self, _t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
-        self.all_values(u, on, values);
+    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+        self.all_values(t, u, on, values);
     }
 
     /// Of the push; the control does not change, and no one asks for the change of the dilatation.
-    fn value_changes_into(&self, _t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
+    fn value_changes_into(&self, t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
+        let heat = self.heat_at(t);
         let (rows, moved) = (self.packed(u), self.packed(direction));
         self.set_values(&On::All, changes, &|i| {
             let shape = &self.shapes[i];
@@ -29,7 +30,8 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
             let change = self.gradient(i, &shape.inverse, &self.etas(i, &moved));
             let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
             let history = self.history_of(i);
-            let stress = self.classes.solid(i).stress_change(&f, &change, &history);
+            let solid = self.classes.solid(i).expanded(heat.factor(i));
+            let stress = solid.stress_change(&f, &change, &history);
             let push = product(&stress, &shape.inverse);
             let state = SiteState {
                 push: combination(1.0, &push, -1.0, &shape.control.times(&change)),
@@ -59,11 +61,11 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         });
     }
 
-    fn add_energy_density(&self, _t: f64, at: AtPoints<'_>, out: &mut [f64]) {
-        let rows = self.packed(at.u);
+    fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]) {
+        let (rows, heat) = (self.packed(at.u), self.heat_at(t));
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
-                *energy += self.energy_of(i, &self.shapes[i], &rows);
+                *energy += self.energy_of(i, &self.shapes[i], &rows, &heat);
             }
         });
     }
@@ -116,9 +118,9 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
             self.break_bonds(step, u, on);
         }
         if !self.history.is_empty() {
-            self.advance_history(u, on);
+            self.advance_history(step.t, u, on);
         }
-        self.all_values(u, needed, values);
+        self.all_values(step.t, u, needed, values);
         let n = self.cloud.len();
         let dilatations = &values[Values::dilatation::<D>() * n..][..n];
         self.inverted = None;
@@ -150,6 +152,18 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
 
     fn is_path_dependent(&self) -> bool {
         !self.history.is_empty()
+    }
+
+    fn thermal(&self) -> Option<&ThermalExpansion> {
+        self.expansion.as_ref()
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        Some(self)
+    }
+
+    fn plastic(&self) -> Option<&dyn PlasticView> {
+        (!self.history.is_empty()).then_some(self)
     }
 
     /// None in a body divided among processes: the force of a bond needs the families of both of its ends.

@@ -33,16 +33,67 @@ pub struct PointState<const D: usize> {
 /// Iterations for the stretch across; quadratic convergence needs a handful.
 const ITERATIONS: usize = 60;
 
-impl Solid {
-    /// Energy density and stress; not numbers where det F ≤ 0.
+/// A solid whose stress-free state is stretched by a factor λ in all directions: F = λ F_e, ψ = ψ(F_e) and P = P(F_e)/λ. Plane strain keeps F₃₃ = 1, so that F_e,₃₃ = 1/λ.
+#[derive(Debug, Clone, Copy)]
+pub struct Expanded<'a> {
+    solid: &'a Solid,
+    factor: f64,
+}
+
+impl Expanded<'_> {
+    /// As [`Solid::stress`].
     pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
-        let full = self.embedded(f, history);
-        let (energy, stress) = self.stress_in_space(&full, history);
+        let full = self.elastic_part(f, history);
+        let (energy, stress) = self.solid.stress_in_space(&full, history);
         PointState {
             energy,
-            stress: in_body(&stress),
-            across: full[2][2],
+            stress: self.over_factor(&in_body(&stress)),
+            across: self.factor * full[2][2],
         }
+    }
+
+    /// As [`Solid::stress_change`].
+    pub fn stress_change<const D: usize>(
+        &self,
+        f: &Matrix<D>,
+        df: &Matrix<D>,
+        history: &History,
+    ) -> Matrix<D> {
+        let full = self.elastic_part(f, history);
+        let change = self.over_factor(df);
+        let change = self.solid.change_at(&full, &change, history);
+        self.over_factor(&change)
+    }
+
+    /// As [`Solid::advanced`].
+    pub fn advanced<const D: usize>(&self, f: &Matrix<D>, history: &History) -> (History, f64) {
+        let full = self.elastic_part(f, history);
+        self.solid.advanced_at(&full, history)
+    }
+
+    /// F_e in space.
+    fn elastic_part<const D: usize>(&self, f: &Matrix<D>, history: &History) -> Matrix<3> {
+        let across = 1.0 / self.factor;
+        self.solid.embedded(&self.over_factor(f), across, history)
+    }
+
+    fn over_factor<const D: usize>(&self, tensor: &Matrix<D>) -> Matrix<D> {
+        tensor.map(|row| row.map(|entry| entry / self.factor))
+    }
+}
+
+impl Solid {
+    /// The solid with a stress-free state that is stretched by a positive factor, by thermal expansion.
+    pub fn expanded(&self, factor: f64) -> Expanded<'_> {
+        Expanded {
+            solid: self,
+            factor,
+        }
+    }
+
+    /// Energy density and stress; not numbers where det F ≤ 0.
+    pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
+        self.expanded(1.0).stress(f, history)
     }
 
     /// The change of P in a direction dF at F, with what changes across.
@@ -52,24 +103,35 @@ impl Solid {
         df: &Matrix<D>,
         history: &History,
     ) -> Matrix<D> {
-        let full = self.embedded(f, history);
-        let direct = self.change_in_space(&full, &in_space(df, 0.0), history);
+        self.expanded(1.0).stress_change(f, df, history)
+    }
+
+    fn change_at<const D: usize>(
+        &self,
+        full: &Matrix<3>,
+        df: &Matrix<D>,
+        history: &History,
+    ) -> Matrix<D> {
+        let direct = self.change_in_space(full, &in_space(df, 0.0), history);
         let Some(across) = self.across() else {
             return in_body(&direct);
         };
-        let slope = self.change_in_space(&full, &across, history);
+        let slope = self.change_in_space(full, &across, history);
         let stretch = -direct[2][2] / slope[2][2];
         in_body(&combination(1.0, &direct, stretch, &slope))
     }
 
     /// The history after a step that ends at F, and the plastic work per volume within it, J/m³; as before of solids that do not yield.
     pub fn advanced<const D: usize>(&self, f: &Matrix<D>, history: &History) -> (History, f64) {
+        self.expanded(1.0).advanced(f, history)
+    }
+
+    fn advanced_at(&self, full: &Matrix<3>, history: &History) -> (History, f64) {
         let Some(plasticity) = &self.plasticity else {
             return (*history, 0.0);
         };
-        let full = self.embedded(f, history);
-        let state = returned(&self.moduli, Some(plasticity), &full, history);
-        state.advanced(plasticity, &full, history)
+        let state = returned(&self.moduli, Some(plasticity), full, history);
+        state.advanced(plasticity, full, history)
     }
 
     /// The tensor of linear elasticity on a symmetric tensor in the body's own dimensions, λ̂ tr(ε) I + 2 G ε, Pa.
@@ -102,10 +164,10 @@ impl Solid {
         }
     }
 
-    /// F in space.
-    fn embedded<const D: usize>(&self, f: &Matrix<D>, history: &History) -> Matrix<3> {
+    /// F in space, with the stretch across that plane strain keeps.
+    fn embedded<const D: usize>(&self, f: &Matrix<D>, kept: f64, history: &History) -> Matrix<3> {
         let Some(direction) = self.across() else {
-            return in_space(f, 1.0);
+            return in_space(f, kept);
         };
         // An inverted plane has no stretch across.
         if determinant(&in_space(f, 1.0)) <= 0.0 {

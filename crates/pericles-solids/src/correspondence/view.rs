@@ -1,18 +1,27 @@
 //! Single bonds of correspondence bodies, for fields.
 
 use pericles::domain::Field;
-use pericles::operator::{BondAt, BondView};
+use pericles::operator::{BondAt, BondView, PlasticView};
 
 use super::bonds::Bond;
 use super::force::CorrespondenceForce;
 
+/// The accumulated plastic strain ∫ √(2/3 d_p : d_p) dt.
+impl<const D: usize> PlasticView for CorrespondenceForce<D> {
+    fn plastic_strain_into(&self, out: &mut [f64]) {
+        for (i, strain) in out.iter_mut().enumerate() {
+            *strain = self.plastic_strain(i);
+        }
+    }
+}
+
 /// The deformation gradients of a point and its neighbours are computed for each call.
 impl<const D: usize> BondView for CorrespondenceForce<D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let sites = self.bonds.list.sites();
+        let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
         let state = |k: usize| {
             let eta = |bond: &Bond<D>| u.difference::<D>([k, sites.point(bond.site)]);
-            self.state_of(k, &self.shapes[k], &eta).0
+            self.state_of(k, &self.shapes[k], &eta, &heat).0
         };
         let own = state(i);
         self.bonds.for_each(i, self.bits(i), |bond: Bond<D>| {

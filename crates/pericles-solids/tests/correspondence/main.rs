@@ -2,6 +2,7 @@
 
 mod bodies;
 mod fracture;
+mod heat;
 mod identities;
 mod law;
 mod plastic;

@@ -10,9 +10,12 @@ use crate::family::{Crack, EndRule};
 use crate::material::{
     BondConstants, BondMaterial, InterfaceRule, PairForce, StressState, SurfaceCorrection,
 };
-use crate::operator::{AssembledBonds, BondBody, BondForm, CompositeBody, DamageMeasure, Force};
+use crate::operator::{
+    AssembledBonds, BondBody, BondForm, CompositeBody, DamageMeasure, Feature, Features, Force,
+};
 use crate::space::{PointCloud, PointSet, check_points};
 use crate::system::System;
+use crate::thermal::ThermalExpansion;
 
 /// How the bonds of an own pair law are assembled.
 type Assemble = fn(&CompositeBody<'_>, BondForm) -> Result<AssembledBonds>;
@@ -54,6 +57,7 @@ pub struct Body {
     damage: DamageMeasure,
     form: BondForm,
     assemble: Assemble,
+    expansion: Option<ThermalExpansion>,
     forces: Vec<Box<dyn Force>>,
     loads: Vec<Load>,
     motions: Vec<PrescribedMotion>,
@@ -75,6 +79,7 @@ impl Body {
             damage: DamageMeasure::default(),
             form: BondForm::default(),
             assemble: |body, form| body.operator(form),
+            expansion: None,
             forces: Vec::new(),
             loads: Vec::new(),
             motions: Vec::new(),
@@ -139,6 +144,12 @@ impl Body {
         self
     }
 
+    /// A thermal expansion of the bonds, which are then a list.
+    pub fn expansion(mut self, expansion: ThermalExpansion) -> Self {
+        self.expansion = Some(expansion);
+        self
+    }
+
     /// Another force between the points of the body, beside that of its bonds.
     pub fn force(mut self, force: Box<dyn Force>) -> Self {
         self.forces.push(force);
@@ -196,7 +207,16 @@ impl Body {
             correction: self.correction,
             ..CompositeBody::from(body)
         };
-        let bonds = (self.assemble)(&composite, self.form)?;
+        let form = match (&self.expansion, self.form) {
+            (Some(_), BondForm::Fastest) => BondForm::List,
+            (_, form) => form,
+        };
+        let expands = Features::default().with(Feature::ThermalExpansion, self.expansion.is_some());
+        form.check(expands)?;
+        let mut bonds = (self.assemble)(&composite, form)?;
+        if let Some(expansion) = self.expansion {
+            bonds.operator.expand(expansion)?;
+        }
         let mut system = System::new(self.cloud, bonds.operator, mixture.density)?;
         for force in self.forces {
             system.add_force(force)?;

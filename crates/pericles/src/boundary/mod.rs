@@ -4,12 +4,14 @@ mod damping;
 mod function;
 mod load;
 mod motion;
+mod rayleigh;
 mod table;
 
 pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
+pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness};
 pub use table::TimeTable;
 
 use crate::archive::Saved;
@@ -80,6 +82,23 @@ pub trait Boundary: Saved + Send + Sync {
 
     /// Called after the accelerations of a stage are known for the points named by `on`; may change these. Velocities are those of the stage.
     fn after_stage(&mut self, stage: &Stage<'_>, acceleration: &mut [f64]);
+
+    /// [`Boundary::accept`] with what it may ask of the forces of the body.
+    fn accept_with(&mut self, step: &StepEnd<'_>, stiffness: Stiffness<'_>) -> Exchange {
+        let _ = stiffness;
+        self.accept(step)
+    }
+
+    /// [`Boundary::after_stage`] with what it may ask of the forces of the body.
+    fn after_stage_with(
+        &mut self,
+        stage: &Stage<'_>,
+        stiffness: Stiffness<'_>,
+        acceleration: &mut [f64],
+    ) {
+        let _ = stiffness;
+        self.after_stage(stage, acceleration);
+    }
 
     /// Whether what it does depends on more than the state that it is given: schemes that try steps, or whose steps have different lengths, cannot follow such a boundary.
     fn has_memory(&self) -> bool {

@@ -1,8 +1,9 @@
 //! Bodies of several materials: the constants of a bond by the materials of its two ends.
 
 use super::BondConstants;
+use super::scatter::Factors;
 use crate::error::{PericlesError, Result};
-use crate::space::Sites;
+use crate::space::{Sites, check_length};
 
 /// The constant c of a bond between two materials, from theirs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -39,6 +40,8 @@ pub struct PairClasses {
     count: usize,
     micromodulus: Vec<f64>,
     critical_stretch: Vec<f64>,
+    /// Factors of the critical stretch by points.
+    strength: Factors,
 }
 
 impl PairClasses {
@@ -64,6 +67,7 @@ impl PairClasses {
             count,
             micromodulus: table(&|a, b| rule.mix([a.micromodulus, b.micromodulus])),
             critical_stretch: table(&|a, b| a.critical_stretch.min(b.critical_stretch)),
+            strength: Factors::default(),
         })
     }
 
@@ -76,6 +80,22 @@ impl PairClasses {
             self.critical_stretch[class] = stretch;
         }
         Ok(())
+    }
+
+    /// The same with a factor of the critical stretch for every point, such as [`StrengthScatter::factors`](super::StrengthScatter::factors): a bond has the mean of its ends.
+    ///
+    /// # Errors
+    /// Factors that are not one for each point.
+    pub fn with_strengths(self, factors: Vec<f64>) -> Result<Self> {
+        check_length(
+            "the strengths of the points",
+            factors.len(),
+            self.of_point.len(),
+        )?;
+        Ok(Self {
+            strength: Factors::new(factors),
+            ..self
+        })
     }
 
     /// Gives bonds between two materials a constant of their own.
@@ -112,14 +132,16 @@ impl PairClasses {
     pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
         Self {
             of_point: sites.spread_numbers(&self.of_point),
+            strength: Factors::new(sites.spread(self.strength.as_slice()).into_owned()),
             ..self.clone()
         }
     }
 
-    /// The same for other places, with the number of the material of each.
-    pub(crate) fn at(&self, of_place: Vec<u8>) -> Self {
+    /// The same for other places, with the number of the material of each and, where strengths scatter, its factor.
+    pub(crate) fn at(&self, of_place: Vec<u8>, strengths: Vec<f64>) -> Self {
         Self {
             of_point: of_place,
+            strength: Factors::new(strengths),
             ..self.clone()
         }
     }
@@ -136,7 +158,7 @@ impl PairClasses {
 
     /// The critical stretch s₀ of a bond between two points; infinite if it never breaks.
     pub fn critical_stretch(&self, i: usize, j: usize) -> f64 {
-        self.critical_stretch[self.class(i, j)]
+        self.critical_stretch[self.class(i, j)] * self.strength.of_bond(i, j)
     }
 
     /// The constant c of bonds between two materials.
@@ -158,15 +180,24 @@ impl PairClasses {
     /// Whether all bonds have one critical stretch.
     pub fn has_one_critical_stretch(&self) -> bool {
         let first = self.critical_stretch[0];
-        self.critical_stretch
-            .iter()
-            .all(|stretch| *stretch == first)
+        let mut stretches = self.critical_stretch.iter();
+        self.strength.is_uniform() && stretches.all(|stretch| *stretch == first)
     }
 
     /// The smallest critical stretch of all.
     pub fn smallest_critical_stretch(&self) -> f64 {
         let stretches = self.critical_stretch.iter();
-        stretches.copied().fold(f64::INFINITY, f64::min)
+        self.strength.smallest() * stretches.copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether critical stretches scatter from point to point.
+    pub fn scatters(&self) -> bool {
+        !self.strength.is_uniform()
+    }
+
+    /// The factor of the critical stretch of every point; empty if strengths do not scatter.
+    pub(crate) fn strengths(&self) -> &[f64] {
+        self.strength.as_slice()
     }
 
     /// Critical stretches by class.

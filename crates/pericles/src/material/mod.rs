@@ -25,6 +25,7 @@ mod law;
 mod modulus;
 mod pair_force;
 mod polynomial;
+mod scatter;
 mod state_based;
 mod surface_correction;
 mod treatment;
@@ -40,6 +41,8 @@ pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};
 pub use pair_force::PairForce;
 pub use polynomial::{GreenBond, LiteralBond};
+pub(crate) use scatter::Factors;
+pub use scatter::{Scattered, StrengthScatter};
 pub use state_based::{
     BondFailure, BondLimits, ElasticConstants, GivenConstants, Inelasticity, IsotropicInfluence,
     LatticeShear, LinearSolid, LinearSolidConstants, MOST_TERMS, SolidClasses, SolidSurface,

@@ -42,6 +42,8 @@ pub enum Field {
     PlasticStrain,
     /// 1 where a point has yielded, 0 elsewhere. As plastic strain.
     YieldFlag,
+    /// Temperature, K. Of materials that expand with it; else not a number.
+    Temperature,
 }
 
 impl Field {
@@ -55,7 +57,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -71,6 +73,7 @@ impl Field {
         Self::EquivalentStress,
         Self::PlasticStrain,
         Self::YieldFlag,
+        Self::Temperature,
     ];
 
     /// Name in files.
@@ -91,6 +94,7 @@ impl Field {
             Self::EquivalentStress => "Equivalent_Stress",
             Self::PlasticStrain => "Plastic_Strain",
             Self::YieldFlag => "Yield_Flag",
+            Self::Temperature => "Temperature",
         }
     }
 
@@ -108,6 +112,7 @@ impl Field {
             | Self::YieldFlag => "",
             Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
             Self::Volume => "m³",
+            Self::Temperature => "K",
         }
     }
 
@@ -158,7 +163,7 @@ pub struct Energies {
     pub elastic: f64,
     /// Lost to breaking.
     pub dissipated: f64,
-    /// Work of loads and supports since the start.
+    /// Work of loads, supports and changing temperatures since the start.
     pub work: f64,
     /// Kinetic and elastic energy at the start.
     pub initial: f64,
@@ -202,6 +207,7 @@ pub struct Snapshot<'a> {
     equivalent_stress: OnceCell<Vec<f64>>,
     plastic_strain: OnceCell<Vec<f64>>,
     yielded: OnceCell<Vec<f64>>,
+    temperature: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Snapshot<'a> {
@@ -225,6 +231,7 @@ impl<'a> Snapshot<'a> {
             equivalent_stress: OnceCell::new(),
             plastic_strain: OnceCell::new(),
             yielded: OnceCell::new(),
+            temperature: OnceCell::new(),
         }
     }
 
@@ -249,7 +256,7 @@ impl<'a> Snapshot<'a> {
         self.state
     }
 
-    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have; only state-based materials have a dilatation, and only materials that yield a plastic strain.
+    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have; only state-based materials have a dilatation, only materials that yield a plastic strain, and only bodies with thermal expansion a temperature.
     ///
     /// # Errors
     /// A field that cannot.
@@ -261,6 +268,9 @@ impl<'a> Snapshot<'a> {
             }
             Field::PlasticStrain | Field::YieldFlag if capabilities.plastic.is_none() => {
                 Some("materials with a `yield_stress`")
+            }
+            Field::Temperature if capabilities.thermal.is_none() => {
+                Some("bodies with thermal expansion ([thermal])")
             }
             _ => None,
         };
@@ -338,6 +348,13 @@ impl<'a> Snapshot<'a> {
                     false => f64::from(*strain > 0.0),
                 };
                 strains.map(flag).collect()
+            }),
+            Field::Temperature => self.temperature.get_or_init(|| {
+                let mut temperatures = vec![f64::NAN; self.system.points()];
+                if let Some(thermal) = self.system.operator().capabilities().thermal {
+                    thermal.temperatures_into(t, &mut temperatures);
+                }
+                temperatures
             }),
             Field::Volume => self.system.cloud().volumes(),
             Field::KineticEnergyDensity => self

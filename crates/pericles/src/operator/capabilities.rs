@@ -1,8 +1,11 @@
 //! What a force can do beside computing forces, each a trait of its own.
 
 use super::{
-    BondView, Breakable, DilatationView, Force, LinearOperator, LocalForce, PlasticView, SplitForce,
+    BondForm, BondView, Breakable, DilatationView, Force, Limit, LinearOperator, LocalForce,
+    PlasticView, SplitForce,
 };
+use crate::error::{PericlesError, Result};
+use crate::thermal::ThermalExpansion;
 
 /// The capabilities of a force; schemes, boundaries and observers ask for those that they need, and are refused where one is missing.
 #[derive(Default, Clone, Copy)]
@@ -25,6 +28,8 @@ pub struct Capabilities<'a> {
     pub plastic: Option<&'a dyn PlasticView>,
     /// It depends on the states that the body has gone through: schemes end a step at every state that they accept, whether bonds can break or not.
     pub path_dependent: bool,
+    /// Its material expands with temperature.
+    pub thermal: Option<&'a ThermalExpansion>,
 }
 
 /// Whether a force is linear in the displacement as long as no bond breaks.
@@ -40,6 +45,20 @@ pub enum Linearity<'a> {
 }
 
 impl dyn Force + '_ {
+    /// Gives its material a thermal expansion from now on.
+    ///
+    /// # Errors
+    /// A force that does not represent thermal expansion; those of [`Expandable::expand`](crate::Expandable::expand).
+    pub fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
+        match self.expandable_mut() {
+            Some(material) => material.expand(expansion),
+            None => Err(PericlesError::FormNotUsable {
+                form: BondForm::Fastest.name(),
+                reason: Limit::THERMAL_EXPANSION.reason,
+            }),
+        }
+    }
+
     /// Whether the force is linear in the displacement as long as no bond breaks, computed in whatever precision.
     pub fn is_linear(&self) -> bool {
         !matches!(self.capabilities().linear, Linearity::Nonlinear)

@@ -18,6 +18,29 @@ pub struct FixedBond<T, const D: usize> {
     pub factor: T,
 }
 
+impl<T: Vector, const D: usize> FixedBond<T, D> {
+    /// The bond that has the length (1 + τ)|ξ| without stress, and η as its law sees it: η − τ ξ.
+    #[inline(always)]
+    pub(super) fn expanded(self, stretch: T, eta: [T; D]) -> (Self, [T; D]) {
+        let one = T::splat(1.0);
+        let scale = one + stretch;
+        let inverse = one / scale;
+        let (mut xi, mut pulled) = (self.xi, eta);
+        for c in 0..D {
+            xi[c] = scale * self.xi[c];
+            pulled[c] = eta[c] - stretch * self.xi[c];
+        }
+        // The factor, stiffness over length, stays.
+        let bond = Self {
+            xi,
+            inverse_square: self.inverse_square * (inverse * inverse),
+            stiffness: self.stiffness * scale,
+            factor: self.factor,
+        };
+        (bond, pulled)
+    }
+}
+
 /// The fast form of a pair force.
 ///
 /// With the measure m of [`PairForce::stretch_measure`], t = m/|ξ|² decides all: the bond is over-stretched if t > threshold(s₀), and

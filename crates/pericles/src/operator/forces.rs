@@ -148,6 +148,7 @@ impl Force for Forces {
                 .iter()
                 .find_map(|force| force.capabilities().dilatation),
             plastic: self.iter().find_map(|force| force.capabilities().plastic),
+            thermal: self.iter().find_map(|force| force.capabilities().thermal),
             linear: match (exact, rounded) {
                 (true, _) => Linearity::Exact(self),
                 (false, true) => Linearity::Rounded,

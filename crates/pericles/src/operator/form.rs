@@ -25,6 +25,7 @@ const OF_GRID: &[Limit] = &[
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
     Limit::BOND_ENERGY,
+    Limit::THERMAL_EXPANSION,
 ];
 
 /// In floats no state-based material is computed either.

@@ -45,11 +45,13 @@ pub enum Feature {
     GaussNodes,
     /// Output of stress or strain, which are sums over single bonds.
     Tensors,
+    /// Thermal expansion.
+    ThermalExpansion,
 }
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -69,6 +71,7 @@ impl Feature {
         Self::NoLattice,
         Self::GaussNodes,
         Self::Tensors,
+        Self::ThermalExpansion,
     ];
 
     /// The feature in words.
@@ -93,6 +96,7 @@ impl Feature {
             Self::NoLattice => "points off a grid",
             Self::GaussNodes => "Gauss nodes (bars)",
             Self::Tensors => "stress and strain",
+            Self::ThermalExpansion => "thermal expansion",
         }
     }
 
@@ -167,6 +171,12 @@ impl Limit {
     pub const BOND_ENERGY: Self = Self::new(
         Feature::BondEnergy,
         "the work of every bond is kept as a list; use \"list\", leave `bonds` out, or break bonds by their stretch",
+    );
+
+    /// Of all forms but lists.
+    pub const THERMAL_EXPANSION: Self = Self::new(
+        Feature::ThermalExpansion,
+        "thermal expansion is computed on a list of bonds; leave `bonds` out or give \"list\"",
     );
 
     /// Of forms that need one lattice.

@@ -68,7 +68,8 @@ pub use crate::lanes::InstructionSet;
 pub use crate::parallel::On;
 
 use crate::archive::Saved;
-use crate::step_end::StepEnd;
+use crate::step_end::{Path, StepEnd};
+use crate::thermal::Expandable;
 
 /// A force density on the points of a body as a function of their displacements.
 ///
@@ -115,6 +116,38 @@ pub trait Force: Saved + Send + Sync {
     /// The same as [`Capabilities::split`], to decide breaking part by part.
     fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
         None
+    }
+
+    /// Its material as one that can be given a thermal expansion, if the force represents that.
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        None
+    }
+
+    /// The work that temperatures do by changing within a step, J: ∂E/∂t of the energy at fixed displacements, as the mean of both ends of the step.
+    ///
+    /// With the forces of both ends, each for half of the step, it closes the energy balance exactly where the energy is a quadratic function of displacements and temperatures. A step that is not known as a path does none.
+    fn heating(&self, step: &StepEnd<'_>) -> f64 {
+        let thermal = self.capabilities().thermal;
+        let Some(before) = thermal.and_then(|_| step.displacement_before()) else {
+            return 0.0;
+        };
+        // The first static state is reached from the body before it was heated.
+        let first = matches!(step.path, Path::Chord { first: true, .. });
+        let cold = match first {
+            true => f64::NEG_INFINITY,
+            false => step.t - step.dt,
+        };
+        let steady = thermal.is_none_or(|thermal| thermal.is_steady());
+        if !first && (steady || step.dt == 0.0) {
+            return 0.0;
+        }
+        let gain = |u: &[f64]| self.energy(step.t, u) - self.energy(cold, u);
+        let mean = 0.5 * (gain(&before) + gain(step.u));
+        match first {
+            // Energy of the state before counts as it was heated there.
+            true => mean + self.energy(cold, &before) - self.energy(step.t - step.dt, &before),
+            false => mean,
+        }
     }
 
     /// The springs of an infinite lattice of which the body at rest is a part: a bound of its highest frequency. None of bodies that are no part of a lattice of springs.

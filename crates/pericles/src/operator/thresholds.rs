@@ -6,23 +6,32 @@ use crate::material::{PairClasses, PairForce};
 pub(super) struct PairThresholds {
     /// The material of every place that bonds lead to, and the critical stretch of every pair of materials.
     classes: PairClasses,
-    /// Thresholds by class of pairs.
+    /// Thresholds by class of pairs; empty where strengths scatter.
     table: Vec<f64>,
+    threshold: fn(f64) -> f64,
 }
 
 impl PairThresholds {
     /// Those of a pair law.
     pub fn of<L: PairForce>(classes: PairClasses) -> Self {
-        let stretches = classes.critical_stretches().iter();
+        let stretches = match classes.strengths() {
+            [] => classes.critical_stretches(),
+            _ => &[],
+        };
+        let table = stretches.iter().map(|&stretch| L::threshold(stretch));
         Self {
-            table: stretches.map(|&stretch| L::threshold(stretch)).collect(),
+            table: table.collect(),
+            threshold: L::threshold,
             classes,
         }
     }
 
     /// The threshold of a bond between two places.
     pub fn threshold(&self, a: usize, b: usize) -> f64 {
-        self.table[self.classes.class(a, b)]
+        match &self.table[..] {
+            [] => (self.threshold)(self.classes.critical_stretch(a, b)),
+            table => table[self.classes.class(a, b)],
+        }
     }
 
     /// The critical stretch of a bond between two places.

@@ -12,6 +12,7 @@ use crate::domain::Field;
 use crate::error::Result;
 use crate::space::{PointCloud, PointSet};
 use crate::step_end::StepEnd;
+use crate::thermal::{Expandable, ThermalExpansion};
 
 /// What a pass over bonds reads at both ends of a bond.
 #[derive(Debug, Clone, Copy)]
@@ -102,6 +103,16 @@ pub trait TwoPass: Saved + Send + Sync {
 
     /// Its plastic strain, if its points can yield.
     fn plastic(&self) -> Option<&dyn PlasticView> {
+        None
+    }
+
+    /// The thermal expansion of its material, if it has one.
+    fn thermal(&self) -> Option<&ThermalExpansion> {
+        None
+    }
+
+    /// Its material as one that can be given a thermal expansion. The number of values may change by that.
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
         None
     }
 
@@ -268,12 +279,18 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
             plastic: self.force.plastic(),
             path_dependent: self.force.is_path_dependent(),
+            thermal: self.force.thermal(),
             ..Capabilities::default()
         }
     }
 
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
         self.force.breaking_mut()
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        self.force.expandable_mut()?;
+        Some(self)
     }
 
     fn inversion(&self) -> Option<Inversion> {
@@ -295,6 +312,17 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
 
     fn use_instruction_set(&mut self, set: InstructionSet) {
         self.force.use_instruction_set(set);
+    }
+}
+
+impl<F: TwoPass> Expandable for TwoPassForce<F> {
+    fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
+        if let Some(material) = self.force.expandable_mut() {
+            material.expand(expansion)?;
+        }
+        let entries = self.cloud.len() * self.force.values_per_point();
+        self.work = Pool::new(1, move || vec![0.0; entries]);
+        Ok(())
     }
 }
 

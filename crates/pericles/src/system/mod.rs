@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::accounts::Ledger;
 use crate::archive::Counter;
-use crate::boundary::{Boundary, Load, PrescribedMotion, Stage};
+use crate::boundary::{Boundary, Exchange, Load, PrescribedMotion, Stage, Stiffness};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Force, Forces, On};
@@ -213,7 +213,10 @@ impl System {
 
     /// The same at the end of a step with velocity `v`: decides breaking, books the work and impulse of the step, and lets boundaries with a memory go on.
     pub fn end_step(&mut self, step: &StepEnd<'_>, v: &[f64], out: &mut [f64]) {
+        // With the bonds that act within the step, before it is decided which of them break at its end.
+        let heating = self.operator().heating(step);
         self.end_step_on(step, &On::All, out);
+        self.ledger.book(heating, [0.0; 3]);
         self.book_step(step, out);
         self.accept_boundaries(step);
         self.finish(step.t, step.u, v, &On::All, out);
@@ -295,17 +298,43 @@ impl System {
             v,
             on: on.clone(),
         };
-        for boundary in &mut self.boundaries {
-            boundary.after_stage(&stage, out);
-        }
+        self.with_boundaries(t, |boundary, stiffness| {
+            boundary.after_stage_with(&stage, stiffness, out);
+        });
     }
 
     /// Lets boundaries take an accepted state, and books what they did.
     fn accept_boundaries(&mut self, step: &StepEnd<'_>) {
-        for boundary in &mut self.boundaries {
-            let exchange = boundary.accept(step);
-            self.ledger.book(exchange.work, exchange.impulse);
+        let mut exchanges: Vec<Exchange> = Vec::new();
+        self.with_boundaries(step.t, |boundary, stiffness| {
+            exchanges.push(boundary.accept_with(step, stiffness));
+        });
+        for exchange in exchanges {
+            self.book_exchange(exchange);
         }
+    }
+
+    /// Calls `act` for every boundary, with what it may ask of the forces at time t.
+    fn with_boundaries(&mut self, t: f64, mut act: impl FnMut(&mut dyn Boundary, Stiffness<'_>)) {
+        if self.boundaries.is_empty() {
+            return;
+        }
+        let mut boundaries = std::mem::take(&mut self.boundaries);
+        let product = |u: &[f64], direction: &[f64], out: &mut [f64]| {
+            self.operator().tangent_into(t, u, direction, out);
+            self.divide_by_density(&On::All, out);
+            for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
+            self.hold_at(t, out);
+        };
+        let hold = |vector: &mut [f64]| self.hold_at(t, vector);
+        let stiffness = Stiffness {
+            product: &product,
+            hold: &hold,
+        };
+        for boundary in &mut boundaries {
+            act(&mut **boundary, stiffness);
+        }
+        self.boundaries = boundaries;
     }
 
     /// Notes the reactions of the initial state.
@@ -367,14 +396,23 @@ impl System {
         for motion in &self.motions {
             motion.add_acceleration(step.t, n, work);
         }
+        self.book_heating(step);
         self.book_step(step, work);
     }
 
-    /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet. `work` is for accelerations.
+    /// Books the work of changing temperatures within a step that does not end by [`System::end_step`].
+    pub(crate) fn book_heating(&mut self, step: &StepEnd<'_>) {
+        let work = self.operator().heating(step);
+        self.ledger.book(work, [0.0; 3]);
+    }
+
+    /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet and that is not heated yet. `work` is for accelerations.
     pub fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
         self.zero(&On::All, work);
         self.count(&On::All);
-        self.operator().add_force(t, u, On::All, work);
+        let is_heated = self.operator().capabilities().thermal.is_some();
+        let unheated = if is_heated { f64::NEG_INFINITY } else { t };
+        self.operator().add_force(unheated, u, On::All, work);
         self.divide_by_density(&On::All, work);
         let n = self.points();
         let density = |i: usize| self.density.at(i);

@@ -91,6 +91,20 @@ impl System {
         self.hold_at(t, out);
     }
 
+    /// √Σ (V f)² of the part of the internal forces at displacement u that thermal strain makes, N: what acts on a heated body without loads, for the tolerances of static schemes.
+    pub fn thermal_force(&self, t: f64, u: &[f64]) -> f64 {
+        if self.operator().capabilities().thermal.is_none() {
+            return 0.0;
+        }
+        let (mut heated, mut cold) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+        self.operator().add_force(t, u, On::All, &mut heated);
+        let unheated = f64::NEG_INFINITY;
+        self.operator().add_force(unheated, u, On::All, &mut cold);
+        let (n, volumes) = (self.points(), self.cloud().volumes());
+        let square = |entry: usize| (volumes[entry % n] * (heated[entry] - cold[entry])).powi(2);
+        self.domain().sum(u.len(), square).sqrt()
+    }
+
     /// The number of prescribed motions that hold their points at time t. Points that are let go stay free, so that it says which motions these are.
     pub fn holding(&self, t: f64) -> u64 {
         self.motions.iter().filter(|motion| motion.holds(t)).count() as u64

@@ -166,6 +166,7 @@ impl Relaxation {
         self.velocity.fill(0.0);
         system.load_density_into(t, &mut self.force);
         let load = self.norm(system, &self.force, |free| free);
+        let load = load.max(system.thermal_force(t, u));
         let mut first = f64::NAN;
         let (mut ratio, mut done) = (f64::NAN, 0);
         for iteration in 0..=iterations {

@@ -240,6 +240,7 @@ impl Integrator for Respa {
         Sum::new().onto(&self.slow, coarse, n, a);
         Sum::new().onto(&self.fast, &self.refinement.zones.fine, n, a);
         Sum::new().plus(1.0, &self.fast).add_to(coarse_border, n, a);
+        system.book_heating(&end);
         system.book_step(&end, a);
         system.finish(t_next, u, v, &On::All, a);
         state.close(system, t_next);

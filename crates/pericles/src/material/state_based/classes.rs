@@ -3,7 +3,7 @@
 use super::failure::BondLimits;
 use super::linear_solid::LinearSolidConstants;
 use crate::error::{PericlesError, Result};
-use crate::material::check_materials;
+use crate::material::{Factors, check_materials};
 use crate::space::Sites;
 
 /// The material of every point, and what bonds between each pair of materials can bear.
@@ -18,6 +18,8 @@ pub struct SolidClasses {
     constants: Vec<[f64; 2]>,
     /// By pairs of materials.
     limits: Vec<BondLimits>,
+    /// Factors of the critical stretch by points.
+    strength: Factors,
 }
 
 impl SolidClasses {
@@ -27,6 +29,7 @@ impl SolidClasses {
             of_point: Vec::new(),
             constants: vec![[constants.dilatational, constants.deviatoric]],
             limits: vec![constants.limits],
+            strength: Factors::default(),
         }
     }
 
@@ -55,7 +58,17 @@ impl SolidClasses {
                 .map(|material| [material.dilatational, material.deviatoric])
                 .collect(),
             limits: pairs.collect(),
+            strength: Factors::default(),
         })
+    }
+
+    /// The same with a factor of the critical stretch for every point, such as [`StrengthScatter::factors`](crate::material::StrengthScatter::factors): a bond has the mean of its ends. Critical bond energies have the
+    /// square of it.
+    pub fn with_strengths(self, factors: Vec<f64>) -> Self {
+        Self {
+            strength: Factors::new(factors),
+            ..self
+        }
     }
 
     /// Gives bonds between two materials limits of their own.
@@ -73,13 +86,15 @@ impl SolidClasses {
     pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
         Self {
             of_point: sites.spread_numbers(&self.of_point),
+            strength: Factors::new(sites.spread(self.strength.as_slice()).into_owned()),
             ..self.clone()
         }
     }
 
     /// Whether there is a material for each of so many points.
     pub fn covers(&self, points: usize) -> bool {
-        self.of_point.is_empty() || self.of_point.len() == points
+        let has = |count: usize| count == 0 || count == points;
+        has(self.of_point.len()) && has(self.strength.as_slice().len())
     }
 
     /// How many materials there are.
@@ -101,12 +116,14 @@ impl SolidClasses {
 
     /// What a bond between two points can bear.
     pub fn limits(&self, i: usize, j: usize) -> BondLimits {
-        self.limits[self.of_point(i) * self.constants.len() + self.of_point(j)]
+        let pair = self.of_point(i) * self.constants.len() + self.of_point(j);
+        self.limits[pair].scaled(self.strength.of_bond(i, j))
     }
 
     /// The lowest limits of all pairs.
     pub fn weakest(&self) -> BondLimits {
         let limits = self.limits.iter();
-        limits.fold(BondLimits::NONE, |weakest, pair| weakest.weaker(*pair))
+        let weakest = limits.fold(BondLimits::NONE, |weakest, pair| weakest.weaker(*pair));
+        weakest.scaled(self.strength.smallest())
     }
 }

@@ -77,6 +77,15 @@ impl BondLimits {
         self.stretch.is_finite() || self.energy.is_finite()
     }
 
+    /// The limits of a bond whose critical stretch is so many times as large.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            stretch: factor * self.stretch,
+            energy: factor * factor * self.energy,
+        }
+    }
+
     /// The lower one of each limit: what the weaker of two materials can bear.
     #[must_use]
     pub fn weaker(self, other: Self) -> Self {

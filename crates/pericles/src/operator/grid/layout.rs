@@ -293,8 +293,8 @@ impl GridLayout {
     }
 
     /// A number for each place: that of its site, or zero where there is none.
-    pub fn at_places(&self, of_site: impl Fn(usize) -> u8) -> Vec<u8> {
-        let mut numbers = vec![0; self.places()];
+    pub fn at_places<T: Clone + Default>(&self, of_site: impl Fn(usize) -> T) -> Vec<T> {
+        let mut numbers = vec![T::default(); self.places()];
         let nodes = self.nodes();
         for row in 0..nodes.rows() {
             for node in nodes.row(row) {

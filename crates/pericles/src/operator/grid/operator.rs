@@ -178,6 +178,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
             dilatation: None,
             plastic: None,
             path_dependent: false,
+            thermal: None,
         }
     }
 

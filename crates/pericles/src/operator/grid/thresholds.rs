@@ -23,7 +23,11 @@ impl PlaceThresholds {
     ) -> Self {
         let of_site = classes.of_point();
         let of_place = layout.at_places(|site| of_site[site]);
-        let pairs = PairThresholds::of::<L>(classes.at(of_place));
+        let strengths = match classes.strengths() {
+            [] => Vec::new(),
+            strengths => layout.at_places(|site| strengths[site]),
+        };
+        let pairs = PairThresholds::of::<L>(classes.at(of_place, strengths));
         let smallest = layout.chunks().iter().map(|chunk| {
             let mut smallest = f64::INFINITY;
             for (offset, &cell) in stencil.offsets().iter().zip(stencil.cells()) {

@@ -17,6 +17,8 @@ pub(super) struct Bonds<'a> {
     stiffness: &'a Stiffness,
     /// Marks of the sites whose bonds count; all of them if none.
     pub(super) partners: Option<&'a [bool]>,
+    /// Rows that begin with the thermal stretch τ of a site; none of a body that is not heated.
+    heat: Option<&'a Records>,
 }
 
 /// What all bonds of a point share.
@@ -24,6 +26,8 @@ pub(super) struct Here<T, const D: usize> {
     reference: [T; D],
     u: [T; D],
     cell: T,
+    /// τ
+    heat: T,
 }
 
 impl<'a> Bonds<'a> {
@@ -42,12 +46,34 @@ impl<'a> Bonds<'a> {
             unit,
             stiffness,
             partners: None,
+            heat: None,
         }
     }
 
     /// The same bonds, as far as they lead to marked sites.
     pub fn leading_to(self, partners: Option<&'a [bool]>) -> Self {
         Self { partners, ..self }
+    }
+
+    /// The same bonds with the thermal stretches of sites given.
+    pub fn heated(self, heat: Option<&'a Records>) -> Self {
+        Self { heat, ..self }
+    }
+
+    /// ξ and η of a bond between two sites as its law sees them, (1 + τ) ξ and η − τ ξ, and the factor 1 + τ of its stiffness.
+    pub fn expanded<const D: usize>(
+        &self,
+        [i, j]: [usize; 2],
+        xi: [f64; D],
+        eta: [f64; D],
+    ) -> ([f64; D], [f64; D], f64) {
+        let Some(heat) = self.heat else {
+            return (xi, eta, 1.0);
+        };
+        let stretch = 0.5 * (heat[i][0] + heat[j][0]);
+        let scale = 1.0 + stretch;
+        let pulled = std::array::from_fn(|c| eta[c] - stretch * xi[c]);
+        (xi.map(|x| scale * x), pulled, scale)
     }
 
     pub fn list(&self) -> &BondList {
@@ -67,6 +93,7 @@ impl<'a> Bonds<'a> {
             reference: vector(|c| T::splat(self.reference[i][c])),
             u: vector(|c| T::splat(u[i][c])),
             cell: T::splat(u[i][3]),
+            heat: T::splat(self.heat.map_or(0.0, |heat| heat[i][0])),
         }
     }
 
@@ -106,6 +133,10 @@ impl<'a> Bonds<'a> {
             stiffness,
             factor: stiffness * inverse,
         };
+        if let Some(heat) = self.heat {
+            let both = here.heat + self.there::<T>(group, heat)[0];
+            return bond.expanded(T::splat(0.5) * both, eta);
+        }
         (bond, eta)
     }
 

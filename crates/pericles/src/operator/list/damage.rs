@@ -77,10 +77,12 @@ impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
         };
         let ghosts = self.cloud.domain().ghosts(u);
         let (u, sites) = (Field::new(u, &ghosts), self.bonds.sites());
-        let bonds = self.view();
+        let heat = self.latest_heat();
+        let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         let over = |a: usize, b: usize| {
             let eta = u.difference::<D>([a, b].map(|site| sites.point(site)));
-            let (measure, square) = L::stretch_measure(bonds.vector(a, b), eta);
+            let (xi, eta, _) = bonds.expanded([a, b], bonds.vector(a, b), eta);
+            let (measure, square) = L::stretch_measure(xi, eta);
             measure > threshold(a, b) * square
         };
         let may_break = |entry: usize| {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::arrays::Bonds;
 use super::breaking::BreakRule;
+use super::heat::Heat;
 use super::kernels::accept_rows;
 use super::other_ends::other_ends;
 use super::packed::{Packed, Reach};
@@ -45,6 +46,8 @@ pub struct BondForce<L: FastLaw, const D: usize> {
     pub(super) pairs: Option<PairThresholds>,
     pub(super) damage: DamageMeasure,
     pub(super) blocks: Vec<BlockDamage>,
+    /// Thermal stretches, if the body is heated.
+    pub(super) heat: Option<Heat>,
     reach: Reach,
     packed: Pool<Packed>,
     pub(super) instruction_set: InstructionSet,
@@ -55,7 +58,7 @@ crate::saved! {
     impl<L: FastLaw, const D: usize> Saved for BondForce<L, D> {
         blocks: under("operator"),
         cloud, bonds, reference, unit, stiffness, breakable, critical_stretch, pairs, damage: fixed,
-        reach, instruction_set, law: fixed,
+        heat, reach, instruction_set, law: fixed,
         packed: scratch,
     }
 }
@@ -177,6 +180,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             pairs: None,
             damage,
             blocks,
+            heat: None,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
         })
@@ -264,7 +268,9 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let whole = matches!(on, On::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
         let partners = partners.map(|marks| self.bonds.sites().spread_marks(marks));
+        let heat = self.heat_at(step.t);
         let bonds = self.view().leading_to(partners.as_deref());
+        let bonds = bonds.heated(heat.as_deref().map(Vec::as_slice));
         let moved = step.ghost_velocities(self.cloud.domain());
         let rule = BreakRule {
             threshold: L::threshold(self.critical_stretch),
@@ -297,6 +303,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                 },
             );
         });
+        drop(heat);
         self.blocks = blocks;
         if !whole {
             self.tell_the_other_ends();

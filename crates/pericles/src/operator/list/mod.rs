@@ -4,6 +4,8 @@ mod arrays;
 mod breaking;
 mod damage;
 mod force;
+mod heat;
+mod heated;
 mod kernels;
 mod operator;
 pub(super) mod other_ends;

@@ -9,6 +9,7 @@ use crate::operator::{
     LinearOperator, Linearity, On, SplitForce,
 };
 use crate::step_end::StepEnd;
+use crate::thermal::Expandable;
 
 impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
     fn points(&self) -> usize {
@@ -19,8 +20,9 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
         D
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
-        let bonds = self.view();
+    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+        let heat = self.heat_at(t);
+        let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         self.with_packed(u, &on, |u| {
             self.sweep::<D>(&on, out, |intact, rows, out| {
                 force_rows::<L, D>(self.instruction_set, &bonds, u, intact, rows, out);
@@ -28,8 +30,9 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
         });
     }
 
-    fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
-        let bonds = self.view();
+    fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        let heat = self.heat_at(t);
+        let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         self.with_packed(u, &On::All, |u| {
             self.sweep::<1>(&On::All, out, |intact, rows, out| {
                 energy_rows::<L, D>(self.instruction_set, &bonds, u, intact, rows, out);
@@ -70,8 +73,9 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
         }
     }
 
-    fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        let bonds = self.view();
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        let heat = self.heat_at(t);
+        let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         self.with_packed(u, &On::All, |u| {
             self.with_packed(direction, &On::All, |direction| {
                 self.sweep::<D>(&On::All, out, |intact, rows, out| {
@@ -109,7 +113,8 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
 
     fn capabilities(&self) -> Capabilities<'_> {
         Capabilities {
-            linear: match L::LINEAR {
+            // With thermal stretch it is linear but for a force at rest.
+            linear: match L::LINEAR && self.heat.is_none() {
                 true => Linearity::Exact(self),
                 false => Linearity::Nonlinear,
             },
@@ -121,6 +126,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
             dilatation: None,
             plastic: None,
             path_dependent: false,
+            thermal: self.heat.as_ref().map(|heat| &heat.expansion),
         }
     }
 
@@ -131,11 +137,16 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
     fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
         Some(self)
     }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        Some(self)
+    }
 }
 
 impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (bonds, sites) = (self.view(), self.bonds.sites());
+        let (heat, sites) = (self.latest_heat(), self.bonds.sites());
+        let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         let here = sites.of_point(i);
         for (entry, b) in self.bonds.family(i) {
             if !self.is_intact(i, entry) {
@@ -143,8 +154,9 @@ impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
             }
             let xi: [f64; D] = bonds.vector(here, b);
             let eta = u.difference::<D>([i, sites.point(b)]);
-            let stiffness = self.stiffness_of(entry, i, b);
-            let force = L::force(xi, eta).map(|force| stiffness * force);
+            let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
+            let stiffness = scale * self.stiffness_of(entry, i, b);
+            let force = L::force(free, pulled).map(|force| stiffness * force);
             visit(BondAt::new(sites.point(b), xi, eta, force));
         }
     }

@@ -7,9 +7,11 @@ use crate::operator::{Breakable, LocalForce, On, SplitForce};
 use crate::step_end::StepEnd;
 
 impl<L: FastLaw, const D: usize> SplitForce for BondForce<L, D> {
-    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+    fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
         let partners = self.bonds.sites().spread_marks(partners);
+        let heat = self.heat_at(t);
         let bonds = self.view().leading_to(Some(&partners));
+        let bonds = bonds.heated(heat.as_deref().map(Vec::as_slice));
         self.with_packed(u, &on, |u| {
             self.sweep::<D>(&on, out, |intact, rows, out| {
                 force_rows::<L, D>(self.instruction_set, &bonds, u, intact, rows, out);

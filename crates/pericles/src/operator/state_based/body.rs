@@ -60,6 +60,7 @@ const ON_GRID: &[Limit] = &[
         "corrected surfaces of state-based materials are kept as a list; use \"list\" or leave `bonds` out",
     ),
     Limit::BOND_ENERGY,
+    Limit::THERMAL_EXPANSION,
     Limit::new(
         Feature::NoLattice,
         "its points lie on no regular grid; use \"list\"",

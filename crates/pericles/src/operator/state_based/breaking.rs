@@ -4,12 +4,14 @@
 //! the work of their forces in the second half of the step is taken off as for single bonds, with the power of the point's energy in place of that of a bond.
 
 use super::bonds::{SolidBonds, difference};
+use super::heat::heated_limit;
 use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
 use crate::material::{PairForce, SolidClasses};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
+use crate::space::Sites;
 use crate::step_end::StepEnd;
 
 /// The factors of every point's force state.
@@ -88,12 +90,26 @@ pub(super) struct BreakRule<'a> {
     pub note_events: bool,
     /// What inelastic stretches keep of an entry, where a material is not elastic.
     pub stored: Option<Stored<'a>>,
+    /// Thermal stretches of own points and ghosts, if the body is heated.
+    pub stretches: Option<&'a [f64]>,
 }
 
 /// Of a point and one of its entries: the inelastic stretch x, and the part c of ψ² − 2 ψ x + c, in units of the energy of a bond, that the stretches of the entry keep.
 pub(super) type Stored<'a> = &'a (dyn Fn(usize, usize) -> [f64; 2] + Sync);
 
 impl BreakRule<'_> {
+    /// The critical stretch of a bond between two sites, points included that it leads to.
+    pub fn limit(&self, sites: &Sites, [a, b]: [usize; 2]) -> f64 {
+        let limit = self.classes.limits(a, b).stretch;
+        match self.stretches {
+            None => limit,
+            Some(stretches) => {
+                let both = stretches[sites.point(a)] + stretches[sites.point(b)];
+                heated_limit(limit, 0.5 * both)
+            }
+        }
+    }
+
     /// Bits of the bonds of a group that are left and may break.
     #[inline(always)]
     pub fn candidates(&self, group: usize, intact: u8) -> u8 {
@@ -126,7 +142,7 @@ pub(super) fn break_row<L: Kinematics, const D: usize>(
             let j = neighbours[lane];
             let (xi, eta) = (bonds.vector::<D>(here, j), difference::<D>(u, here, j));
             let (measure, square) = L::Measure::stretch_measure(xi, eta);
-            let limit = rule.classes.limits(here, j).stretch;
+            let limit = rule.limit(bonds.list.sites(), [here, j]);
             if measure > L::Measure::threshold(limit) * square {
                 *broken |= 1 << lane;
             }
@@ -194,6 +210,7 @@ fn dissipated<L: Kinematics, const D: usize>(
                 weight: bonds.weight_of(entry, [here, j], xi),
                 factor: bonds.factor_of(entry),
                 stored: rule.stored.map_or([0.0; 2], |stored| stored(i, entry)),
+                thermal: rule.stretches.map_or(0.0, |stretches| stretches[i]),
             };
             loss.add::<L, D>(&bond, broken[k] >> lane & 1 == 1);
         }
@@ -213,6 +230,8 @@ pub(super) struct LosingBond<const D: usize> {
     pub factor: f64,
     /// x and c of [`Stored`]; zero in elastic solids.
     pub stored: [f64; 2],
+    /// The thermal stretch τ of the point.
+    pub thermal: f64,
 }
 
 /// What a point loses with some of its bonds: sums over all of its bonds, and over those that it loses.
@@ -236,7 +255,7 @@ impl Loss {
     pub fn add<L: Kinematics, const D: usize>(&mut self, bond: &LosingBond<D>, broken: bool) {
         let square = dot(bond.xi, bond.xi);
         let t = F64x8([strain::<L, D>(bond.xi, bond.eta); LANES]);
-        let stretch = L::exact_stretch(t).0[0];
+        let stretch = L::exact_stretch(t).0[0] - bond.thermal;
         // dψ/dt with the mean velocity.
         let along = dot(direction::<L, D>(bond.xi, bond.eta), bond.velocity);
         let rate = along * L::contraction(t).0[0] / square;

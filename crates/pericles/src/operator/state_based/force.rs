@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::bond_work::{KEPT, Worked, work_rows};
 use super::bonds::{Layout, SolidBonds, pack};
 use super::breaking::{BreakRule, States, Stored, take_bonds};
+use super::heat::{Heat, heated_limit};
 use super::kernels::{accept_rows, dilatation_rows};
 use super::kinematics::Kinematics;
 use super::weight::Weight;
@@ -51,6 +52,8 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
     pub(super) influence: Option<Weight>,
     /// What is kept of bonds that break by their energy, [`KEPT`] numbers for each group.
     pub(super) work: Vec<f64>,
+    /// Thermal strain, if the body is heated.
+    pub(super) heat: Option<Heat>,
     packed: Pool<Vec<Row>>,
     pub(super) instruction_set: InstructionSet,
     kinematics: std::marker::PhantomData<L>,
@@ -62,7 +65,11 @@ crate::saved! {
         work: array("operator/bond-work"),
         cloud, bonds, layout, weight, factor, states, classes, weakest, breakable, damage, influence: fixed,
         instruction_set, kinematics: fixed,
+        heat: rebuilt,
         packed: scratch,
+    } then |force| {
+        force.renew_volumes(None);
+        Ok(())
     }
 }
 
@@ -103,6 +110,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 true => vec![0.0; KEPT * bonds.present().len()],
                 false => Vec::new(),
             },
+            heat: None,
             packed: Pool::new(1, move || vec![Row::default(); sites.len()]),
             breakable: bonds.breakable(no_fail),
             cloud,
@@ -133,6 +141,11 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             factor: factors,
             ..self
         }
+    }
+
+    /// Whether bonds near surfaces have factors of their own.
+    pub(super) fn is_corrected(&self) -> bool {
+        self.factor.is_some()
     }
 
     /// The families.
@@ -168,12 +181,18 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         rows
     }
 
-    /// Rows of a vector and of p for the dilatations given.
-    pub(super) fn packed_with(&self, u: Field<'_>, dilatations: Field<'_>) -> Lent<'_, Vec<Row>> {
-        let sites = self.bonds.sites();
-        self.packed_beside(u, |site| {
-            self.states.pressure[site] * dilatations.at::<1>(0, sites.point(site))
-        })
+    /// Rows of a vector and of p for the values of the pass over points given: dilatations, and thermal pulls where the body is heated.
+    pub(super) fn packed_with(&self, u: Field<'_>, values: Field<'_>) -> Lent<'_, Vec<Row>> {
+        let (sites, pressure) = (self.bonds.sites(), &self.states.pressure);
+        match self.heat {
+            None => self.packed_beside(u, |site| {
+                pressure[site] * values.at::<1>(0, sites.point(site))
+            }),
+            Some(_) => self.packed_beside(u, |site| {
+                let [theta, pull] = [0, 1].map(|c| values.at::<2>(c, sites.point(site)));
+                pressure[site] * theta + pull
+            }),
+        }
     }
 
     /// Rows of a vector and of a number of each site.
@@ -236,6 +255,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             velocity,
             note_events: !matches!(on, On::All),
             stored: None,
+            stretches: None,
         }
     }
 
@@ -249,13 +269,21 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         stored: Option<Stored<'_>>,
     ) {
         let n = self.cloud.len();
+        let broken = self.broken_by_blocks();
+        let stretches = self.stretches(step.t);
         let mut blocks = std::mem::take(&mut self.blocks);
         let bonds = self.view();
         let moved = step.ghost_velocities(self.cloud.domain());
-        let rule = BreakRule {
+        let mut rule = BreakRule {
             stored,
             ..self.rule(step, step.velocities(&moved), on)
         };
+        if let Some(stretches) = &stretches {
+            let coldest = stretches.iter().copied().fold(f64::INFINITY, f64::min);
+            let limit = heated_limit(self.weakest.stretch, coldest);
+            rule.threshold = L::Measure::threshold(limit);
+            rule.stretches = Some(stretches);
+        }
         let u = self.packed(u);
         for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
             let len = n.min(first + BLOCK) - first;
@@ -275,6 +303,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
         self.blocks = blocks;
+        self.renew_volumes(broken);
     }
 
     /// Advances the work of the bonds of the points named by `on`, breaks those whose energy is above their limit, and sets the dilatations of points of `on` that lost bonds. Dilatations are given at all

@@ -17,6 +17,8 @@ mod bonds;
 mod breaking;
 mod force;
 mod grid;
+mod heat;
+mod heated;
 mod inelastic;
 mod kernels;
 mod kinematics;

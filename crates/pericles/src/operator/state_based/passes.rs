@@ -3,6 +3,7 @@
 use super::bond_work::{KEPT, Worked};
 use super::bonds::difference;
 use super::force::LinearSolidForce;
+use super::heat::heated_limit;
 use super::kernels::{dilatation_change_rows, force_rows, square_rows, tangent_rows};
 use super::kinematics::Kinematics;
 use crate::domain::Field;
@@ -13,20 +14,25 @@ use crate::operator::{
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
+use crate::thermal::{Expandable, ThermalExpansion};
 
 impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
-    /// The dilatation θ.
+    /// The dilatation θ; in heated bodies, the thermal pull behind it.
     fn values_per_point(&self) -> usize {
-        1
+        1 + usize::from(self.heat.is_some())
     }
 
-    fn values_into(&self, _t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
-        self.dilatations_into(u, on, values);
+    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+        let (dilatations, pulls) = values.split_at_mut(self.cloud.len());
+        self.dilatations_into(u, on, dilatations);
+        self.thermal_pulls_into(t, on, pulls);
     }
 
     fn value_changes_into(&self, _t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
         let (bonds, factors) = (self.view(), &self.states.dilatation[..]);
         let (u, direction) = (self.packed(u), self.packed(direction));
+        let (changes, pulls) = changes.split_at_mut(self.cloud.len());
+        pulls.fill(0.0);
         self.sweep::<1>(&On::All, changes, |intact, rows, out| {
             let set = self.instruction_set;
             dilatation_change_rows::<L, D>(set, &bonds, factors, &u, &direction, intact, rows, out);
@@ -51,18 +57,19 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         });
     }
 
-    fn add_energy_density(&self, _t: f64, at: AtPoints<'_>, out: &mut [f64]) {
+    fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]) {
         let bonds = self.view();
         let mut squares = vec![0.0; self.cloud.len()];
         let u = self.packed(at.u);
         self.sweep::<1>(&On::All, &mut squares, |intact, rows, out| {
             square_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
         });
+        let stretches = self.stretches(t);
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
-                let place = [i, self.bonds.site(i)];
+                let stretch = stretches.as_ref().map(|stretches| stretches[i]);
                 let theta = at.values.owned[i];
-                *energy += self.states.energy_density(place, theta, squares[i]);
+                *energy += self.energy_at(i, stretch, [theta, squares[i], 0.0]);
             }
         });
     }
@@ -87,8 +94,9 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         self.cloud.domain().max(largest).sqrt()
     }
 
+    /// With thermal strain it is linear but for a force at rest.
     fn is_linear(&self) -> bool {
-        L::LINEAR
+        L::LINEAR && self.heat.is_none()
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
@@ -105,6 +113,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         values: &mut [f64],
     ) {
         let all = matches!(on, On::All);
+        let (values, pulls) = values.split_at_mut(self.cloud.len());
         if self.weakest.stretch.is_finite() {
             self.break_by_stretch(step, u, on, values, None);
             if !all {
@@ -119,6 +128,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
                 self.dilatations_into(u, needed, values);
             }
         }
+        self.thermal_pulls_into(step.t, needed, pulls);
     }
 
     fn breaking(&self) -> Option<&dyn Breakable> {
@@ -131,6 +141,14 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
 
     fn dilatation(&self) -> Option<usize> {
         Some(0)
+    }
+
+    fn thermal(&self) -> Option<&ThermalExpansion> {
+        self.heat.as_ref().map(|heat| &heat.expansion)
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        Some(self)
     }
 
     /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
@@ -231,15 +249,23 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         };
         let ghosts = self.cloud.domain().ghosts(u);
         let u = self.packed(Field::new(u, &ghosts));
+        let (stretches, sites) = (self.latest_stretches(), self.bonds.sites());
         let over = |i: usize, entry: usize, b: usize| {
             let a = self.bonds.site(i);
             let (xi, limits) = (bonds.vector::<D>(a, b), self.classes.limits(a, b));
+            let thermal = stretches.as_ref().map_or(0.0, |stretches| {
+                0.5 * [a, b]
+                    .map(|site| stretches[sites.point(site)])
+                    .iter()
+                    .sum::<f64>()
+            });
+            let limit = heated_limit(fraction * limits.stretch, thermal);
             let (measure, square) = L::Measure::stretch_measure(xi, difference::<D>(&u, a, b));
             let worked = worked.as_ref().is_some_and(|worked| {
                 let kept = self.work[entry / LANES * KEPT + entry % LANES];
                 worked.bond_energy(entry, xi, kept) > fraction * limits.energy
             });
-            worked || measure > L::Measure::threshold(fraction * limits.stretch) * square
+            worked || measure > L::Measure::threshold(limit) * square
         };
         for_each_chunk(marks, &|first, marks| {
             for (i, mark) in (first..).zip(marks) {

@@ -14,7 +14,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         [self.view().vector::<D>(self.bonds.site(i), site), eta]
     }
 
-    /// p = A θ/m of a point.
+    /// p = A θ/m of a point, with its thermal pull at the time that forces were computed for last.
     fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
         let (family, here) = (self.bonds.family(i), self.bonds.site(i));
         let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
@@ -25,7 +25,9 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 weighted_extension::<L, D>(weight, xi, eta)
             })
             .sum();
-        self.states.pressure[here] * self.states.dilatation[i] * extension
+        let latest = self.latest_stretches();
+        let thermal = latest.map_or(0.0, |stretches| self.thermal_pull(i, stretches[i]));
+        self.states.pressure[here] * self.states.dilatation[i] * extension + thermal
     }
 }
 

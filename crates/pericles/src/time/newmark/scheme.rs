@@ -277,6 +277,7 @@ impl Newmark {
             && system.motions().is_empty()
             && !system.has_boundaries();
         if last_stands {
+            system.book_heating(&end);
             system.book_step(&end, found);
             a.copy_from_slice(found);
         } else {

@@ -145,6 +145,7 @@ fn loss_of<L: Kinematics, const D: usize>(
             weight: offset.weight,
             factor: 1.0,
             stored: [0.0; 2],
+            thermal: 0.0,
         };
         loss.add::<L, D>(&bond, broken);
     }

@@ -81,6 +81,19 @@ impl History {
         &self.sums[i * (1 + self.terms)..(i + 1) * (1 + self.terms)]
     }
 
+    /// Σ ω r² x of a point with the inelastic stretches x at the end of the last step.
+    pub fn inelastic_sum(&self, law: &Inelasticity, i: usize) -> f64 {
+        let sums = self.sums(i);
+        match law {
+            Inelasticity::Elastic => 0.0,
+            Inelasticity::Plastic(_) => sums[0],
+            Inelasticity::Viscous(terms) => {
+                let terms = terms.iter().zip(&sums[1..]);
+                terms.map(|(term, back)| term.share * back).sum()
+            }
+        }
+    }
+
     /// x of an entry and c, the part of the energy that its inelastic stretches keep.
     pub fn stored(&self, law: &Inelasticity, entry: usize) -> [f64; 2] {
         let x = self.inelastic[entry];

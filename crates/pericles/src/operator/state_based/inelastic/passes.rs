@@ -11,6 +11,7 @@ use crate::operator::{
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
+use crate::thermal::{Expandable, ThermalExpansion};
 
 impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
     /// The dilatation θ, then P and S: the own force state of a point pulls at a bond with P + S ψ − G R, where R is what the inelastic stretch of the entry keeps of the last step.
@@ -22,6 +23,7 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         let n = self.solid.cloud.len();
         self.solid.dilatations_into(u, on, &mut values[..n]);
         self.states_into(t, u, on, values);
+        self.solid.add_thermal_pulls(t, on, &mut values[n..2 * n]);
     }
 
     fn value_changes_into(&self, t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
@@ -82,11 +84,14 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
             let set = solid.instruction_set;
             square_rows::<L, D>(set, &bonds, &points, &u, intact, rows, out);
         });
+        let stretches = solid.stretches(t);
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
-                let place = [i, solid.bonds.site(i)];
-                let theta = at.values.owned[i];
-                *energy += solid.states.energy_density(place, theta, squares[i]);
+                let stretch = stretches.as_ref().map(|stretches| stretches[i]);
+                let law = &self.laws.of_material[solid.classes.of_point(solid.bonds.site(i))];
+                let inelastic = self.history.inelastic_sum(law, i);
+                let sums = [at.values.owned[i], squares[i], inelastic];
+                *energy += solid.energy_at(i, stretch, sums);
             }
         });
     }
@@ -113,6 +118,8 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         self.advance(step, u, on);
         self.break_bonds(step, u, [on, needed], &mut values[..n]);
         self.states_into(step.t, u, needed, values);
+        let pulls = &mut values[n..2 * n];
+        self.solid.add_thermal_pulls(step.t, needed, pulls);
     }
 
     fn breaking(&self) -> Option<&dyn Breakable> {
@@ -129,6 +136,14 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
 
     fn is_path_dependent(&self) -> bool {
         true
+    }
+
+    fn thermal(&self) -> Option<&ThermalExpansion> {
+        self.solid.thermal()
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        Some(&mut self.solid)
     }
 
     fn plastic(&self) -> Option<&dyn PlasticView> {

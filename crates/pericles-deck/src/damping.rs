@@ -1,0 +1,38 @@
+//! `[damping]`: damping of motion in proportion to mass and stiffness.
+
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::Quantity;
+use crate::reader::Table;
+
+/// Damping of motion, α ρ u_t + β K u_t.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Damping {
+    /// α, 1/s.
+    #[serde(default)]
+    pub mass: f64,
+    /// β, s.
+    #[serde(default)]
+    pub stiffness: f64,
+}
+
+pub(crate) fn read(table: Table<'_>) -> Option<Damping> {
+    let factor = |key, quantity| {
+        table.or(key, 0.0, |item| {
+            item.within(quantity, "a number that is not negative", |value| {
+                value >= 0.0
+            })
+        })
+    };
+    if !table.has("mass") && !table.has("stiffness") {
+        table.lacks_one_of(&["mass", "stiffness"]);
+    }
+    let mass = factor("mass", Quantity::Rate);
+    let stiffness = factor("stiffness", Quantity::Time);
+    table.finish();
+    Some(Damping {
+        mass: mass?,
+        stiffness: stiffness?,
+    })
+}

@@ -1,0 +1,160 @@
+//! Thermal expansion by a prescribed temperature.
+
+use std::sync::Arc;
+
+use pericles::material::StressState;
+use pericles::operator::Feature;
+use pericles::parallel::for_each_point;
+use pericles::space::PointCloud;
+use pericles::{PointScalar, Temperature, ThermalExpansion};
+use pericles_deck::{Body, BuildError, Component, Fault, KeyPath, Solid, Thermal};
+use pericles_waves::{AssembledForce, ForceForm};
+
+use super::assembler::Assembler;
+use super::body::BodyParts;
+use super::constants::MaterialConstants;
+use super::discretisation::Discretisation;
+use super::refusal::{at, at_material, at_path};
+
+/// A temperature that the deck gives.
+#[derive(Debug)]
+struct Prescribed {
+    cloud: Arc<PointCloud>,
+    value: Component,
+}
+
+impl Temperature for Prescribed {
+    fn temperatures_into(&self, t: f64, out: &mut [f64]) {
+        match &self.value {
+            Component::Number(value) => out.fill(*value),
+            value => {
+                let at = |i: usize| value.value(self.cloud.point(i), t);
+                out.copy_from_slice(&for_each_point(out.len(), &at));
+            }
+        }
+    }
+
+    fn is_steady(&self) -> bool {
+        !self.value.depends_on_time()
+    }
+}
+
+impl Assembler<'_> {
+    /// The form of bonds with which a heated body is computed, in place of the fastest one.
+    pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
+        match (&self.model.thermal, form) {
+            (None, form) => Ok(form),
+            (Some(_), ForceForm::Fastest) => Ok(ForceForm::List),
+            (Some(_), form) => {
+                let heated = form.check(Feature::ThermalExpansion.into());
+                heated.map_err(at_material)?;
+                Ok(form)
+            }
+        }
+    }
+
+    /// Gives the materials of a body their thermal expansion, if the model has it.
+    pub(super) fn heat(
+        &self,
+        parts: &mut BodyParts,
+        discretisation: &Discretisation,
+    ) -> Result<(), BuildError> {
+        let (Some(thermal), Body::Solid(solid)) = (&self.model.thermal, &self.model.body) else {
+            return Ok(());
+        };
+        let cloud = &discretisation.cloud;
+        self.refuse_no_temperature(thermal, cloud)?;
+        let coefficient = self.coefficients(thermal, solid, parts, discretisation)?;
+        let temperature = Arc::new(Prescribed {
+            cloud: cloud.clone(),
+            value: thermal.temperature.clone(),
+        });
+        let expansion =
+            ThermalExpansion::new(cloud.clone(), temperature, thermal.reference, coefficient);
+        let expansion = expansion.map_err(|error| at("thermal", error))?;
+        let AssembledForce { operator, .. } = &mut parts.bonds;
+        operator
+            .expand(expansion)
+            .map_err(|error| at("thermal", error))
+    }
+
+    /// The coefficient of every point. In plane strain the strain across the plane is prevented, which stretches pair forces and state-based materials, whose bonds lie in the plane, by 1 + ν times as much.
+    fn coefficients(
+        &self,
+        thermal: &Thermal,
+        solid: &Solid,
+        parts: &BodyParts,
+        discretisation: &Discretisation,
+    ) -> Result<PointScalar, BuildError> {
+        let others = self.model.materials.iter().map(|other| other.name.as_str());
+        let names: Vec<&str> = std::iter::once(solid.material.name())
+            .chain(others)
+            .collect();
+        for (k, own) in thermal.materials.iter().enumerate() {
+            if !names.contains(&own.name.as_str()) {
+                let fault = Fault::UnknownWord {
+                    what: "material",
+                    value: own.name.clone(),
+                    nearest: None,
+                    allowed: names.iter().map(|&name| name.to_owned()).collect(),
+                };
+                let key = KeyPath::from("thermal").key("material").index(k);
+                return Err(at_path(key.key("name"), fault));
+            }
+        }
+        let constants = parts.constants.iter().chain(&parts.others);
+        let of_material = |(name, constants): (&&str, &MaterialConstants)| {
+            let mut own = thermal.materials.iter();
+            let own = own.find(|own| own.name == **name);
+            let alpha = own.map_or(thermal.expansion, |own| own.expansion);
+            alpha * in_plane(constants, solid.state)
+        };
+        let all: Vec<f64> = names.iter().zip(constants).map(of_material).collect();
+        let sets = &discretisation.sets;
+        let place = (&*discretisation.cloud, sets);
+        // What is to be said of assignments has been said.
+        let (of_point, _) = self.points_of_materials(&solid.material, place, &mut Vec::new())?;
+        Ok(match (of_point, &all[..]) {
+            (Some(of_point), all) if all.iter().any(|alpha| *alpha != all[0]) => {
+                let of = |&number: &u8| all.get(usize::from(number)).copied().unwrap_or(all[0]);
+                PointScalar::PerPoint(of_point.iter().map(of).collect())
+            }
+            (_, [first, ..]) => PointScalar::Uniform(*first),
+            (_, []) => PointScalar::Uniform(thermal.expansion),
+        })
+    }
+
+    /// Refuses an expression that is not finite at a point when the run starts.
+    fn refuse_no_temperature(
+        &self,
+        thermal: &Thermal,
+        cloud: &PointCloud,
+    ) -> Result<(), BuildError> {
+        let value = |i: usize| thermal.temperature.value(cloud.point(i), 0.0);
+        let Some(i) = (0..cloud.len()).find(|&i| !value(i).is_finite()) else {
+            return Ok(());
+        };
+        let text = match &thermal.temperature {
+            Component::Expression(expression) => expression.text().to_owned(),
+            Component::Number(number) => number.to_string(),
+        };
+        let [x, y, z] = cloud.point(i);
+        let reason = format!(
+            "at ({x:e}, {y:e}, {z:e}) m and t = 0 it has no finite value, and every point needs a temperature"
+        );
+        let fault = Fault::BadExpression { text, reason };
+        Err(at_path(KeyPath::from("thermal").key("temperature"), fault))
+    }
+}
+
+/// The thermal stretch of bonds over α ΔT.
+fn in_plane(constants: &MaterialConstants, state: StressState) -> f64 {
+    let nu = match (constants, state) {
+        (MaterialConstants::Bonds(_), StressState::PlaneStrain) => state.poisson_ratio(),
+        (MaterialConstants::StateBased(solid), StressState::PlaneStrain) => {
+            Some(solid.elastic.poisson_ratio())
+        }
+        _ => None,
+    };
+    1.0 + nu.unwrap_or(0.0)
+}

@@ -1,0 +1,154 @@
+//! Thermal expansion and scattering strength from decks to states.
+
+use pericles::Control;
+use pericles::observe::Field;
+
+use super::{build, parse, refusal};
+
+/// A plate in plane strain that may expand; MODEL is replaced.
+const PLATE: &str = r#"
+body = { shape = "plate", size = [8, 4], spacing = 1, plane = "strain" }
+material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MODEL }
+sets = { left = { where = "x < 1" }, low = { where = "y < 1" } }
+prescribe = [{ set = "left", displacement = [0, "free"] }, { set = "low", displacement = ["free", 0] }]
+thermal = { expansion = 1e-5, temperature = 303, reference = 293 }
+time = { scheme = "relaxation", tolerance = 1e-7, load_steps = 1 }
+output = { fields = { names = ["Temperature"] } }
+"#;
+
+/// The strain across is prevented: (1 + ν) α ΔT within the plane, for every model.
+#[test]
+fn plates_in_plane_strain_expand_freely_within_the_plane() {
+    for (model, nu) in [
+        ("model = \"linear\"", 0.25),
+        (
+            "model = \"state-based\", strains = \"small\", poisson_ratio = 0.4",
+            0.4,
+        ),
+        ("model = \"correspondence\", poisson_ratio = 0.4", 0.4),
+    ] {
+        let mut run = build(&PLATE.replace("MODEL", model)).simulation();
+        run.run(|_| Control::Continue).unwrap();
+        let cloud = run.system().cloud().clone();
+        let (n, stretch) = (cloud.len(), (1.0 + nu) * 1e-4);
+        for i in 0..n {
+            let place = cloud.point(i);
+            for c in 0..2 {
+                let expected = stretch * (place[c] - 0.5);
+                let error = (run.state().u[c * n + i] - expected).abs();
+                // Finite strains differ by the order of the strain.
+                assert!(
+                    error < 1e-3 * stretch * 8.0,
+                    "{model}, {place:?}: {error:e}"
+                );
+            }
+        }
+        let snapshot = run.snapshot();
+        assert!(
+            snapshot
+                .field(Field::Temperature)
+                .iter()
+                .all(|t| *t == 303.0)
+        );
+        let energies = snapshot.energies();
+        let size = energies.work.abs().max(energies.initial);
+        // What the prevented strain across the plane stores, ½ E (α ΔT)², is part of the energy of correspondence materials alone.
+        let across = match model.contains("correspondence") {
+            true => 0.5 * 10.0 * 1e-8 * 32.0,
+            false => 0.0,
+        };
+        let error = (energies.elastic - across).abs();
+        assert!(error < 1e-5 * size, "{model}: {energies:?}");
+        assert!(
+            energies.balance().abs() < 1e-3 * size,
+            "{model}: {energies:?}"
+        );
+    }
+}
+
+#[test]
+fn materials_have_coefficients_of_their_own() {
+    let deck = r#"
+body = { shape = "bar", length = 8, spacing = 1 }
+materials = { default = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }, hot = { density = 1, youngs_modulus = 1 } }
+sets = { half = { where = "x > 4" } }
+assign = [{ set = "half", material = "hot" }]
+thermal = { expansion = 1e-3, temperature = { expression = "10 + x + t" }, reference = 10, material = [{ name = "hot", expansion = 2e-3 }] }
+time = { end = 1, dt = 0.1 }
+"#;
+    let run = build(deck).simulation();
+    let thermal = run.system().operator().capabilities().thermal.unwrap();
+    let stretches = thermal.stretches(2.0);
+    for (i, stretch) in stretches.iter().enumerate() {
+        let x = run.system().cloud().point(i)[0];
+        let alpha = if x > 4.0 { 2e-3 } else { 1e-3 };
+        assert!(
+            (stretch - alpha * (x + 2.0)).abs() < 1e-15,
+            "{x}: {stretch}"
+        );
+    }
+    let unknown = deck.replace("name = \"hot\"", "name = \"cold\"");
+    let error = pericles_deck::Deck::parse(&unknown, "deck.toml", &[]).unwrap_err();
+    assert!(format!("{error:?}").contains("cold"));
+}
+
+#[test]
+fn forms_and_bodies_without_thermal_expansion_are_refused() {
+    let heated = PLATE.replace("MODEL", "bonds = \"grid\"");
+    assert!(refusal(&heated).to_string().contains("thermal expansion"));
+    let spectral = PLATE.replace("MODEL", "model = \"linear\", bonds = \"convolution\"");
+    refusal(&spectral);
+    let corrected = PLATE.replace(
+        "MODEL",
+        "model = \"state-based\", poisson_ratio = 0.3, surface_correction = \"energy\"",
+    );
+    assert!(refusal(&corrected).to_string().contains("corrected"));
+    let cold = PLATE.replace("MODEL", "").replace(
+        "thermal = { expansion = 1e-5, temperature = 303, reference = 293 }\n",
+        "",
+    );
+    assert!(refusal(&cold).to_string().contains("Temperature"));
+    let undefined = PLATE.replace("MODEL", "").replace(
+        "temperature = 303",
+        "temperature = { expression = \"sqrt(-1 - x)\" }",
+    );
+    assert!(refusal(&undefined).to_string().contains("sqrt"));
+}
+
+/// Equal seeds, equal cracks; other seeds, others.
+#[test]
+fn strengths_scatter_by_their_seed() {
+    let deck = r#"
+body = { shape = "plate", size = [24, 8], spacing = 1, plane = "stress" }
+material = { MODELdensity = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.02, scatter = { shape = 6, seed = SEED } }
+sets = { left = { where = "x < 3" }, right = { where = "x > 21" } }
+prescribe = [{ set = "left", velocity = [-0.02, 0] }, { set = "right", velocity = [0.02, 0] }]
+time = { end = 15 }
+"#;
+    for model in [
+        "",
+        "model = \"state-based\", poisson_ratio = 0.2, ",
+        "model = \"correspondence\", poisson_ratio = 0.2, ",
+    ] {
+        let damage = |seed: &str| {
+            let text = deck.replace("MODEL", model).replace("SEED", seed);
+            assert!(
+                parse(&text)
+                    .model
+                    .body
+                    .solid()
+                    .unwrap()
+                    .material
+                    .scatter
+                    .is_some()
+            );
+            let mut run = build(&text).simulation();
+            run.run(|_| Control::Continue).unwrap();
+            assert!(run.system().operator().broken_bonds() > 10, "{model}");
+            run.snapshot().field(Field::Damage).to_vec()
+        };
+        let first = damage("3");
+        assert_eq!(first, damage("3"), "{model}");
+        assert_ne!(first, damage("4"), "{model}");
+    }
+}

@@ -1,0 +1,34 @@
+//! Thermal expansion of correspondence materials: the stress-free state of a point is stretched by 1 + τ ([`Solid::expanded`](super::Solid::expanded)).
+
+use std::sync::Arc;
+
+use pericles::space::Sites;
+
+/// Thermal stretches τ of own points and ghosts at a time; none of a body that is not heated.
+pub(super) struct Heat(pub Option<Arc<Vec<f64>>>);
+
+impl Heat {
+    /// 1 + τ of a point.
+    #[inline(always)]
+    pub fn factor(&self, i: usize) -> f64 {
+        self.0.as_ref().map_or(1.0, |stretches| 1.0 + stretches[i])
+    }
+
+    /// (1 + τ) ξ and η − τ ξ of a bond between two sites with the mean τ of its ends: the bond as its critical stretch sees it.
+    #[inline(always)]
+    pub fn expanded<const D: usize>(
+        &self,
+        sites: &Sites,
+        ends: [usize; 2],
+        xi: [f64; D],
+        eta: [f64; D],
+    ) -> ([f64; D], [f64; D]) {
+        let Some(stretches) = &self.0 else {
+            return (xi, eta);
+        };
+        let [here, there] = ends.map(|site| stretches[sites.point(site)]);
+        let stretch = 0.5 * (here + there);
+        let pulled = std::array::from_fn(|c| eta[c] - stretch * xi[c]);
+        (xi.map(|x| (1.0 + stretch) * x), pulled)
+    }
+}

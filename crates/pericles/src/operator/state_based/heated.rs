@@ -1,0 +1,141 @@
+//! [`Expandable`] for linear peridynamic solids.
+
+use std::sync::Arc;
+
+use super::force::LinearSolidForce;
+use super::heat::Heat;
+use super::kinematics::Kinematics;
+use crate::error::{PericlesError, Result};
+use crate::lanes::dot;
+use crate::operator::On;
+use crate::parallel::{BLOCK, for_each_point};
+use crate::thermal::{Expandable, ThermalExpansion};
+
+impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
+    /// τ of own points and ghosts at a time, if the body is heated.
+    pub(super) fn stretches(&self, t: f64) -> Option<Arc<Vec<f64>>> {
+        Some(self.heat.as_ref()?.expansion.stretches(t))
+    }
+
+    /// The same at the time that forces were computed for last.
+    pub(super) fn latest_stretches(&self) -> Option<Arc<Vec<f64>>> {
+        Some(self.heat.as_ref()?.expansion.latest())
+    }
+
+    /// What the stretch of a point adds to p, the sum of the pull of its force state that does not depend on the bond.
+    pub(super) fn thermal_pull(&self, i: usize, stretch: f64) -> f64 {
+        let Some(heat) = &self.heat else {
+            return 0.0;
+        };
+        let (states, site) = (&self.states, self.bonds.site(i));
+        let share = states.dilatation[i] * heat.volume[i];
+        -stretch * (states.pressure[site] * share + states.stiffness[site])
+    }
+
+    /// Adds the thermal pull of the points named by `on` to one number of every point.
+    pub(super) fn add_thermal_pulls(&self, t: f64, on: &On<'_>, pulls: &mut [f64]) {
+        if let Some(stretches) = self.stretches(t) {
+            on.for_each(pulls.len(), |i| {
+                pulls[i] += self.thermal_pull(i, stretches[i]);
+            });
+        }
+    }
+
+    /// Sets the thermal pulls of the points named by `on`, of a heated body; nothing of others.
+    pub(super) fn thermal_pulls_into(&self, t: f64, on: &On<'_>, pulls: &mut [f64]) {
+        if self.heat.is_some() {
+            on.for_each(pulls.len(), |i| pulls[i] = 0.0);
+            self.add_thermal_pulls(t, on, pulls);
+        }
+    }
+
+    /// The energy density of a point with the dilatation θ, the sum Σ g ω e² of total extensions and the sum Σ ω r e_x of inelastic extensions, J/m³.
+    pub(super) fn energy_at(
+        &self,
+        i: usize,
+        stretch: Option<f64>,
+        [theta, squares, inelastic]: [f64; 3],
+    ) -> f64 {
+        let place = [i, self.bonds.site(i)];
+        let factor = self.states.dilatation[i];
+        match (&self.heat, stretch) {
+            (Some(heat), Some(stretch)) if factor > 0.0 => {
+                let volume = heat.volume[i];
+                let linear = theta / factor - inelastic;
+                let squares = squares - stretch * (2.0 * linear - stretch * volume);
+                let theta = theta - factor * volume * stretch;
+                self.states.energy_density(place, theta, squares)
+            }
+            _ => self.states.energy_density(place, theta, squares),
+        }
+    }
+
+    /// Directed bonds broken so far, by blocks; of heated bodies only.
+    pub(super) fn broken_by_blocks(&self) -> Option<Vec<u64>> {
+        self.heat.as_ref()?;
+        let blocks = self.blocks.iter();
+        Some(blocks.map(|block| block.tally.broken.get()).collect())
+    }
+
+    /// Computes M' anew in all blocks that lost bonds since there were so many broken ones in each; everywhere if none are given.
+    pub(super) fn renew_volumes(&mut self, before: Option<Vec<u64>>) {
+        let Some(mut heat) = self.heat.take() else {
+            return;
+        };
+        let now: Vec<u64> = (self.blocks.iter())
+            .map(|block| block.tally.broken.get())
+            .collect();
+        let changed = |i: usize| {
+            let block = i / BLOCK;
+            let known = before
+                .as_ref()
+                .is_some_and(|before| before[block] == now[block]);
+            !known || heat.volume.is_empty()
+        };
+        if before.as_ref() != Some(&now) {
+            heat.volume = for_each_point(self.cloud.len(), &|i| match changed(i) {
+                true => self.volume_left(i),
+                false => heat.volume[i],
+            });
+        }
+        self.heat = Some(heat);
+    }
+
+    /// Σ ω r² over the bonds of a point that are left.
+    fn volume_left(&self, i: usize) -> f64 {
+        let (bonds, here) = (self.view(), self.bonds.site(i));
+        let intact = (self.bonds.family(i)).filter(|&(entry, _)| self.is_intact(i, entry));
+        let of_bond = |(entry, b): (usize, usize)| {
+            let xi = bonds.vector::<D>(here, b);
+            bonds.weight_of(entry, [here, b], xi) * dot(xi, xi)
+        };
+        intact.map(of_bond).sum()
+    }
+}
+
+impl<L: Kinematics, const D: usize> Expandable for LinearSolidForce<L, D> {
+    /// # Errors
+    /// Corrected surfaces and limits of bond energy.
+    fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
+        let refuse = |reason| {
+            let form = "list";
+            Err(PericlesError::FormNotUsable { form, reason })
+        };
+        if self.is_corrected() {
+            return refuse(
+                "the factors of corrected surfaces are those of bonds without thermal strain; leave out `surface_correction`",
+            );
+        }
+        if self.weakest.energy.is_finite() {
+            return refuse(
+                "the work of bonds with thermal strain is not followed; use failure = \"stretch\"",
+            );
+        }
+        self.heat = Some(Heat {
+            expansion,
+            volume: Vec::new(),
+        });
+        self.renew_volumes(None);
+        Ok(())
+    }
+}

@@ -1,0 +1,8 @@
+//! Thermal expansion of bond-based and state-based bodies.
+
+#[allow(dead_code)] // other tests use the rest
+#[path = "../state_based/bodies.rs"]
+mod bodies;
+mod forces;
+mod runs;
+mod setup;
