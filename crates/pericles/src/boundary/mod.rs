@@ -11,7 +11,7 @@ pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
-pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness};
+pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;
 
 use crate::archive::Saved;

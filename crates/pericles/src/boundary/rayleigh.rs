@@ -104,11 +104,14 @@ impl RayleighDamping {
     }
 }
 
+/// Sets K d/ρ at displacements u, from u, d and the place of the product.
+pub type StiffnessProduct<'a> = dyn Fn(&[f64], &[f64], &mut [f64]) + 'a;
+
 /// What a boundary may ask of the forces of a body.
 #[derive(Clone, Copy)]
 pub struct Stiffness<'a> {
     /// Sets K d/ρ (1/s² times the unit of d) at u for a direction d, zero where motion is prescribed.
-    pub product: &'a dyn Fn(&[f64], &[f64], &mut [f64]),
+    pub product: &'a StiffnessProduct<'a>,
     /// Zeros entries whose motion is prescribed.
     pub hold: &'a dyn Fn(&mut [f64]),
 }
