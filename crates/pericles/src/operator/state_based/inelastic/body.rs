@@ -13,7 +13,7 @@ use crate::operator::{AssembledBonds, BondForm, Feature, Features, Limit, TwoPas
 pub struct InelasticSolidBody<'a> {
     /// The body with its elastic constants.
     pub elastic: LinearSolidBody<'a>,
-    /// The inelasticity of every material, in the order of [`LinearSolidBody::classes`].
+    /// The inelasticity of every material, in the order of the classes of the elastic body.
     pub laws: &'a [Inelasticity],
 }
 
