@@ -312,7 +312,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &mesh,
         &[
             "deck.toml:6:10",
-            "no block \"steel\"",
+            "unknown block `steel`",
             "left half, right half",
         ],
     );
