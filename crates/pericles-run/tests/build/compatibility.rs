@@ -112,7 +112,7 @@ fn deck_with(feature: Feature, form: &Form) -> String {
         }
         Inclusions => "assign = [{ set = \"part\", stiffness = 2 }]\n",
         PreCracks => "crack = [{ segment = [[0, 4], [6, 4]] }]\n",
-        ThermalExpansion => "thermal = { expansion = 1e-5, temperature = 100 }\n",
+        ThermalExpansion => "thermal = { expansion = 1e-5, reference = 20, temperature = 100 }\n",
         Tensors => "output = { fields = { names = [\"Stress\"] } }\n",
         _ => "",
     };

@@ -313,7 +313,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &[
             "deck.toml:6:10",
             "unknown block `steel`",
-            "left half, right half",
+            "\"left half\" and \"right half\"",
         ],
     );
     let plane = with(
